@@ -1,0 +1,49 @@
+"""The one stepping kernel: NumPy arrays and torch tensors (gradients included), any leading batch axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any, Callable
+
+import numpy as np
+
+from beamenv.plant import Plant, sample
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Operators:
+    """What one step needs, fused into one product; arrays of NumPy or of torch.
+
+    With z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
+    [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost (s)].
+    """
+
+    fused: Any
+    """(s, n + p + 2 + s)."""
+    states: int
+    outputs: int
+
+    @classmethod
+    def from_plant(cls, plant: Plant) -> Operators:
+        """Operators of a plant held over its control interval, as float64 NumPy arrays."""
+        held = sample(plant)
+        step = np.hstack([held.A, held.B, held.disturbance_input])
+        fused = np.hstack([step.T, (plant.C @ step).T, (plant.tip_displacement @ step).T, held.cost])
+        return cls(fused=np.ascontiguousarray(fused), states=len(plant.A), outputs=len(plant.C))
+
+    def convert(self, to_array: Callable[[Any], Any]) -> Operators:
+        """The same operators with each array passed through ``to_array``, say ``torch.as_tensor``."""
+        return replace(self, **{f.name: to_array(getattr(self, f.name)) for f in fields(self) if f.type == "Any"})
+
+
+def advance(operators: Operators, joined: Any) -> tuple[Any, Any, Any, Any]:
+    """One control interval, exactly.
+
+    ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
+    noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
+    increment of J over the interval (...,) in J s.
+    """
+    n, p = operators.states, operators.outputs
+    product = joined @ operators.fused
+    increment = (product[..., n + p + 2 :] * joined).sum(-1)
+    return product[..., :n], product[..., n : n + p], product[..., n + p : n + p + 2], increment
