@@ -1,0 +1,132 @@
+import ast
+import json
+import re
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+import yaml
+
+import beamenv
+
+ROOT = Path(__file__).resolve().parents[1]
+WINGS = ("beamenv", "baselines", "train")
+HEAVY_MODULES = {"torch", "matplotlib", "control", "scipy.signal"}
+VERSION = re.search(r'^version = "(.+)"$', (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE).group(1)
+
+IMPORT_AND_TELL = """
+import json, sys, time
+start = time.perf_counter()
+import beamenv
+print(json.dumps([time.perf_counter() - start, sorted(sys.modules)]))
+"""
+
+
+def import_beamenv_afresh():
+    run = subprocess.run([sys.executable, "-c", IMPORT_AND_TELL], cwd=ROOT, capture_output=True, text=True, check=True)
+    seconds, modules = json.loads(run.stdout)
+    return seconds, set(modules)
+
+
+def test_import_loads_no_heavy_package():
+    _, modules = import_beamenv_afresh()
+    assert not HEAVY_MODULES & modules
+
+
+def test_import_takes_less_than_a_second():
+    # A loaded machine can only slow an import down, so one quick import is proof; five slow ones are not bad luck.
+    times = (import_beamenv_afresh()[0] for _ in range(5))
+    assert any(seconds < 1.0 for seconds in times)
+
+
+@pytest.mark.parametrize("wing", WINGS)
+def test_wing_is_marked_as_typed(wing):
+    assert (ROOT / wing / "py.typed").is_file()
+
+
+def test_package_states_the_version_of_the_project():
+    assert beamenv.__version__ == VERSION
+
+
+def test_installed_metadata_state_the_version_of_the_project():
+    try:
+        assert metadata.version("beamenv") == VERSION
+    except metadata.PackageNotFoundError:
+        pytest.skip("beamenv is not installed in this interpreter")
+
+
+def test_citation_cites_the_software_and_the_thesis():
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    (thesis,) = citation["references"]
+    assert citation["cff-version"] == "1.2.0"
+    assert str(citation["version"]) == VERSION
+    assert citation["license"] == "MIT"
+    assert citation["authors"] and citation["title"] and citation["message"]
+    assert thesis["type"] == "thesis"
+    assert thesis["authors"] == [{"family-names": "Vadiraja", "given-names": "D. N."}]
+    assert thesis["year"] == 2008
+    assert thesis["institution"]["name"] == "Indian Institute of Technology Guwahati"
+
+
+def test_command_without_the_train_extra_says_how_to_install_it():
+    hide_typer_and_torch = "import sys; sys.modules.update(typer=None, torch=None); from train.command import main; main()"
+    run = subprocess.run([sys.executable, "-c", hide_typer_and_torch, "--help"], cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 1
+    assert run.stderr.count("\n") == 1
+    assert "pip install 'beamenv[train]'" in run.stderr
+
+
+# Imports run one way: structure → patches → plant → environment; baselines know plants, never environments; training
+# knows everything and nobody knows training. Lazy and type-only imports count: they are arrows too.
+
+ENVIRONMENT = {"beamenv.env", "beamenv.vector_env", "beamenv.wrappers", "beamenv.rendering", "beamenv.render"}
+STRUCTURE, PATCHES, PLANT = "beamenv.structure", "beamenv.patches", "beamenv.plant"
+
+
+def dotted_name(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def own_imports(path):
+    """Names imported from the three wings, each ``from a import b`` as ``a.b``."""
+    package = dotted_name(path) if path.name == "__init__.py" else dotted_name(path).rpartition(".")[0]
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            parents = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            source = ".".join([*parents, *([node.module] if node.module else [])])
+            names.update(f"{source}.{alias.name}" for alias in node.names)
+    return {name for name in names if name.split(".")[0] in WINGS}
+
+
+def lies_in(name, packages):
+    return any(name == package or name.startswith(package + ".") for package in packages)
+
+
+def arrows(module):
+    """(importing file, imported name) for each import inside a module or package of the project."""
+    place = ROOT.joinpath(*module.split("."))
+    paths = sorted(place.rglob("*.py")) or [place.with_suffix(".py")]
+    return [(dotted_name(path), name) for path in paths for name in sorted(own_imports(path))]
+
+
+@pytest.mark.parametrize(
+    ("module", "may_import"),
+    [
+        (STRUCTURE, {STRUCTURE}),
+        (PATCHES, {STRUCTURE, PATCHES}),
+        (PLANT, {STRUCTURE, PATCHES, PLANT}),
+        ("beamenv", {"beamenv"}),
+        ("baselines", {"beamenv", "baselines"}),
+    ],
+)
+def test_imports_run_one_way(module, may_import):
+    assert [arrow for arrow in arrows(module) if not lies_in(arrow[1], may_import)] == []
+
+
+def test_baselines_never_know_environments():
+    assert [arrow for arrow in arrows("baselines") if lies_in(arrow[1], ENVIRONMENT)] == []

@@ -1,0 +1,24 @@
+"""The console command ``beamenv``: starts the command line, or says in one sentence how to install what it needs."""
+
+from __future__ import annotations
+
+import sys
+
+_OWN_PACKAGES = ("beamenv", "baselines", "train")
+
+
+def main() -> None:
+    """Run the command line.
+
+    Exits with status 1 and one sentence if a package of the ``train`` extra is missing. A missing module of our own is
+    a defect and stays an error with its traceback.
+    """
+    try:
+        from train.cli import app
+
+        app()
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if not package or package in _OWN_PACKAGES:
+            raise
+        sys.exit(f"beamenv: the Python package '{package}' is missing; install it with pip install 'beamenv[train]'.")
