@@ -1,0 +1,143 @@
+"""How every law behaves as a controller: SB3's predict, batches, memory, limits and bad input."""
+
+import numpy as np
+import pytest
+
+from baselines import lqg, lqr, no_control, velocity_feedback
+from baselines.controller import Controller
+from baselines.persistent_load import PersistentLoad, with_persistent_load
+from baselines.riccati import sampled_kalman_filter, sampled_regulator
+from beamenv.plant import sample
+
+LAWS = {
+    "no control": no_control,
+    "velocity feedback": velocity_feedback,
+    "LQR (true state)": lqr,
+    "LQG": lqg,
+    "LQG (thesis)": lambda plant: lqg(plant, "continuous"),
+    "LQG with load estimate": lambda plant: lqg(plant, persistent_load=PersistentLoad()),
+}
+
+
+@pytest.fixture(params=LAWS, name="law")
+def _law(request, small_plant):
+    law = LAWS[request.param](small_plant())
+    assert law.name == request.param
+    return law
+
+
+def observations(law, steps=20, blades=5, size=0.05):
+    return size * np.random.default_rng(3).normal(size=(steps, blades, law.measurement_scale.size))
+
+
+def test_a_batch_is_its_blades_one_by_one(law):
+    assert isinstance(law, Controller)
+    batched = single = None
+    for row in observations(law):
+        batch, batched = law.predict(row, batched)
+        one, single = law.predict(row[2], single)
+        assert batch.shape == (5, 2)
+        assert batch.dtype == np.float32
+        np.testing.assert_allclose(one, batch[2], rtol=1e-6, atol=1e-9)
+
+
+def test_an_episode_start_forgets_that_blade_alone(law):
+    rows = observations(law)
+    memory = None
+    for row in rows[:10]:
+        _, memory = law.predict(row, memory)
+    begins = np.array([False, True, False, False, True])
+    action, _ = law.predict(rows[10], memory, episode_start=begins)
+    kept, _ = law.predict(rows[10], memory)
+    fresh, _ = law.predict(rows[10])
+    np.testing.assert_array_equal(action, np.where(begins[:, None], fresh, kept))
+
+
+def test_voltages_never_leave_asymmetric_limits(law):
+    memory = None
+    for row in observations(law, size=50.0):
+        action, memory = law.predict(row, memory)
+        assert action.min() >= -1 / 3 - 1e-7
+        assert action.max() <= 1.0
+
+
+def test_an_observation_of_another_length_is_refused_by_name(law):
+    with pytest.raises(ValueError, match=r"observation has shape \(4, 9\).*length [26]"):
+        law.predict(np.zeros((4, 9)))
+
+
+def test_physical_units_give_the_same_voltages(law):
+    physical = law.in_physical_units()
+    memory = physical_memory = None
+    for row in observations(law):
+        action, memory = law.predict(row, memory)
+        volts, physical_memory = physical.predict(row * law.measurement_scale, physical_memory)
+        np.testing.assert_allclose(volts, action * law.voltage_scale, rtol=1e-5)
+
+
+def test_the_filter_predicts_with_the_clipped_voltage(small_plant):
+    plant = small_plant(voltage_limits=np.array([[-1.0, -1.0], [3.0, 3.0]]))
+    held = sample(plant)
+    E = held.disturbance_input
+    _, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, held.sensor_noise)
+    law, estimate, memory = lqg(plant), np.zeros(6), None
+    clipped = 0
+    for observation in observations(law, blades=1)[:, 0]:
+        action, memory = law.predict(observation, memory)
+        estimate = estimate + L @ (observation * plant.sensor_full_scale - held.C @ estimate)
+        voltage = np.clip(-K @ estimate, -1.0, 3.0)
+        clipped += np.any(np.isin(voltage, (-1.0, 3.0)))
+        np.testing.assert_allclose(3.0 * action, voltage, rtol=1e-5, atol=1e-6)
+        estimate = held.A @ estimate + held.B @ voltage
+    assert clipped > 0
+
+
+def test_velocity_feedback_takes_energy_out_of_every_mode(small_plant):
+    plant = small_plant()
+    gain = velocity_feedback(plant).measurement_gain
+    loop = plant.A + plant.B @ gain @ plant.C
+    assert gain[0, 1] == gain[1, 0] == 0.0
+    assert np.linalg.eigvals(loop).real.max() < np.linalg.eigvals(plant.A).real.max()
+    assert np.linalg.eigvalsh(plant.B @ gain @ plant.C).max() <= 1e-12
+
+
+def test_ganged_velocity_feedback_answers_the_mean_current(small_plant):
+    separate = small_plant()
+    plant = small_plant(
+        B=separate.B.sum(axis=1, keepdims=True),
+        D=np.zeros((2, 1)),
+        input_weight=np.array([[separate.input_weight.sum()]]),
+        voltage_limits=separate.voltage_limits[:, :1],
+    )
+    gain = velocity_feedback(plant).measurement_gain
+    assert gain.shape == (1, 2)
+    assert gain[0, 0] == gain[0, 1] < 0
+
+
+def test_velocity_feedback_refuses_what_it_cannot_pair(small_plant):
+    plant = small_plant()
+    with pytest.raises(ValueError, match="2 actuators and 1 sensors.*cannot pair"):
+        velocity_feedback(small_plant(C=plant.C[:1], sensor_full_scale=plant.sensor_full_scale[:1]))
+
+
+def test_lqg_refuses_unknown_designs_by_name(small_plant):
+    with pytest.raises(ValueError, match='design = "?.?analog.*"sampled" and "continuous"'):
+        lqg(small_plant(), "analog")
+    with pytest.raises(ValueError, match='persistent_load.*needs design="sampled"'):
+        lqg(small_plant(), "continuous", persistent_load=PersistentLoad())
+    with pytest.raises(ValueError, match="duration = 0.0"):
+        PersistentLoad(duration=0.0)
+
+
+def test_a_persistent_load_adds_its_own_states_and_keeps_the_cost(small_plant):
+    held = sample(small_plant())
+    augmented = with_persistent_load(held, PersistentLoad(magnitude=12.0, duration=0.3))
+    random = np.random.default_rng(0)
+    x, u, lasting, white = random.normal(size=6), random.normal(size=2), random.normal(size=2), random.normal(size=2)
+    z, z_augmented = np.concatenate([x, u, lasting + white]), np.concatenate([x, lasting, u, white, np.zeros(2)])
+    assert z_augmented @ augmented.cost @ z_augmented == pytest.approx(z @ held.cost @ z)
+    following = augmented.A @ z_augmented[:8] + augmented.B @ u + augmented.disturbance_input @ z_augmented[10:]
+    np.testing.assert_allclose(following[:6], held.A @ x + held.B @ u + held.disturbance_input @ (lasting + white))
+    decay = augmented.A[6, 6]
+    assert augmented.process_noise[2, 2] / (1 - decay**2) == pytest.approx(12.0**2)
