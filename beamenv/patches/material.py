@@ -1,0 +1,90 @@
+"""Piezoelectric sheets: macro-fibre composite (MFC, d33 effect along the fibres) and monolithic PZT (d31 effect)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.contour import Inlay
+from beamenv.structure.laminate import Ply, power_integrals
+from beamenv.structure.materials import Lamina, strain_rotation
+
+Array = NDArray[np.float64]
+
+FIBRE_ANGLE_DEG = 90.0
+"""Fibres run along the span. The thesis prints θp = 0, which would leave −1.1 C/m² along the span and is not meant."""
+
+
+@dataclass(frozen=True, slots=True)
+class PatchMaterial:
+    """A piezoelectric sheet driven by one field E = V / ``electrode_spacing`` along its axis 1 (MFC) or through it (PZT)."""
+
+    lamina: Lamina
+    d11: float
+    """Free strain along the span per field, m/V (= C/N)."""
+    d12: float
+    """Free strain across the span per field, m/V."""
+    thickness: float
+    """m."""
+    electrode_spacing: float
+    """m: between the fingers of an MFC's electrodes, the thickness of a PZT sheet."""
+
+    def piezoelectric_stress(self) -> Array:
+        """E = d Q (2,): stress along and across the axis 1 per field under plane stress, C/m²."""
+        return np.asarray((self.lamina.reduced_stiffness() @ np.array([self.d11, self.d12, 0.0]))[:2])
+
+    def free_strain(self, voltage: float) -> float:
+        """Strain along the span of an unloaded sheet."""
+        return self.d11 * voltage / self.electrode_spacing
+
+    def blocking_force(self, voltage: float, width: float) -> float:
+        """Force (N) of a sheet of given width (m) held at constant length and free across."""
+        return self.lamina.E1 * self.free_strain(voltage) * width * self.thickness
+
+    def stress_in_wall(self) -> Array:
+        """(3,): piezoelectric stress in the wall's (ss, zz, sz) per field, C/m²."""
+        along, across = self.piezoelectric_stress()
+        return np.asarray(strain_rotation(np.radians(FIBRE_ANGLE_DEG)).T @ np.array([along, across, 0.0]))
+
+    def wall_resultants(self, wall_thickness: float, hoop_coupling: Array) -> Array:
+        """(…, 6) condensed piezoelectric resultants per volt, conjugate to (ε0, ε1, ε3, γ0, γ1, γ2), of a sheet flush with the outer face.
+
+        ``hoop_coupling`` (…, 6) is the wall law's: the hoop stress acts on the resultants through it, since N_ss = 0.
+        """
+        outer = 0.5 * wall_thickness
+        moments = power_integrals(np.array([outer - self.thickness, outer]), 3)[:, 0] / self.electrode_spacing
+        hoop, span, shear = self.stress_in_wall()
+        direct = np.concatenate([span * moments[[0, 1, 3]], shear * moments[[0, 1, 2]]])
+        return direct - hoop_coupling * (hoop * moments[0])
+
+    @property
+    def charge_per_reaction(self) -> float:
+        """Charge collected per (generalised force per volt × displacement): Eq. 4.37 counts ∫ē ε dA, without thickness over spacing."""
+        return self.electrode_spacing / self.thickness
+
+    def inlay(self, wall: str, start: float, length: float, width: float) -> Inlay:
+        """The sheet as foreign material in a wall: its passive effect."""
+        return Inlay(wall, start, length, width, Ply(self.lamina, FIBRE_ANGLE_DEG), self.thickness)
+
+
+MFC = PatchMaterial(
+    lamina=Lamina(E1=30.4e9, E2=15.86e9, G12=5.52e9, G13=5.52e9, G23=5.52e9, nu12=0.31, density=5440.0),
+    d11=460e-12,
+    d12=-210e-12,
+    thickness=0.3e-3,
+    electrode_spacing=0.5e-3,
+)
+"""M-8557-P1 (thesis Table 5.1; density from the data sheet, the thesis prints the part number)."""
+
+PZT = PatchMaterial(
+    lamina=Lamina(E1=124e9, E2=130e9, G12=70e9, G13=70e9, G23=74e9, nu12=0.25, density=8000.0),
+    d11=-140e-12,
+    d12=-140e-12,
+    thickness=0.3e-3,
+    electrode_spacing=0.3e-3,
+)
+"""Monolithic sheet poled through its thickness: d31 in both directions (thesis Table 5.1)."""
+
+PATCH_MATERIALS = {"MFC": MFC, "PZT": PZT}

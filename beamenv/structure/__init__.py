@@ -1,0 +1,23 @@
+"""Structural mechanics of rotating thin-walled composite blades (thesis chapters 2 and 3)."""
+
+from beamenv.structure.beam import RotatingBeam
+from beamenv.structure.contour import Inlay
+from beamenv.structure.laminate import Laminate, Layup, Ply
+from beamenv.structure.materials import AS4_3501_6, GRAPHITE_EPOXY, Lamina
+from beamenv.structure.modes import Modes
+from beamenv.structure.section import BoxSection, PolygonSection, Section
+
+__all__ = [
+    "AS4_3501_6",
+    "GRAPHITE_EPOXY",
+    "BoxSection",
+    "Inlay",
+    "Lamina",
+    "Laminate",
+    "Layup",
+    "Modes",
+    "Ply",
+    "PolygonSection",
+    "RotatingBeam",
+    "Section",
+]

@@ -1,0 +1,189 @@
+"""The rotating blade: section, lay-up and planform in, matrices, frequencies and mode shapes out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
+from beamenv.structure.contour import Inlay
+from beamenv.structure.laminate import Layup
+from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
+from beamenv.structure.section import Section, SpanWalls, check_theory
+from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
+
+Array = NDArray[np.float64]
+
+EXTRA_STATIONS = 6
+"""Gauss stations beyond the number of terms on each piece of the span: pretwist and taper are then integrated to round-off."""
+
+
+@dataclass(frozen=True, eq=False)
+class RotatingBeam:
+    """A rotating, pretwisted, tapered, thin-walled composite cantilever (thesis chapters 2 and 3, corrected).
+
+    z runs along the span from the clamped root, x lies in the plane of rotation (lag), y along the spin axis (flap).
+
+    Raises ``ValueError`` for a length, taper or number of terms that is not positive, a negative hub radius, an unknown
+    theory, or inlays that leave the blade, overlap or do not fit their wall.
+    """
+
+    section: Section
+    """Mid-line section at the root."""
+    layup: Layup
+    length: float
+    """m."""
+    hub_radius: float = 0.0
+    """R₀, m."""
+    pretwist_deg: float = 0.0
+    """Linear pretwist between root and tip."""
+    presetting_deg: float = 0.0
+    """Angle of the root section's chord from the plane of rotation."""
+    taper: float = 1.0
+    """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
+    shear: str = "higher_order"
+    """"higher_order", "first_order" or "rigid"."""
+    shear_flow: str = "consistent"
+    """"consistent": constant around the cell; "thesis": without the couplings of off-axis plies."""
+    terms: int = 10
+    """Trial functions of each field."""
+    inlays: tuple[Inlay, ...] = ()
+    """Foreign material let into the walls, with its mass and stiffness."""
+
+    def __post_init__(self) -> None:
+        check_theory(self.shear, self.shear_flow)
+        check_positive(length=self.length, taper=self.taper)
+        if not (np.isfinite(self.hub_radius) and self.hub_radius >= 0.0):
+            raise ValueError(f"hub_radius = {self.hub_radius!r} must be zero or a positive number of metres.")
+        for name in ("pretwist_deg", "presetting_deg"):
+            if not np.isfinite(getattr(self, name)):
+                raise ValueError(f"{name} = {getattr(self, name)!r} must be a finite number of degrees.")
+        if not (isinstance(self.terms, (int, np.integer)) and 1 <= self.terms <= 30):
+            raise ValueError(f"terms = {self.terms!r} must be an integer from 1 to 30.")
+        for wall in self.section.walls:
+            self.layup.plies(wall)
+        check_inlays(self)
+
+    @cached_property
+    def space(self) -> TrialSpace:
+        """The trial functions."""
+        return TrialSpace(self.length, int(self.terms), rigid=self.shear == "rigid")
+
+    @cached_property
+    def matrices(self) -> BeamMatrices:
+        """M, K_e, K_Ω, G₁: assembled once, good at any speed."""
+        edges = [edge for inlay in self.inlays for edge in (inlay.start, inlay.start + inlay.length)]
+        stations = Stations.between(self._breakpoints(edges), self.terms + EXTRA_STATIONS)
+        walls = self.walls_at(stations.z)
+        return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+
+    def _breakpoints(self, edges: list[float]) -> Array:
+        """Ascending span coordinates of root, tip and the given edges, without repetition."""
+        ends = np.unique(np.clip([0.0, *edges, self.length], 0.0, self.length))
+        return ends[np.append(True, np.diff(ends) > 1e-9 * self.length)]
+
+    def walls_at(self, z: Array, cuts: tuple[tuple[str, float], ...] = ()) -> SpanWalls:
+        """The walls at stations z (m), split at (wall, width) ``cuts`` too."""
+        tip = 1.0 / self.taper
+        return SpanWalls.build(
+            self.section,
+            self.layup,
+            z=z,
+            scale=tip + (1.0 - tip) * (1.0 - z / self.length),
+            angle=np.radians(self.presetting_deg + self.pretwist_deg * z / self.length),
+            shear=self.shear,
+            shear_flow=self.shear_flow,
+            inlays=self.inlays,
+            cuts=cuts,
+        )
+
+    @cached_property
+    def critical_speed(self) -> float:
+        """Speed (rad/s) from which the rotating equilibrium is unstable: centrifugal softening of the extension has eaten its stiffness."""
+        return critical_speed(self.matrices.elastic_stiffness, self.matrices.spin_stiffness)
+
+    def natural_frequencies(
+        self, speed: float = 0.0, count: int = 6, motions: tuple[str, ...] | None = None, gyroscopic: bool = True
+    ) -> Array:
+        """Natural frequencies in rad/s, ascending, (count,); zero for a mode that has lost its stiffness.
+
+        ``motions`` keeps only some of lag, flap, extension, twist, each with its section rotation.
+        """
+        matrices = self._selected(speed, count, motions)
+        if gyroscopic and np.any(matrices.gyroscopic) and speed:
+            return whirling_frequencies(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed))[:count]
+        return normal_modes(matrices.mass, matrices.stiffness(speed), count)[0]
+
+    def modes(self, speed: float = 0.0, count: int = 6, motions: tuple[str, ...] | None = None, gyroscopic: bool = True) -> Modes:
+        """Frequencies, mode shapes and families of the first ``count`` modes at a speed in rad/s below the critical one."""
+        columns = self.space.columns(motions)
+        matrices = self._selected(speed, count, motions)
+        shapes: Array | NDArray[np.complex128]
+        if gyroscopic and speed:
+            if speed >= self.critical_speed:
+                raise ValueError(f"speed = {speed!r} rad/s must be below the critical speed, {self.critical_speed:.6g} rad/s.")
+            frequencies, shapes = whirling_modes(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed), count)
+        else:
+            frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), count)
+        full = np.zeros((self.space.size, shapes.shape[1]), dtype=shapes.dtype)
+        full[columns] = shapes
+        blocks = [self.space.columns((motion,)) for motion in MOTIONS]
+        participation = energy_participation(self.matrices.mass, full, blocks)
+        names = list(MOTIONS)
+        families = tuple(names[k] for k in participation.argmax(axis=1))
+        return Modes(frequencies, full, families, participation)
+
+    def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> BeamMatrices:
+        if not (np.isfinite(speed) and speed >= 0.0):
+            raise ValueError(f"speed = {speed!r} must be zero or a positive number of rad/s.")
+        columns = self.space.columns(motions)
+        if not 1 <= count <= len(columns):
+            raise ValueError(f"count = {count!r} must be from 1 to {len(columns)}, the number of trial functions.")
+        return self.matrices if motions is None else self.matrices.restricted(columns)
+
+    def displacements(self, z: Array) -> dict[str, Array]:
+        """Rows (stations, N) that give u, v, s, theta_x, theta_y, phi at z (m) from the coefficient vector."""
+        rows = self.space.evaluate(np.atleast_1d(np.asarray(z, dtype=float)))
+        return {name: rows[name, 0] for name in ("u", "v", "s", "theta_x", "theta_y", "phi")}
+
+    def surface_strain(self, z: Array) -> Array:
+        """Rows (stations, points, N): spanwise strain at the outer face of the walls' Gauss points, at z (m)."""
+        walls = self.walls_at(z)
+        outer = 0.5 * walls.laws.thickness[..., None]
+        rows = walls.strain_rows()
+        at_face = rows[..., 0, :] + outer * rows[..., 1, :] + outer**3 * rows[..., 2, :]
+        return np.asarray(at_face @ generalised_strains(self.space.evaluate(z)))
+
+    def line_load(self) -> Array:
+        """Generalised force (N, 2) per N/m of uniform line load in lag and in flap."""
+        stations = Stations.between(np.array([0.0, self.length]), self.terms + EXTRA_STATIONS)
+        rows = self.space.evaluate(stations.z)
+        return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
+
+
+def check_positive(**values: float) -> None:
+    """``ValueError`` for a value that is not a positive finite number."""
+    for name, value in values.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise ValueError(f"{name} = {value!r} must be a positive, finite number.")
+
+
+def check_inlays(beam: RotatingBeam) -> None:
+    """``ValueError`` for inlays that leave the blade, are wider than their wall at the narrow end, or overlap."""
+    for inlay in beam.inlays:
+        end = inlay.start + inlay.length
+        if not 0.0 <= inlay.start < end <= beam.length * (1.0 + 1e-12):
+            raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {beam.length!r} m.")
+        narrowest = beam.section.wall_width(inlay.wall) * min(1.0, 1.0 / beam.taper)
+        if not inlay.width <= narrowest * (1.0 + 1e-12):
+            raise ValueError(f"inlay width = {inlay.width!r} m must not exceed the {inlay.wall} wall's {narrowest:.6g} m.")
+    for wall in {inlay.wall for inlay in beam.inlays}:
+        ordered = sorted((inlay for inlay in beam.inlays if inlay.wall == wall), key=lambda inlay: inlay.start)
+        for first, second in zip(ordered[:-1], ordered[1:], strict=True):
+            if second.start < first.start + first.length - 1e-9 * beam.length:
+                raise ValueError(
+                    f"inlays at {first.start!r} and {second.start!r} m on the {wall} wall must be {first.length!r} m apart."
+                )

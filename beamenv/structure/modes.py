@@ -1,0 +1,99 @@
+"""Natural frequencies and mode shapes of conservative gyroscopic systems M q̈ + G q̇ + K q = 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh, solve_triangular
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Modes:
+    """Modes in ascending order of frequency."""
+
+    natural_frequencies: Array
+    """(count,), rad/s."""
+    mode_shapes: NDArray[np.float64] | NDArray[np.complex128]
+    """(N, count): coefficients of the trial functions, of unit modal mass; complex with gyroscopic coupling."""
+    families: tuple[str, ...]
+    """lag, flap, extension or twist: where most of the mode's kinetic energy is."""
+    participation: Array
+    """(count, 4): share of the kinetic energy in lag, flap, extension and twist."""
+
+
+def normal_modes(mass: Array, stiffness: Array, count: int | None = None) -> tuple[Array, Array]:
+    """Frequencies (count,) and mass-normalised shapes (N, count) without gyroscopic coupling.
+
+    A mode that has lost its stiffness (beyond the critical speed) is reported at zero frequency.
+    """
+    subset = None if count is None else (0, min(count, len(mass)) - 1)
+    squares, shapes = eigh(stiffness, mass, subset_by_index=subset)
+    return np.sqrt(np.maximum(squares, 0.0)), shapes
+
+
+def whirling_modes(
+    mass: Array, gyroscopic: Array, stiffness: Array, count: int | None = None
+) -> tuple[Array, NDArray[np.complex128]]:
+    """Frequencies (count,) and complex shapes (N, count) of unit modal mass with gyroscopic coupling.
+
+    With M = L Lᵀ and L⁻¹ K L⁻ᵀ = C Cᵀ the state [Cᵀ Lᵀq; Lᵀq̇] obeys ẏ = S y with S skew, so i S is Hermitian and every
+    frequency is exact to round-off of the largest. Raises ``numpy.linalg.LinAlgError`` where K is not positive definite.
+    """
+    skew, root = skew_form(mass, gyroscopic, stiffness)
+    size = len(mass)
+    last = size if count is None else min(count, size)
+    eigenvalues, vectors = eigh(1j * skew, subset_by_index=(size, size + last - 1), driver="evr")
+    shapes = solve_triangular(root, vectors[size:], lower=True, trans="T")
+    modal_mass = np.einsum("ij,ij->j", shapes.conj(), mass @ shapes).real
+    return eigenvalues, shapes / np.sqrt(modal_mass)
+
+
+def whirling_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Array:
+    """All N frequencies, rad/s, ascending; modes that have lost their stiffness are reported at zero."""
+    try:
+        skew, _ = skew_form(mass, gyroscopic, stiffness)
+    except np.linalg.LinAlgError:
+        return diverged_frequencies(mass, gyroscopic, stiffness)
+    return np.asarray(np.linalg.eigvalsh(1j * skew)[len(mass) :])
+
+
+def skew_form(mass: Array, gyroscopic: Array, stiffness: Array) -> tuple[Array, Array]:
+    """S (2N, 2N) and the Cholesky factor L of M."""
+    root = np.linalg.cholesky(mass)
+
+    def scaled(matrix: Array) -> Array:
+        half = solve_triangular(root, matrix, lower=True)
+        return np.asarray(solve_triangular(root, half.T, lower=True).T)
+
+    reduced = scaled(stiffness)
+    factor = np.linalg.cholesky(0.5 * (reduced + reduced.T))
+    return np.block([[np.zeros_like(factor), factor.T], [-factor, -scaled(gyroscopic)]]), root
+
+
+def diverged_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Array:
+    """|Im λ| of the first-order matrix past the critical speed, where some modes diverge (λ real)."""
+    size = len(mass)
+    first_order = np.block(
+        [[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, gyroscopic)]]
+    )
+    return np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2]
+
+
+def critical_speed(elastic_stiffness: Array, spin_stiffness: Array) -> float:
+    """Speed (rad/s) at which K_e + Ω² K_Ω first loses its positive definiteness; infinite when it never does."""
+    lowest = eigh(spin_stiffness, elastic_stiffness, eigvals_only=True, subset_by_index=(0, 0))[0]
+    return float(1.0 / np.sqrt(-lowest)) if lowest < 0.0 else float("inf")
+
+
+def energy_participation(mass: Array, mode_shapes: NDArray[np.complex128] | Array, blocks: list[NDArray[np.intp]]) -> Array:
+    """Share of each mode's kinetic energy in each block of coefficients, (count, len(blocks))."""
+    energies = []
+    for block in blocks:
+        part = mode_shapes[block]
+        energies.append(np.einsum("ij,ij->j", part.conj(), mass[np.ix_(block, block)] @ part).real)
+    shares = np.stack(energies, axis=1)
+    return np.asarray(shares / shares.sum(axis=1, keepdims=True))

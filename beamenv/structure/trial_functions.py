@@ -1,0 +1,123 @@
+"""Trial functions along the span and Gauss stations to integrate them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FIELDS = ("u", "v", "s", "theta_x", "theta_y", "phi")
+"""Lag, flap, arc-length stretch, section rotations about x and y, twist."""
+
+MOTIONS = {"lag": ("u", "theta_y"), "flap": ("v", "theta_x"), "extension": ("s",), "twist": ("phi",)}
+"""The fields of each family of motion: a bending displacement with its section rotation."""
+
+ROOT_ORDER = {"u": 2, "v": 2, "phi": 2, "s": 1, "theta_x": 1, "theta_y": 1}
+"""The power of z with which a field leaves the clamp: 2 where its slope vanishes there too."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrialSpace:
+    """(z/L)ᵏ times Legendre polynomials: the span of the thesis' monomials (Eq. 3.12), but well conditioned.
+
+    In rigid theory the section rotations are no fields of their own: θy = u', θx = −v'.
+    """
+
+    length: float
+    terms: int
+    rigid: bool
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Fields that have coefficients of their own, in the order of the coefficient vector."""
+        return tuple(name for name in FIELDS if not (self.rigid and name.startswith("theta")))
+
+    @property
+    def size(self) -> int:
+        """Number of coefficients."""
+        return self.terms * len(self.fields)
+
+    def columns(self, motions: tuple[str, ...] | None) -> NDArray[np.intp]:
+        """Indices of the coefficients that belong to ``motions`` (None: all)."""
+        for motion in motions or ():
+            if motion not in MOTIONS:
+                raise ValueError(f"motions = {motions!r} may name only {', '.join(MOTIONS)}.")
+        wanted = FIELDS if motions is None else [name for motion in motions for name in MOTIONS[motion]]
+        blocks = [np.arange(self.terms) + self.terms * k for k, name in enumerate(self.fields) if name in wanted]
+        return np.concatenate(blocks) if blocks else np.arange(0)
+
+    def evaluate(self, z: Array) -> dict[tuple[str, int], Array]:
+        """Rows (stations, size) that give each field's derivative: keys (field, order), orders 0, 1, 2."""
+        tables = {power: polynomial_table(z / self.length, power, self.terms, self.length) for power in (1, 2)}
+        rows: dict[tuple[str, int], Array] = {}
+        for index, name in enumerate(self.fields):
+            block = slice(index * self.terms, (index + 1) * self.terms)
+            for order in range(3):
+                row = np.zeros((len(z), self.size))
+                row[:, block] = tables[ROOT_ORDER[name]][order]
+                rows[name, order] = row
+        if self.rigid:
+            for order in range(2):
+                rows["theta_y", order] = rows["u", order + 1]
+                rows["theta_x", order] = -rows["v", order + 1]
+        return rows
+
+
+def polynomial_table(xi: Array, power: int, terms: int, length: float) -> tuple[Array, Array, Array]:
+    """ξᵏ P_j(2ξ − 1) and its first two derivatives by z = ξL, each (stations, terms)."""
+    identity = np.eye(terms)
+    value, first, second = (
+        legendre.legval(2.0 * xi - 1.0, legendre.legder(identity, order) if order else identity).T * 2.0**order
+        for order in range(3)
+    )
+    x = xi[:, None]
+    root, root_first, root_second = x**power, power * x ** (power - 1), power * (power - 1) * np.ones_like(x)
+    return (
+        root * value,
+        (root_first * value + root * first) / length,
+        (root_second * value + 2.0 * root_first * first + root * second) / length**2,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stations:
+    """Gauss stations along the span: ``per_piece`` on each piece between breakpoints, where the blade may change abruptly."""
+
+    z: Array
+    weight: Array
+    breakpoints: Array
+    per_piece: int
+
+    @classmethod
+    def between(cls, breakpoints: Array, per_piece: int) -> Stations:
+        """Stations on every piece between ascending breakpoints (m)."""
+        nodes, weights = legendre.leggauss(per_piece)
+        half = 0.5 * np.diff(breakpoints)
+        z = (breakpoints[:-1] + half)[:, None] + half[:, None] * nodes
+        return cls(z.ravel(), (half[:, None] * weights).ravel(), breakpoints, per_piece)
+
+    def integral_to_tip(self, values: Array) -> Array:
+        """∫_z^L f dσ at every station, exact for f polynomial (degree < per_piece) on each piece."""
+        per_piece = values.reshape(-1, self.per_piece)
+        half = 0.5 * np.diff(self.breakpoints)
+        whole = (self.weight * values).reshape(per_piece.shape).sum(axis=1)
+        beyond = np.append(np.cumsum(whole[::-1])[::-1][1:], 0.0)
+        return (half[:, None] * (per_piece @ remaining_integrals(self.per_piece).T) + beyond[:, None]).ravel()
+
+
+def remaining_integrals(points: int) -> Array:
+    """(points, points): ∫ from Gauss node q to 1 of the Lagrange polynomial of node j."""
+    nodes, weights = legendre.leggauss(points)
+    values = legendre.legvander(nodes, points)
+    degree = np.arange(1, points)
+    tail = np.column_stack([1.0 - nodes, (values[:, degree - 1] - values[:, degree + 1]) / (2 * degree + 1)])
+    return tail @ ((degree_norms(points))[:, None] * values[:, :points].T * weights)
+
+
+def degree_norms(points: int) -> Array:
+    """(2k + 1)/2, the inverse squared norms of the Legendre polynomials k = 0 … points − 1."""
+    return np.arange(points) + 0.5
