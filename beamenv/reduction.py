@@ -19,7 +19,7 @@ REFERENCE_LOAD = 30.0
 """N/m of uniform line load: the step that ±1500 V on four patches can damp to a few per cent in the default blade."""
 
 FULL_SCALE_MARGIN = 2.0
-"""Sensor full scale over the largest current that a sudden reference load causes in the undriven blade: harmonic loads near resonance exceed a step."""
+"""Sensor full scale over the undriven blade's largest current after a sudden reference load: resonance exceeds a step."""
 
 SAME_PATCH_REGULARISATION = 1e-6
 """Share of the mean diagonal added to R, so that it stays positive definite where actuators coincide."""
@@ -78,7 +78,7 @@ def reduced_plant(
     voltage_limits: tuple[float, float],
     control_interval: float,
 ) -> Plant:
-    """The plant of a blade (which carries the patches' inlays if they are passive); arguments as in ``configuration.BladeConfig``."""
+    """The plant of a blade, which carries the inlays of passive patches; arguments as in ``configuration.BladeConfig``."""
     modal = truncate(beam, speed, modes, gyroscopic)
     omega, shapes = modal.natural_frequencies, modal.mode_shapes
     forces = actuation(beam, layout)
@@ -124,7 +124,7 @@ def on_displacements(modal_rows: Array, omega: Array) -> Array:
 
 
 def largest_current(dynamics: Array, disturbance: Array, currents: Array, lowest_frequency: float, interval: float) -> float:
-    """Sensor full scale (A): margin times the largest current after a sudden reference load in lag or in flap, over five periods."""
+    """Sensor full scale (A): margin times the largest current in five periods after a sudden reference load in lag or in flap."""
     steps = int(np.ceil(5 * 2.0 * np.pi / lowest_frequency / interval))
     transition = expm(dynamics * interval)
     displaced = -np.linalg.solve(dynamics, REFERENCE_LOAD * disturbance)

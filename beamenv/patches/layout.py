@@ -18,7 +18,7 @@ OUTERMOST = 0.7
 
 @dataclass(frozen=True, slots=True)
 class PatchLayout:
-    """Patches of one kind, given by their root-side edges in m from the root, or by a number to be spaced equally over 0 … 0.7 L."""
+    """Patches of one kind: root-side edges in m from the root, or a number of patches to be spaced equally over 0 … 0.7 L."""
 
     actuators: int | tuple[float, ...] = 4
     sensors: int | tuple[float, ...] = 4

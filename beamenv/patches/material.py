@@ -49,7 +49,7 @@ class PatchMaterial:
         return np.asarray(strain_rotation(np.radians(FIBRE_ANGLE_DEG)).T @ np.array([along, across, 0.0]))
 
     def wall_resultants(self, wall_thickness: float, hoop_coupling: Array) -> Array:
-        """(…, 6) condensed piezoelectric resultants per volt, conjugate to (ε0, ε1, ε3, γ0, γ1, γ2), of a sheet flush with the outer face.
+        """(…, 6) piezoelectric resultants per volt, conjugate to (ε0, ε1, ε3, γ0, γ1, γ2), of a sheet flush with the outer face.
 
         ``hoop_coupling`` (…, 6) is the wall law's: the hoop stress acts on the resultants through it, since N_ss = 0.
         """
@@ -61,7 +61,7 @@ class PatchMaterial:
 
     @property
     def charge_per_reaction(self) -> float:
-        """Charge collected per (generalised force per volt × displacement): Eq. 4.37 counts ∫ē ε dA, without thickness over spacing."""
+        """What Eq. 4.37, ∫ē ε dA, counts of charge for one unit of generalised force per volt times displacement: spacing/thickness."""
         return self.electrode_spacing / self.thickness
 
     def inlay(self, wall: str, start: float, length: float, width: float) -> Inlay:

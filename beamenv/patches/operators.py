@@ -27,7 +27,7 @@ def patch_force(beam: RotatingBeam, patch: PatchMaterial, wall: str, start: floa
 
 
 def actuation(beam: RotatingBeam, layout: PatchLayout) -> Array:
-    """F: generalised force per volt, (N, actuators), or (N, 1) when ganged. ``beam`` carries the patches' inlays if they are passive."""
+    """F: generalised force per volt, (N, actuators), or (N, 1) when ganged; ``beam`` carries the inlays of passive patches."""
     columns = [
         patch_force(beam, layout.patch, ACTUATOR_WALL, start, layout.length, layout.width)
         for start in layout.actuator_positions(beam.length)
@@ -37,7 +37,7 @@ def actuation(beam: RotatingBeam, layout: PatchLayout) -> Array:
 
 
 def sensing(beam: RotatingBeam, layout: PatchLayout) -> Array:
-    """C_s: charge of each sensor per generalised coordinate, (sensors, N), coulombs; times q̇ it is the sensed current (Eq. 4.38)."""
+    """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
     rows = [
         patch_force(beam, layout.patch, SENSOR_WALL, start, layout.length, layout.width)
         for start in layout.sensor_positions(beam.length)

@@ -102,7 +102,7 @@ class RotatingBeam:
 
     @cached_property
     def critical_speed(self) -> float:
-        """Speed (rad/s) from which the rotating equilibrium is unstable: centrifugal softening of the extension has eaten its stiffness."""
+        """Speed (rad/s) at which spin softening has eaten the stiffness of the extension: the equilibrium is unstable from there."""
         return critical_speed(self.matrices.elastic_stiffness, self.matrices.spin_stiffness)
 
     def natural_frequencies(

@@ -60,7 +60,7 @@ class ShearFlow:
 
 
 def shear_flow_of(points: WallPoints, laws: LawTable, shear_flow: str) -> ShearFlow:
-    """Constant flow of K15 ε0 + K55 γ around the cell (Berdichevsky, Armanios and Badir 1992), or the thesis' χ = 0, ψ = 2A/perimeter."""
+    """K15 ε0 + K55 γ constant around the cell (Berdichevsky, Armanios and Badir 1992), or the thesis' χ = 0, ψ = 2A/perimeter."""
     twice_area = points.around(points.normal_distance)
     if shear_flow == "thesis":
         perimeter = points.ds.sum(axis=1)
