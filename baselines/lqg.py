@@ -12,6 +12,9 @@ from baselines.persistent_load import PersistentLoad, with_persistent_load
 from baselines.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
 from beamenv.plant import Plant, sample
 
+_CONVERTER_STEP = 2.0**-15
+"""Of full scale: a 16-bit converter's."""
+
 
 def lqg(
     plant: Plant, design: Literal["sampled", "continuous"] = "sampled", persistent_load: PersistentLoad | None = None
@@ -21,8 +24,14 @@ def lqg(
     ``design="sampled"``: the optimum for the cost and the noise of the environment, both exactly sampled, with y_k used for u_k:
     x̂ ← x̂ + L (y − C x̂), u = −K x̂, x̂⁺ = A x̂ + B u.
 
-    ``design="continuous"``: the thesis' Eqs. 5.11 and 5.18–5.21, x̂̇ = (A − LC) x̂ + B u + L y, u = −K x̂, implemented with y and u
-    held over each interval, the filter integrated exactly. It thus answers y_k one interval late.
+    ``design="continuous"``: the thesis' compensator, Eqs. 5.11 and 5.18–5.21,
+
+        x̂̇ = (A − BK − LC) x̂ + L y + B (clip(u) − u),        u = −K x̂,
+
+    whose last term, zero unless the drive saturates, keeps it from winding up. It is integrated exactly from sample to sample with
+    the newest reading held over the interval that it ends, so that y_k acts on u_k. (With y_k held over the interval that it
+    begins, as is more usual, the loop through the blade's upper modes, two samples a radian, is unstable.) It still needs a
+    filter slower than the sampling: with sensors of next to no noise it is unstable too.
 
     ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
     Raises ValueError for another design, or for a persistent load with the continuous one.
@@ -40,7 +49,7 @@ def _sampled(plant: Plant, load: PersistentLoad | None) -> LinearController:
     held = sample(plant) if load is None else with_persistent_load(sample(plant), load)
     E = held.disturbance_input
     _, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, held.sensor_noise)
+    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, _sensor_noise(plant) / held.interval)
     correct = np.eye(len(held.A)) - L @ held.C
     name = "LQG" if load is None else "LQG with load estimate"
     return _observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
@@ -49,12 +58,20 @@ def _sampled(plant: Plant, load: PersistentLoad | None) -> LinearController:
 def _continuous(plant: Plant) -> LinearController:
     E, n, p = plant.disturbance_input, len(plant.A), len(plant.C)
     _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
-    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, plant.sensor_noise)
+    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, _sensor_noise(plant))
     dynamics = np.zeros((n + p + plant.B.shape[1],) * 2)
     scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_scale(plant)])  # keeps the exponential well scaled
-    dynamics[:n] = np.hstack([plant.A - L @ plant.C, L, plant.B]) * scale
-    held = expm(dynamics * plant.control_interval)[:n] / scale
-    return _observer(plant, "LQG (thesis)", held[:, :n], held[:, n : n + p], held[:, n + p :], -K, np.zeros((len(K), p)))
+    dynamics[:n] = np.hstack([plant.A - plant.B @ K - L @ plant.C, L, plant.B]) * scale
+    F, G, H = np.split(expm(dynamics * plant.control_interval)[:n] / scale, [n, n + p], axis=1)
+    onward = F + H @ K
+    return _observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
+
+
+def _sensor_noise(plant: Plant) -> Array:
+    """V (p, p), A² s. Without any noise the filter's equation has no solution, so at least the converter's steps count."""
+    converter = np.diag((_CONVERTER_STEP * plant.sensor_full_scale) ** 2 / 12.0) * plant.control_interval
+    silent = np.diag(plant.sensor_noise) < np.diag(converter)
+    return plant.sensor_noise + np.where(silent, converter, 0.0)
 
 
 def _observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:

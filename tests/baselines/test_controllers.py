@@ -7,12 +7,14 @@ from baselines import lqg, lqr, no_control, velocity_feedback
 from baselines.controller import Controller
 from baselines.persistent_load import PersistentLoad, with_persistent_load
 from baselines.riccati import sampled_kalman_filter, sampled_regulator
+from baselines.stationary import stationary_cost
 from beamenv.plant import sample
 
 LAWS = {
     "no control": no_control,
     "velocity feedback": velocity_feedback,
     "LQR (true state)": lqr,
+    "LQR with load estimate (true state)": lambda plant: lqr(plant, persistent_load=PersistentLoad()),
     "LQG": lqg,
     "LQG (thesis)": lambda plant: lqg(plant, "continuous"),
     "LQG with load estimate": lambda plant: lqg(plant, persistent_load=PersistentLoad()),
@@ -128,6 +130,30 @@ def test_lqg_refuses_unknown_designs_by_name(small_plant):
         lqg(small_plant(), "continuous", persistent_load=PersistentLoad())
     with pytest.raises(ValueError, match="duration = 0.0"):
         PersistentLoad(duration=0.0)
+
+
+@pytest.mark.parametrize("design", ["sampled", "continuous"])
+def test_lqg_of_a_calm_blade_leaves_it_in_peace(small_plant, design):
+    calm = small_plant(process_noise=np.zeros((2, 2)))
+    assert stationary_cost(calm, lqg(calm, design)) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_sampled_lqg_copes_with_noiseless_sensors_where_the_thesis_filter_outruns_the_sampling(small_plant):
+    exact = small_plant(sensor_noise=np.zeros((2, 2)))
+    assert stationary_cost(exact, lqg(exact)) < 1.01 * stationary_cost(exact, lqr(exact))
+    assert stationary_cost(exact, lqg(exact, "continuous")) == np.inf
+
+
+def test_true_states_reveal_the_load_that_lasts(small_plant):
+    plant = small_plant(voltage_limits=np.array([[-1e5, -1e5], [1e5, 1e5]]))
+    held, load = sample(plant), np.array([4.0, -7.0])
+    law = lqr(plant, persistent_load=PersistentLoad(magnitude=10.0, duration=10.0))
+    x, memory = np.zeros(6), None
+    for _ in range(2000):
+        action, memory = law.predict(x, memory)
+        x = held.A @ x + held.B @ (1e5 * action) + held.disturbance_input @ load
+    _, memory = law.predict(x, memory)
+    np.testing.assert_allclose(memory[6:], load, rtol=0.02)
 
 
 def test_a_persistent_load_adds_its_own_states_and_keeps_the_cost(small_plant):
