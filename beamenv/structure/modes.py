@@ -18,7 +18,8 @@ class Modes:
     natural_frequencies: Array
     """(count,), rad/s."""
     mode_shapes: NDArray[np.float64] | NDArray[np.complex128]
-    """(N, count): coefficients of the trial functions, of unit modal mass; complex with gyroscopic coupling."""
+    """(N, count): coefficients of the trial functions, of unit modal mass; complex, for q = Re(shape·exp(iωt)), with
+    gyroscopic coupling."""
     families: tuple[str, ...]
     """lag, flap, extension or twist: where most of the mode's kinetic energy is."""
     participation: Array
@@ -49,7 +50,8 @@ def whirling_modes(
     eigenvalues, vectors = eigh(1j * skew, subset_by_index=(size, size + last - 1), driver="evr")
     shapes = solve_triangular(root, vectors[size:], lower=True, trans="T")
     modal_mass = np.einsum("ij,ij->j", shapes.conj(), mass @ shapes).real
-    return eigenvalues, shapes / np.sqrt(modal_mass)
+    # S has the eigenvalues −iω for these vectors: conjugated, the shapes move as exp(+iωt).
+    return np.asarray(eigenvalues), np.asarray(shapes.conj() / np.sqrt(modal_mass), dtype=np.complex128)
 
 
 def whirling_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Array:
@@ -63,7 +65,7 @@ def whirling_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Ar
 
 def skew_form(mass: Array, gyroscopic: Array, stiffness: Array) -> tuple[Array, Array]:
     """S (2N, 2N) and the Cholesky factor L of M."""
-    root = np.linalg.cholesky(mass)
+    root = np.asarray(np.linalg.cholesky(mass), dtype=np.float64)
 
     def scaled(matrix: Array) -> Array:
         half = solve_triangular(root, matrix, lower=True)
