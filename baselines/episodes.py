@@ -65,13 +65,14 @@ def roll_out(controller: Controller, env: Environment, seeds: Sequence[int], pro
         parts.append([series[:, : len(batch)] for series in (*loaded, unloaded[1])])
         if progress is not None:
             progress(first + len(batch), len(seeds))
-    cost, tip, voltages, failed, tremor = (_side_by_side(series) for series in zip(*parts, strict=True))
+    length = max(len(series) for part in parts for series in part)
+    cost, tip, voltages, failed, tremor = (_side_by_side(series, length) for series in zip(*parts, strict=True))
     plant = _attribute(env, "plant")[0]
     return Episodes(
         seeds=seeds,
         cost=cost,
         tip_displacement=tip,
-        load_response=tip - tremor[: len(tip)],
+        load_response=tip - tremor,
         voltages=voltages,
         failed=np.nansum(failed, axis=0) > 0,
         voltage_limits=plant.voltage_limits,
@@ -132,9 +133,8 @@ def _attribute(env: Environment, name: str) -> Sequence[Any]:
     return inner.get_attr(name) if hasattr(inner, "get_attr") else [getattr(inner, name)]
 
 
-def _side_by_side(parts: Sequence[Array]) -> Array:
-    """Records (T, N, …) beside each other along N, shorter ones continued with NaN."""
-    length = max(len(part) for part in parts)
+def _side_by_side(parts: Sequence[Array], length: int) -> Array:
+    """Records (T, N, …) beside each other along N, continued with NaN to the same length."""
     return np.concatenate(
         [np.concatenate([part, np.full((length - len(part), *part.shape[1:]), np.nan)]) for part in parts], axis=1
     )

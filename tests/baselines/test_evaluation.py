@@ -9,7 +9,7 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import beamenv
-from baselines import evaluate, lqg, lqr, no_control, roll_out
+from baselines import PersistentLoad, evaluate, lqg, lqr, no_control, roll_out, velocity_feedback
 from baselines.episodes import Episodes
 from baselines.metrics import measure, settling_band
 
@@ -128,6 +128,30 @@ def test_an_sb3_model_goes_through_the_same_door(env):
     assert result.name == "PPO"
     assert result.rms_voltage.value > 0.0
     np.testing.assert_allclose(numbers(result), numbers(evaluate(model, single, range(3))), rtol=1e-4, atol=1e-12)
+
+
+def test_knowing_of_loads_that_last_pays_on_the_default_load_cases():
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=64)
+    plant, costs, reference = envs.unwrapped.design_plant, {}, None
+    for law in (lqg(plant), lqg(plant, persistent_load=PersistentLoad()), lqr(plant), lqr(plant, PersistentLoad())):
+        result = evaluate(law, envs, range(64), reference=reference)
+        costs[law.name], reference = result.metrics.cost, result.reference
+    for less, more in (
+        ("LQG with load estimate", "LQG"),
+        ("LQR with load estimate (true state)", "LQR (true state)"),
+        ("LQR with load estimate (true state)", "LQG with load estimate"),
+    ):
+        saved = costs[more] - costs[less]
+        assert saved.mean() > 3.0 * saved.std(ddof=1) / np.sqrt(len(saved)), (less, more)
+
+
+def test_a_controller_that_breaks_the_blade_cannot_win():
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, blade={"voltage_limits": (-1e8, 1e8)})
+    result = evaluate(velocity_feedback(envs.unwrapped.plant, gain=-1e8), envs, range(4))
+    assert result.episodes.failed.all()
+    assert result.relative_cost.value == np.inf
+    assert result.settled.value == 0.0
+    assert json.loads(json.dumps(result.row(), allow_nan=False))["relative_cost"] is None
 
 
 def test_the_load_response_is_what_the_load_case_did_to_a_linear_blade(plant):
