@@ -23,8 +23,9 @@ DRAWS = 7
 class Scenario:
     """What may happen to a blade in an episode. Every range is [low, high], drawn uniformly; equal ends fix the value.
 
-    The numbers of the default rest on what the patches of the default blade can do (±1500 V hold a static line load of
-    about 5 N/m): a step of 30 N/m is one they can damp to a few per cent without being idle most of the time.
+    The default is made for the default blade. Under ±1500 V its patches hold a static line load of about 7 N/m in flap, so a
+    step of 30 N/m is one they can damp, within an episode, to a few per cent of what it would be: neither idle nor
+    helpless. For a blade of another size choose other magnitudes.
     """
 
     step: float = 0.25
@@ -38,14 +39,13 @@ class Scenario:
     magnitude: Range = (15.0, 45.0)
     """N/m, of step, pulse and deflection: 30 N/m on average."""
     harmonic_magnitude: Range = (1.5, 4.5)
-    """N/m: a tenth of the others, for within an episode resonance multiplies the response by up to 40, and small
-    enough for the patches to cancel."""
+    """N/m: a tenth of the others, within what the patches can hold, for in an episode resonance multiplies it some 30 times."""
     direction_deg: Range = (0.0, 360.0)
     """Degrees from lag towards flap: any direction, for the pretwisted blade couples both."""
     onset: Range = (0.0, 0.05)
     """s: a controller cannot count on t = 0, and at least 90 % of a 0.5 s episode is left to damp what follows."""
     duration: Range = (0.005, 0.05)
-    """s, of a pulse: from a knock shorter than the first modes' periods to a push longer than them."""
+    """s, of a pulse: from a knock much shorter than the first two modes' periods, 35 and 28 ms, to a push longer than both."""
     frequency_ratio: Range = (0.5, 2.0)
     """Frequency of a harmonic load over the plant's first natural frequency: below, in and above resonance."""
     phase_deg: Range = (0.0, 360.0)
