@@ -85,7 +85,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
         return self._history.window()[0], reward, terminated, truncated, info
 
 
-class VectorSensorHistory(VectorWrapper[Any, Any, Any, Any, NDArray[Any]]):
+class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type parameters
     """``SensorHistory`` for the batched environment, in both of its autoreset modes.
 
     - `env`: a `RotatingBeamVectorEnv` with normalised units.
