@@ -72,9 +72,7 @@ def test_polygons_approach_the_circular_tube():
     radius, thickness = 0.1, 0.002
     tube = bredt(np.pi * radius**2, 2.0 * np.pi * radius, thickness)
     assert tube == pytest.approx(2.0 * np.pi * radius**3 * thickness * G, rel=2e-4)
-    gaps = [
-        polygon(regular_polygon(edges, radius), thickness).stiffness(ISOTROPIC)[3, 3] / tube - 1.0 for edges in (3, 20, 40, 80)
-    ]
+    gaps = [polygon(regular_polygon(edges, radius), thickness).stiffness(ISOTROPIC)[3, 3] / tube - 1.0 for edges in (3, 20, 40, 80)]
     assert gaps[1] / gaps[2] == pytest.approx(4.0, rel=0.02)
     assert gaps[2] / gaps[3] == pytest.approx(4.0, rel=0.01)
     assert abs(gaps[3]) < 2e-3
