@@ -49,7 +49,8 @@ def test_lay_up_of_the_reference_is_turned_inside_out():
 
 @pytest.mark.parametrize("shear", ["first_order", "higher_order"])
 def test_stiffness_agrees_with_finite_elements(boxes, shear):
-    """All within 3 %; EA and couplings within 0.6 %, CAS within 0.6 %, GJ within 1.7 %: the bending of CUS boxes is the worst, −2.75 %.
+    """All within 3 %; EA and couplings within 0.6 %, CAS within 0.6 %, GJ within 1.7 %; the bending of CUS boxes is the
+    worst, −2.75 %.
 
     The cross-ply box's GJ, −1.68 %, is Bredt's to every digit: the elements have solid corners.
     """

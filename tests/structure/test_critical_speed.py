@@ -56,7 +56,7 @@ def test_lag_frequencies_first_rise_then_fall_with_gyroscopic_coupling_only(blad
 
 
 def test_second_lag_meets_first_extension_near_430_and_third_lag_second_extension_near_925(blade):
-    """Without coupling the loci cross at 466 and 939 rad/s, about which they veer with it: the thesis reads 430 and 925 off its plot."""
+    """Without coupling the loci cross at 466 and 939 rad/s, about which they veer with it: the thesis' plot shows 430 and 925."""
     beam = blade(0.2023)
 
     def gap(speed, lag, extension):

@@ -20,8 +20,11 @@ def layups(draw):
     return Layup.by_wall(GRAPHITE_EPOXY, **{wall: draw(ANGLES) for wall in WALLS})
 
 
+FEW_TERMS, ANY_LAYUP, ANY_PRETWIST = st.integers(2, 7), layups(), st.floats(-60.0, 60.0)
+
+
 @st.composite
-def blades(draw, terms=st.integers(2, 7), layup=layups(), pretwist=st.floats(-60.0, 60.0)):
+def blades(draw, terms=FEW_TERMS, layup=ANY_LAYUP, pretwist=ANY_PRETWIST):
     """Boxes of the thesis' order of size with random walls, lay-ups and theories."""
     return RotatingBeam(
         section=BoxSection(draw(st.floats(0.1, 0.3)), draw(st.floats(0.04, 0.2)), draw(st.floats(0.001, 0.015))),

@@ -50,7 +50,7 @@ def test_transverse_shear_modulus_turns_from_g23_to_g13():
 
 
 def test_isotropic_wall_without_hoop_force_has_the_stiffnesses_of_strip_and_plate():
-    """E h; E h³/12(1 − ν²) and E h⁷/448(1 − ν²); G h, G h³/12, G h⁵/80 and their mixed moments; no coupling of stretch and shear."""
+    """E h; E h³/12(1 − ν²), E h⁷/448(1 − ν²); G h, G h³/12, G h⁵/80; their mixed moments; no coupling of stretch and shear."""
     law = wall_law(Laminate.equal_plies((Ply(ALUMINIUM, 0.0), Ply(ALUMINIUM, 37.0)), H))
     plate = E / (1.0 - NU**2)
     expected = np.zeros((6, 6))
