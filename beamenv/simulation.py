@@ -217,7 +217,8 @@ class Blades:
     def _failed(self, energy: Array) -> NDArray[np.bool_]:
         """|cᵀx| ≤ ‖c‖‖x‖: only a blade with enough energy can have failed, and only then are its strains worked out."""
         failed = np.zeros(energy.shape, dtype=np.bool_)
-        if not energy.max() <= self._safe_energy:  # a NaN is not safe either
+        most = energy.max() if self._shape else energy
+        if not most <= self._safe_energy:  # a NaN is not safe either
             strain = np.abs(self._by_blade(self._state) @ self.plant.strain.T).max(axis=-1)
             failed[...] = ~(strain <= FAILURE_STRAIN)
         return failed
