@@ -148,6 +148,7 @@ def train(
     """Train an agent and save it; Ctrl-C keeps the best so far. `beamenv evaluate FOLDER` then tells how good it is."""
     with one_sentence():
         from train.agents import train_agent
+        from train.policies import save_policy
         from train.progress import Progressbar
 
         arguments = environment_arguments(preset, speed, blade, scenario)

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from baselines import Evaluation
-from train.agents import Progress as TrainingProgress
 from train.compare import Listener
+from train.training import Progress as TrainingProgress
 
 
 class Progressbar(Listener):
