@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,25 +27,16 @@ def convergence(model: Model, **changes: float | str) -> Array:
     return np.stack([frequency_sweep(beam, [model.speed], 3)[0] for beam in beams])
 
 
-def convergence_misfit(model: Model) -> Array:
-    """The largest deviation from Table 3.1 at ten terms in each of the configurations tried, as a share."""
+def convergence_best_fit(model: Model) -> Array:
+    """(3,), rad/s: of all configurations tried, the frequencies that come closest to Table 3.1 with ten terms."""
     printed = np.array([numbers("table-3.1", name)[-1] for name in ("omega1", "omega2", "omega3")])
-    changes: list[dict[str, float | str]] = [
-        {"shear": shear, "shear_flow": flow, "hub_radius": hub}
-        for shear in ("higher_order", "first_order", "rigid")
-        for flow in ("consistent", "thesis")
-        for hub in (model.box.hub_radius, 0.1)
-    ]
-    changes += [{"ply_angles_deg": (angle,) * 6} for angle in (0.0, 45.0, 60.0, 75.0, 90.0)]
-    misfits = []
-    for change in changes:
-        plies = change.pop("ply_angles_deg", None)
-        blade = model.blade(30.0, pretwist_deg=30.0, **change)  # type: ignore[arg-type]
-        blade = blade if plies is None else replace(blade, ply_angles_deg=plies)  # type: ignore[arg-type]
-        for gyroscopic in (True, False):
-            ours = frequency_sweep(blade.build(), [model.speed], 3, gyroscopic=gyroscopic)[0]
-            misfits.append(np.abs(ours / printed - 1.0).max())
-    return np.array(misfits)
+    theories = product(("higher_order", "first_order", "rigid"), ("consistent", "thesis"), (model.box.hub_radius, 0.1))
+    blades = [
+        model.blade(30.0, pretwist_deg=30.0, shear=shear, shear_flow=flow, hub_radius=hub) for shear, flow, hub in theories
+    ] + [model.blade(angle, pretwist_deg=30.0) for angle in (0.0, 45.0, 60.0, 75.0, 90.0)]
+    beams = [blade.build() for blade in blades]
+    tried = np.concatenate([frequency_sweep(beam, [model.speed], 3, gyroscopic=g) for beam in beams for g in (True, False)])
+    return np.asarray(tried[np.abs(tried / printed - 1.0).max(axis=1).argmin()])
 
 
 def chandra_chopra(model: Model) -> Array:

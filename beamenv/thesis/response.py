@@ -11,8 +11,10 @@ from scipy.linalg import expm
 
 from beamenv.reduction import ModalModel, truncate
 from beamenv.structure import RotatingBeam
+from beamenv.structure.beam import EXTRA_STATIONS
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.newmark import NewmarkScheme, newmark
+from beamenv.structure.trial_functions import Stations
 
 Array = NDArray[np.float64]
 
@@ -37,6 +39,18 @@ class ForcedBlade:
     """Of load and tip displacement: "lag" or "flap"."""
     damping_ratio: float
     gyroscopic: bool = True
+    pressure: bool = False
+    """Whether the line load falls with the chord of a tapered blade, as a pressure would; ``load`` is then that at the root."""
+
+    @cached_property
+    def _force(self) -> Array:
+        """(N,): generalised force per N/m."""
+        if not self.pressure:
+            return self.beam.line_load()[:, DIRECTIONS[self.direction][1]]
+        beam = self.beam
+        stations = Stations.between(np.array([0.0, beam.length]), beam.terms + EXTRA_STATIONS)
+        chord = 1.0 - (1.0 - 1.0 / beam.taper) * stations.z / beam.length
+        return (stations.weight * chord) @ beam.space.evaluate(stations.z)[DIRECTIONS[self.direction][0], 0]
 
     @cached_property
     def modal(self) -> ModalModel:
@@ -46,10 +60,10 @@ class ForcedBlade:
     def _dynamics(self) -> tuple[Array, Array, Array]:
         omega, shapes = self.modal.natural_frequencies, self.modal.mode_shapes
         size = len(omega)
-        field, column = DIRECTIONS[self.direction]
+        field = DIRECTIONS[self.direction][0]
         damping = self.modal.gyroscopic + np.diag(2.0 * self.damping_ratio * omega)
         dynamics = np.block([[np.zeros((size, size)), np.diag(omega)], [-np.diag(omega), -damping]])
-        force = np.concatenate([np.zeros(size), shapes.T @ self.beam.line_load()[:, column]])
+        force = np.concatenate([np.zeros(size), shapes.T @ self._force])
         tip = self.beam.displacements(np.array([self.beam.length]))[field][0] @ shapes / omega
         return dynamics, force, np.concatenate([tip, np.zeros(size)])
 
@@ -80,11 +94,10 @@ class ForcedBlade:
         damping = moved @ np.diag(2.0 * self.damping_ratio * omega) @ moved.T
         if self.gyroscopic:
             damping = damping + self.speed * matrices.gyroscopic
-        field, column = DIRECTIONS[self.direction]
-        force = load * self.beam.line_load()[:, column]
+        force = load * self._force
         steps = round(duration / interval)
         history = newmark(matrices.mass, damping, stiffness, lambda _: force, interval, steps, THESIS_SCHEME)
-        return interval * np.arange(steps + 1), history @ self.beam.displacements(np.array([self.beam.length]))[field][0]
+        return interval * np.arange(steps + 1), history @ self.beam.displacements(np.array([self.beam.length]))[DIRECTIONS[self.direction][0]][0]
 
     def frequency_response(self, frequencies: Array) -> Array:
         """Amplitude (K,) of the tip, m per N/m, at ``frequencies`` (K,) in rad/s."""

@@ -1,0 +1,251 @@
+"""Sections 3.6.3 and 3.6.4: pretwist and presetting."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamenv.structure.sweep import frequency_sweep
+from beamenv.thesis import Model
+from beamenv.thesis.bending_stiffness import bending_stiffness
+from train.reproduce.chapter3_taper import BENT, TURN_DEG, WHY_TURN, stiffness_panels
+from train.reproduce.parameter_studies import (
+    PLY_ANGLES_DEG,
+    SPEEDS,
+    Beams,
+    along_parameter,
+    locus_panels,
+    shape_panels,
+    step_responses,
+    turns_at,
+    worst_newmark_error,
+)
+from train.reproduce.study import Outcome, Statement, Study
+from train.reproduce.verdicts import Changes, Holds, Marginal, Matches, Small
+
+ANGLES_DEG = (0.0, 30.0, 60.0, 90.0)
+FAMILIES = ("flap", "lag", "flap", "lag")
+PRINTED_CROSSOVER = 120.0
+
+
+def pretwisted(model: Model) -> Beams:
+    """A blade of θ = 30° for each pretwist."""
+    return {f"β = {angle:g}°": model.beam(30.0, pretwist_deg=angle) for angle in ANGLES_DEG}
+
+
+def preset(model: Model, ply_angle_deg: float = 30.0, pretwist_deg: float = 30.0) -> Beams:
+    """A blade for each presetting."""
+    return {
+        f"γ = {angle:g}°": model.beam(ply_angle_deg, pretwist_deg=pretwist_deg, presetting_deg=angle) for angle in ANGLES_DEG
+    }
+
+
+def lag_shapes(model: Model) -> Outcome:
+    """Figure 3.17."""
+    panels, bows = shape_panels(pretwisted(model), model.speed, "lag")
+    return Outcome({"first": bows[:1], "higher": bows[1:], "marginal": bows[0] / bows[0, 0] - 1.0}, panels)
+
+
+def flap_shapes(model: Model) -> Outcome:
+    """Figure 3.18."""
+    panels, bows = shape_panels(pretwisted(model), model.speed, "flap")
+    evidence = {"odd": bows[[0, 2]], "second": bows[1:2], "marginal": (bows / bows[:, :1] - 1.0)}
+    return Outcome(evidence, panels)
+
+
+def pretwist_over_speed(model: Model) -> Outcome:
+    """Figure 3.19."""
+    beams = pretwisted(model)
+    loci = frequency_sweep(list(beams.values()), SPEEDS, 4)
+    first_two = loci[..., :2] / loci[:1, :, :2] - 1.0
+    at = int(np.abs(SPEEDS - model.speed).argmin())
+    evidence = {
+        "crossover": [crossover(SPEEDS, loci[0, :, 0], twisted[:, 0]) for twisted in loci[1:]],
+        "first": [bool(change[at, 0] < 0.0 < change[0, 0]) for change in first_two[1:]],
+        "second": [bool(change[0, 1] < 0.0 < change[at, 1]) for change in first_two[1:]],
+        "third": along_parameter(loci, [2]),
+        "fourth": along_parameter(loci, [3]),
+        "at-rest": loci[:, 0, 0][None],
+        "lag-at-rest": loci[:, 0, 1][None],
+        "shallow": first_two[1:].ravel(),
+    }
+    return Outcome(evidence, locus_panels(list(beams), SPEEDS, "speed (rad/s)", loci))
+
+
+def crossover(speeds: np.ndarray, one: np.ndarray, other: np.ndarray) -> float:
+    """The speed at which two loci cross, or the nearer end of the range when they do not."""
+    gap = other - one
+    crossed = np.flatnonzero(np.diff(np.sign(gap)))
+    if not len(crossed):
+        return float(speeds[np.abs(gap).argmin()])
+    at = crossed[0]
+    return float(speeds[at] - gap[at] * (speeds[at + 1] - speeds[at]) / (gap[at + 1] - gap[at]))
+
+
+def pretwist_forced(model: Model) -> Outcome:
+    """Figure 3.20."""
+    found = step_responses(model, pretwisted(model))
+    evidence = {"newmark": worst_newmark_error(found)}
+    for direction, response in found.items():
+        evidence[f"tip-{direction}"] = response.peaks[1:] / response.peaks[0] - 1.0
+        evidence[f"settling-{direction}"] = response.settling
+    return Outcome(evidence, [response.panel for response in found.values()], {"points": "Newmark, thesis' constants"})
+
+
+def preset_over_speed(model: Model) -> Outcome:
+    """Figure 3.21."""
+    beams = preset(model)
+    loci = frequency_sweep(list(beams.values()), SPEEDS, 4)
+    families = [beam.modes(model.speed, 4).families for beam in beams.values()]
+    evidence = {
+        "first": along_parameter(loci, [0], skip=1),
+        "third": along_parameter(loci, [2], skip=1),
+        "second": along_parameter(loci, [1], skip=1),
+        "fourth": along_parameter(loci, [3], skip=1),
+        "families": [name == printed for found in families for name, printed in zip(found, FAMILIES, strict=True)],
+        "at-rest": loci[1:, 0] / loci[:1, 0] - 1.0,
+    }
+    return Outcome(evidence, locus_panels(list(beams), SPEEDS, "speed (rad/s)", loci))
+
+
+def preset_over_ply_angle(model: Model) -> Outcome:
+    """Figure 3.22."""
+    loci = np.stack(
+        [frequency_sweep(list(preset(model, angle).values()), [model.speed], 2)[:, 0] for angle in PLY_ANGLES_DEG], axis=1
+    )
+    evidence = {
+        "first": along_parameter(loci, [0]),
+        "second": along_parameter(loci, [1]),
+        "turn": turns_at(loci, PLY_ANGLES_DEG, TURN_DEG),
+    }
+    return Outcome(evidence, locus_panels(list(preset(model)), PLY_ANGLES_DEG, "ply angle (°)", loci))
+
+
+def preset_stiffness(model: Model) -> Outcome:
+    """Figure 3.23."""
+    values = np.array([[bending_stiffness(beam) for beam in preset(model, angle, 0.0).values()] for angle in PLY_ANGLES_DEG])
+    values = values.transpose(1, 0, 2)
+    evidence = {"a22": along_parameter(values, [0]), "a33": along_parameter(values, [1])}
+    return Outcome(evidence, stiffness_panels(list(preset(model)), values))
+
+
+def preset_forced(model: Model) -> Outcome:
+    """Figure 3.24."""
+    found = step_responses(model, preset(model, 0.0, 0.0))
+    evidence = {f"peak-{direction}": response.peaks for direction, response in found.items()}
+    evidence["newmark"] = worst_newmark_error(found)
+    return Outcome(evidence, [response.panel for response in found.values()], {"points": "Newmark, thesis' constants"})
+
+
+NEWMARK = Statement("newmark", "Newmark's method with the thesis' constants gives the exact response", Small(0.01, 0.05))
+WHY_FLAP = (
+    "In flap at 200 rad/s the blade is held by centrifugal tension more than by bending, so that pretwist changes next to nothing; "
+    "the thesis does not name its direction."
+)
+UNNAMED = f"θ = 30°, γ = 0°, 200 rad/s (the thesis names none); {BENT}"
+THIRD = "Twist is among our first four modes: at 400 rad/s it is the third, up to about 300 rad/s the fourth; bending alone behaves as stated."
+STEP = "steps of 30 N/m, 1 % modal damping"
+
+STUDIES = (
+    Study(
+        "figure-3.17",
+        "Lag mode shapes over pretwist",
+        UNNAMED,
+        (
+            Statement("first", "In the first mode pretwist bends the beam", Changes(+1)),
+            Statement("higher", "In the second and third mode pretwist straightens the beam", Changes(-1)),
+            Statement("marginal", "Marginal influence on the first mode", Small(0.05, 0.10)),
+        ),
+        lag_shapes,
+    ),
+    Study(
+        "figure-3.18",
+        "Flap mode shapes over pretwist",
+        UNNAMED,
+        (
+            Statement("odd", "In the first and third mode pretwist straightens the beam", Changes(-1)),
+            Statement("second", "In the second mode pretwist bends the beam", Changes(+1)),
+            Statement("marginal", "Marginal influence on the flap shapes", Small(0.05, 0.10)),
+        ),
+        flap_shapes,
+    ),
+    Study(
+        "figure-3.19",
+        "First four frequencies over speed and pretwist",
+        "θ = 30°, γ = 0°",
+        (
+            Statement("crossover", "Pretwist stiffens the first mode up to about 120 rad/s and softens it beyond (β = 30, 60, 90°)",
+                      Matches((PRINTED_CROSSOVER,) * 3, 0.05, 0.20, "rad/s"),
+                      "The speed depends on the bending stiffness: 29 rad/s for θ = 30°, 45 for 60°, 154 for 90°. Table 3.1, too, says that the "
+                      "thesis' 30° blade was stiffer than its data."),
+            Statement("first", "The same without the number: stiffer at rest, softer at 200 rad/s", Holds()),
+            Statement("second", "Pretwist softens the second mode at low speed (rest) and stiffens it at high speed (200 rad/s)", Holds()),
+            Statement("third", "Pretwist stiffens the third mode", Changes(+1), THIRD),
+            Statement("fourth", "Pretwist softens the fourth mode", Changes(-1), THIRD),
+            Statement("at-rest", "The first flap frequency rises with pretwist (at rest)", Changes(+1)),
+            Statement("lag-at-rest", "The first lag frequency falls with pretwist (at rest)", Changes(-1)),
+            Statement("shallow", "Pretwist has a shallow effect on the first two frequencies", Small(0.05, 0.10)),
+        ),
+        pretwist_over_speed,
+    ),
+    Study(
+        "figure-3.20",
+        "Forced response over pretwist",
+        f"θ = 30°, γ = 0°, 200 rad/s; {STEP}",
+        (
+            Statement("tip-lag", "The tip displacement increases marginally with pretwist (lag)", Marginal(+1)),
+            Statement("tip-flap", "The same in flap", Marginal(+1), WHY_FLAP),
+            Statement("settling-lag", "The settling time increases with pretwist (lag)", Changes(+1)),
+            Statement("settling-flap", "The same in flap", Changes(+1), WHY_FLAP),
+            NEWMARK,
+        ),
+        pretwist_forced,
+    ),
+    Study(
+        "figure-3.21",
+        "First four frequencies over speed and presetting",
+        "θ = 30°, 30° pretwist",
+        (
+            Statement("first", "The first frequency falls with presetting", Changes(-1)),
+            Statement("second", "The second frequency rises with presetting", Changes(+1)),
+            Statement("third", "The third frequency falls with presetting", Changes(-1)),
+            Statement("fourth", "The fourth frequency rises with presetting", Changes(+1), "At most speeds our fourth mode is the first twist."),
+            Statement("families", "The first and third mode are flap, the second and fourth lag (200 rad/s, by kinetic energy)", Holds(),
+                      "At 200 rad/s centrifugal tension has lifted the first flap above the first lag."),
+            Statement("at-rest", "Presetting has no effect on a blade at rest", Small(1e-6, 0.01)),
+        ),
+        preset_over_speed,
+    ),
+    Study(
+        "figure-3.22",
+        "First two frequencies over ply angle and presetting",
+        "30° pretwist, 200 rad/s",
+        (
+            Statement("first", "Presetting softens the first frequency", Changes(-1)),
+            Statement("second", "Presetting stiffens the second frequency", Changes(+1)),
+            Statement("turn", "Frequencies fall up to a ply angle of about 45° and rise beyond", Holds(), WHY_TURN),
+        ),
+        preset_over_ply_angle,
+    ),
+    Study(
+        "figure-3.23",
+        "Bending stiffness over ply angle and presetting",
+        "untwisted (the thesis names no pretwist); a22 is the stiffness in lag and a33 in flap, which the text confuses",
+        (
+            Statement("a22", "a22 falls with presetting", Changes(-1)),
+            Statement("a33", "a33 rises with presetting", Changes(+1)),
+        ),
+        preset_stiffness,
+    ),
+    Study(
+        "figure-3.24",
+        "Forced response over presetting",
+        f"θ = 0°, untwisted, 200 rad/s; {STEP}",
+        (
+            Statement("peak-flap", "Presetting lowers the tip displacement (flap)", Changes(-1)),
+            Statement("peak-lag", "The same in lag", Changes(-1),
+                      "It cannot: presetting turns the stiff direction of the box from lag into flap."),
+            NEWMARK,
+        ),
+        preset_forced,
+    ),
+)  # fmt: skip

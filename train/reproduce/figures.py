@@ -1,0 +1,129 @@
+"""The one drawing of all figures: panels of curves, told apart by lightness, marker and line, with the legend outside."""
+
+from __future__ import annotations
+
+import io
+from importlib.resources import as_file, files
+from typing import Any
+
+import numpy as np
+
+from train.reproduce.study import Curve, Grid, Outcome, Panel
+
+DASHES: dict[str, Any] = {"solid": "-", "dotted": (0, (1.2, 1.4)), "dashed": (0, (5, 2)), "points": ""}
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+PANEL_SIZE = (4.1, 2.7)
+"""Inches."""
+LEGEND_ROW = 0.22
+"""Inches."""
+
+
+def draw(outcome: Outcome, title: str) -> bytes:
+    """The outcome's panels as one PNG."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    with as_file(files("train.reproduce").joinpath("look.mplstyle")) as look, pyplot.style.context(str(look)):
+        columns = min(2, len(outcome.panels))
+        rows = -(-len(outcome.panels) // columns)
+        width = PANEL_SIZE[0] * columns if columns > 1 else 6.2
+        handles = legend_handles(outcome)
+        per_row = max(1, int(width // 1.9))
+        height = PANEL_SIZE[1] * rows + 0.3 + LEGEND_ROW * (-(-len(handles) // per_row))
+        figure, axes = pyplot.subplots(rows, columns, figsize=(width, height), squeeze=False)
+        labels = [label for label in labels_of(outcome) if label]
+        for axis, panel in zip(axes.flat, outcome.panels, strict=False):
+            draw_grid(axis, panel) if isinstance(panel, Grid) else draw_panel(axis, panel, labels)
+        for axis in axes.flat[len(outcome.panels) :]:
+            axis.set_visible(False)
+        figure.suptitle(title, fontsize=10, x=0.01, ha="left")
+        if handles:
+            figure.legend(handles=handles, loc="outside lower center", ncols=per_row)
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format="png", metadata={"Software": None})
+        pyplot.close(figure)
+    return buffer.getvalue()
+
+
+def labels_of(outcome: Outcome) -> list[str]:
+    """The labels of all curves, in the order of their first appearance."""
+    return list(dict.fromkeys(curve.label for panel in outcome.panels if isinstance(panel, Panel) for curve in panel.curves))
+
+
+def appearance(label: str, labels: list[str]) -> dict[str, Any]:
+    """Colour and marker of a label: lightness falls from dark to light, so that greyscale keeps the order."""
+    from matplotlib import colormaps
+
+    if label not in labels or len(labels) < 2:
+        return {"color": "0.1"}
+    place = labels.index(label)
+    return {"color": colormaps["viridis"](0.82 * place / (len(labels) - 1)), "marker": MARKERS[place % len(MARKERS)]}
+
+
+def legend_handles(outcome: Outcome) -> list[Any]:
+    """One entry for each meaning of a line and for each label."""
+    from matplotlib.lines import Line2D
+
+    labels = [label for label in labels_of(outcome) if label]
+    used = {
+        label: {curve.line for panel in outcome.panels if isinstance(panel, Panel) for curve in panel.curves if curve.label == label}
+        for label in labels
+    }
+    handles = [Line2D([], [], color="0.1", linestyle=DASHES[line], marker="." if line == "points" else "", label=text)
+               for line, text in outcome.lines.items()]  # fmt: skip
+    for label in labels:
+        line = "" if used[label] == {"points"} else "-" if len(used[label]) > 1 else DASHES[next(iter(used[label]))]
+        handles.append(Line2D([], [], linestyle=line, label=label, **{"marker": ".", **appearance(label, labels)}))
+    return handles
+
+
+def draw_panel(axis: Any, panel: Panel, labels: list[str]) -> None:
+    """One pair of axes."""
+    for value in panel.marked:
+        axis.axvline(value, color="0.6", linewidth=0.8, zorder=0)
+    for curve in panel.curves:
+        draw_curve(axis, curve, labels)
+    axis.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+    if panel.logarithmic:
+        axis.set_yscale("log")
+
+
+def draw_curve(axis: Any, curve: Curve, labels: list[str]) -> None:
+    """One curve; its markers are sparse and begin at a place of its own, so that they do not pile up."""
+    style = appearance(curve.label, labels)
+    if curve.line == "points":
+        axis.plot(curve.x, curve.y, linestyle="", **{"marker": ".", **style})
+        return
+    if style.get("marker"):
+        place, points = labels.index(curve.label), len(curve.x)
+        spacing = max(1, points // 7)
+        style["markevery"] = 1 if points <= 12 else (place * spacing // max(1, len(labels)) % spacing, spacing)
+        if curve.line != "solid":
+            style["markerfacecolor"] = "white"
+    axis.plot(curve.x, curve.y, linestyle=DASHES[curve.line], **style)
+
+
+def draw_grid(axis: Any, grid: Grid) -> None:
+    """A table of text cells."""
+    axis.set_axis_off()
+    axis.set_title(grid.title)
+    cells = [[grid.cells.get((row, column), "") for column in grid.names] for row in grid.names]
+    shade = [["0.93" if cell else "white" for cell in line] for line in cells]
+    table = axis.table(cells, cellColours=shade, rowLabels=grid.names, colLabels=grid.names, loc="center", cellLoc="center")
+    table.scale(1.0, 1.25)
+    table.auto_set_font_size(False)
+    table.set_fontsize(8)
+
+
+def curve_rows(outcome: Outcome) -> tuple[list[str], list[list[object]]]:
+    """Header and rows of a figure's numbers: every point of every curve."""
+    rows: list[list[object]] = []
+    for panel in outcome.panels:
+        if isinstance(panel, Panel):
+            for curve in panel.curves:
+                meaning = outcome.lines.get(curve.line, "") if curve.line in outcome.lines else ""
+                points = zip(np.asarray(curve.x).tolist(), np.asarray(curve.y).tolist(), strict=True)
+                rows += [[panel.title, curve.label, meaning, f"{x:.8g}", f"{y:.8g}", panel.x_label, panel.y_label] for x, y in points]
+    return ["panel", "curve", "line", "x", "y", "x quantity", "y quantity"], rows

@@ -1,0 +1,98 @@
+"""A study: one table or figure of the thesis, what it states, how we compute it, and what came out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beamenv.thesis import Model
+from train.reproduce.verdicts import Judgement, Rule
+
+Array = NDArray[np.float64]
+
+WITH_AND_WITHOUT = {"solid": "with gyroscopic coupling", "dotted": "without"}
+"""The thesis' line styles."""
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """What the thesis says of a table or figure, and the rule that judges it."""
+
+    key: str
+    text: str
+    rule: Rule
+    remark: str = ""
+    """What to know of it: why ours differs, or what the numbers mean."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """One curve of a panel. Curves of the same ``label`` look alike in all panels; ``line`` is solid, dotted, dashed or points."""
+
+    x: Array
+    y: Array
+    label: str = ""
+    line: str = "solid"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """One pair of axes, with units in the axis labels."""
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: Sequence[Curve]
+    logarithmic: bool = False
+    marked: Sequence[float] = ()
+    """Values of x drawn as thin vertical lines."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """A panel of text cells, for the tables of couplings."""
+
+    title: str
+    names: tuple[str, ...]
+    cells: Mapping[tuple[str, str], str]
+    """By (row, column)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What a study computed."""
+
+    evidence: Mapping[str, ArrayLike]
+    """What each statement, by its key, is judged by."""
+    panels: Sequence[Panel | Grid]
+    lines: Mapping[str, str] = field(default_factory=dict)
+    """What solid, dotted and dashed stand for."""
+    header: Sequence[str] = ()
+    rows: Sequence[Sequence[object]] = ()
+    """The numbers of a table; a figure's are those of its curves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """One table or figure."""
+
+    name: str
+    """ "table-3.4", "figure-5.7"."""
+    title: str
+    configuration: str
+    """What was computed, where the thesis leaves it open or misprints it."""
+    statements: tuple[Statement, ...]
+    compute: Callable[[Model], Outcome]
+
+    def judge(self, outcome: Outcome) -> dict[str, Judgement]:
+        """The judgement of every statement; ``ValueError`` unless the outcome has evidence for exactly these."""
+        keys = [statement.key for statement in self.statements]
+        if set(keys) != set(outcome.evidence):
+            raise ValueError(f"evidence of {self.name} = {sorted(outcome.evidence)} must be for {sorted(keys)}.")
+        return {
+            statement.key: statement.rule.judge(np.asarray(outcome.evidence[statement.key], dtype=float))
+            for statement in self.statements
+        }
