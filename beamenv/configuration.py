@@ -112,7 +112,7 @@ class BladeConfig:
     effort_weight: float = 0.5
     """ρ in R = ρ FᵀK⁻¹F: with ½, uᵀRu is the energy (J) that the actuators store in the blade at rest."""
     white_load: float = 3.0
-    """N/m: standard deviation, in lag and in flap, of the white line load held over each interval; a tenth of the reference load."""
+    """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""
     sensor_noise_fraction: float = 0.02
     """Standard deviation of one sample over the sensors' full scale."""
     voltage_limits: tuple[float, float] = (-1500.0, 1500.0)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamenv.patches.material import PATCH_MATERIALS, PatchMaterial
+from beamenv.structure.arguments import is_number
 from beamenv.structure.contour import Inlay
 
 ACTUATOR_WALL, SENSOR_WALL = "top", "bottom"
@@ -36,7 +37,7 @@ class PatchLayout:
         if self.material not in PATCH_MATERIALS:
             raise ValueError(f"material = {self.material!r} of the patches must be one of {', '.join(PATCH_MATERIALS)}.")
         for name in ("length", "width"):
-            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
+            if not (is_number(getattr(self, name)) and getattr(self, name) > 0.0):
                 raise ValueError(f"{name} = {getattr(self, name)!r} of the patches must be a positive number of metres.")
         for name in ("actuators", "sensors"):
             object.__setattr__(self, name, as_positions(name, getattr(self, name)))
@@ -81,14 +82,16 @@ def place(name: str, patches: int | tuple[float, ...], length: float, beam_lengt
     """Positions in m, equally spaced where only a number is given, checked against the blade and each other."""
     last = OUTERMOST * beam_length - length
     tolerance = 1e-9 * beam_length
+    if last < 0.0:
+        raise ValueError(f"length = {length!r} of the patches must be at most {OUTERMOST} of the {beam_length:.6g} m span.")
     positions = tuple(np.linspace(0.0, last, patches).tolist()) if isinstance(patches, int) else patches
-    if last < 0.0 or min(positions) < -tolerance or max(positions) > last + tolerance:
+    if min(positions) < -tolerance or max(positions) > last + tolerance:
         raise ValueError(
-            f"{name} = {positions!r} must have their root-side edges between 0 and {last:.6g} m "
+            f"{name} = {patches!r} must have their root-side edges between 0 and {last:.6g} m "
             f"so that each {length:.6g} m patch lies within 0 and {OUTERMOST} of the {beam_length:.6g} m span."
         )
     if len(positions) > 1 and np.diff(np.sort(positions)).min() < length - tolerance:
         raise ValueError(
-            f"{name} = {positions!r} must be at least one patch length, {length:.6g} m, apart so that patches do not overlap."
+            f"{name} = {patches!r} must be at least one patch length, {length:.6g} m, apart so that patches do not overlap."
         )
     return positions

@@ -61,7 +61,7 @@ class PatchMaterial:
 
     @property
     def charge_per_reaction(self) -> float:
-        """What Eq. 4.37, ∫ē ε dA, counts of charge for one unit of generalised force per volt times displacement: spacing/thickness."""
+        """Charge that Eq. 4.37, ∫ē ε dA, counts per unit of generalised force per volt times displacement: spacing/thickness."""
         return self.electrode_spacing / self.thickness
 
     def inlay(self, wall: str, start: float, length: float, width: float) -> Inlay:

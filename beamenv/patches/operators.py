@@ -8,14 +8,18 @@ from numpy.typing import NDArray
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL, PatchLayout
 from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
-from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
+from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam, check_fit
 from beamenv.structure.trial_functions import Stations
 
 Array = NDArray[np.float64]
 
 
 def patch_force(beam: RotatingBeam, patch: PatchMaterial, wall: str, start: float, length: float, width: float) -> Array:
-    """Generalised force (N,) per volt of one patch: its condensed piezoelectric resultants times every strain row of the wall."""
+    """Generalised force (N,) per volt of one patch: its condensed piezoelectric resultants times every strain row of the wall.
+
+    ``ValueError`` for a patch that leaves the blade or does not fit its wall.
+    """
+    check_fit(beam, patch.inlay(wall, start, length, width))
     stations = Stations.between(np.array([start, start + length]), beam.terms + EXTRA_STATIONS)
     walls = beam.walls_at(stations.z, cuts=((wall, width),))
     under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in walls.points.edges]

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.structure.arguments import check_positive, is_count, is_number
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.contour import Inlay
 from beamenv.structure.laminate import Layup
@@ -28,7 +29,8 @@ class RotatingBeam:
     z runs along the span from the clamped root, x lies in the plane of rotation (lag), y along the spin axis (flap).
 
     Raises ``ValueError`` for a length, taper or number of terms that is not positive, a negative hub radius, an unknown
-    theory, or inlays that leave the blade, overlap or do not fit their wall.
+    theory, a lay-up of other walls than the section's, walls that fill the tip, or inlays that leave the blade, overlap or do
+    not fit their wall.
     """
 
     section: Section
@@ -56,15 +58,15 @@ class RotatingBeam:
     def __post_init__(self) -> None:
         check_theory(self.shear, self.shear_flow)
         check_positive(length=self.length, taper=self.taper)
-        if not (np.isfinite(self.hub_radius) and self.hub_radius >= 0.0):
+        if not (is_number(self.hub_radius) and self.hub_radius >= 0.0):
             raise ValueError(f"hub_radius = {self.hub_radius!r} must be zero or a positive number of metres.")
         for name in ("pretwist_deg", "presetting_deg"):
-            if not np.isfinite(getattr(self, name)):
+            if not is_number(getattr(self, name)):
                 raise ValueError(f"{name} = {getattr(self, name)!r} must be a finite number of degrees.")
-        if not (isinstance(self.terms, (int, np.integer)) and 1 <= self.terms <= 30):
+        if not is_count(self.terms, 1, 30):
             raise ValueError(f"terms = {self.terms!r} must be an integer from 1 to 30.")
-        for wall in self.section.walls:
-            self.layup.plies(wall)
+        self.layup.check_walls(self.section.walls)
+        self.section.check_thickness(min(1.0, 1.0 / self.taper))
         check_inlays(self)
 
     @cached_property
@@ -102,7 +104,7 @@ class RotatingBeam:
 
     @cached_property
     def critical_speed(self) -> float:
-        """Speed (rad/s) at which spin softening has eaten the stiffness of the extension: the equilibrium is unstable from there."""
+        """Speed (rad/s) at which spin softening has eaten the stiffness of the extension: unstable from there on."""
         return critical_speed(self.matrices.elastic_stiffness, self.matrices.spin_stiffness)
 
     def natural_frequencies(
@@ -119,7 +121,6 @@ class RotatingBeam:
 
     def modes(self, speed: float = 0.0, count: int = 6, motions: tuple[str, ...] | None = None, gyroscopic: bool = True) -> Modes:
         """Frequencies, mode shapes and families of the first ``count`` modes at a speed in rad/s below the critical one."""
-        columns = self.space.columns(motions)
         matrices = self._selected(speed, count, motions)
         shapes: Array | NDArray[np.complex128]
         if gyroscopic and speed:
@@ -128,8 +129,7 @@ class RotatingBeam:
             frequencies, shapes = whirling_modes(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed), count)
         else:
             frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), count)
-        full = np.zeros((self.space.size, shapes.shape[1]), dtype=shapes.dtype)
-        full[columns] = shapes
+        full = self._all_coefficients(shapes, motions)
         blocks = [self.space.columns((motion,)) for motion in MOTIONS]
         participation = energy_participation(self.matrices.mass, full, blocks)
         names = list(MOTIONS)
@@ -137,12 +137,19 @@ class RotatingBeam:
         return Modes(frequencies, full, families, participation)
 
     def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> BeamMatrices:
-        if not (np.isfinite(speed) and speed >= 0.0):
+        if not (is_number(speed) and speed >= 0.0):
             raise ValueError(f"speed = {speed!r} must be zero or a positive number of rad/s.")
         columns = self.space.columns(motions)
-        if not 1 <= count <= len(columns):
-            raise ValueError(f"count = {count!r} must be from 1 to {len(columns)}, the number of trial functions.")
+        if not is_count(count, 1, len(columns)):
+            raise ValueError(f"count = {count!r} must be an integer from 1 to {len(columns)}, the number of trial functions.")
         return self.matrices if motions is None else self.matrices.restricted(columns)
+
+    def _all_coefficients(
+        self, shapes: Array | NDArray[np.complex128], motions: tuple[str, ...] | None
+    ) -> Array | NDArray[np.complex128]:
+        full: Array | NDArray[np.complex128] = np.zeros((self.space.size, shapes.shape[1]), dtype=np.result_type(shapes))
+        full[self.space.columns(motions)] = shapes
+        return full
 
     def displacements(self, z: Array) -> dict[str, Array]:
         """Rows (stations, N) that give u, v, s, theta_x, theta_y, phi at z (m) from the coefficient vector."""
@@ -164,22 +171,10 @@ class RotatingBeam:
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
 
 
-def check_positive(**values: float) -> None:
-    """``ValueError`` for a value that is not a positive finite number."""
-    for name, value in values.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} = {value!r} must be a positive, finite number.")
-
-
 def check_inlays(beam: RotatingBeam) -> None:
-    """``ValueError`` for inlays that leave the blade, are wider than their wall at the narrow end, or overlap."""
+    """``ValueError`` for inlays that do not fit their wall or overlap."""
     for inlay in beam.inlays:
-        end = inlay.start + inlay.length
-        if not 0.0 <= inlay.start < end <= beam.length * (1.0 + 1e-12):
-            raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {beam.length!r} m.")
-        narrowest = beam.section.wall_width(inlay.wall) * min(1.0, 1.0 / beam.taper)
-        if not inlay.width <= narrowest * (1.0 + 1e-12):
-            raise ValueError(f"inlay width = {inlay.width!r} m must not exceed the {inlay.wall} wall's {narrowest:.6g} m.")
+        check_fit(beam, inlay)
     for wall in {inlay.wall for inlay in beam.inlays}:
         ordered = sorted((inlay for inlay in beam.inlays if inlay.wall == wall), key=lambda inlay: inlay.start)
         for first, second in zip(ordered[:-1], ordered[1:], strict=True):
@@ -187,3 +182,17 @@ def check_inlays(beam: RotatingBeam) -> None:
                 raise ValueError(
                     f"inlays at {first.start!r} and {second.start!r} m on the {wall} wall must be {first.length!r} m apart."
                 )
+
+
+def check_fit(beam: RotatingBeam, inlay: Inlay) -> None:
+    """``ValueError`` for an inlay that leaves the blade, is as thick as its wall or wider than it at the narrow end."""
+    end = inlay.start + inlay.length
+    if not 0.0 <= inlay.start < end <= beam.length * (1.0 + 1e-12):
+        raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {beam.length!r} m.")
+    narrowest = beam.section.wall_width(inlay.wall) * min(1.0, 1.0 / beam.taper)
+    if not 0.0 < inlay.width <= narrowest * (1.0 + 1e-12):
+        raise ValueError(f"inlay width = {inlay.width!r} m must be positive and at most the {inlay.wall} wall's {narrowest:.6g} m.")
+    if not 0.0 < inlay.thickness < beam.section.thickness:
+        raise ValueError(
+            f"inlay thickness = {inlay.thickness!r} m must be positive and below the wall's {beam.section.thickness!r} m."
+        )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.structure.arguments import is_number
 from beamenv.structure.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -28,8 +29,10 @@ class Ply:
     angle_deg: float
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.angle_deg):
-            raise ValueError(f"angle_deg = {self.angle_deg!r} must be finite.")
+        if not isinstance(self.material, Lamina):
+            raise ValueError(f"material = {self.material!r} of a ply must be a Lamina.")
+        if not is_number(self.angle_deg):
+            raise ValueError(f"angle_deg = {self.angle_deg!r} must be a finite number of degrees.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +40,14 @@ class Layup:
     """Plies of each wall, inner to outer face, all of one wall equally thick."""
 
     default: tuple[Ply, ...] | None
-    walls: Mapping[str, tuple[Ply, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    walls: Mapping[str, tuple[Ply, ...]] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "walls", MappingProxyType(dict(self.walls)))
+
+    def __reduce__(self) -> tuple[type[Layup], tuple[tuple[Ply, ...] | None, dict[str, tuple[Ply, ...]]]]:
+        # A mapping proxy cannot be pickled, and blades travel to worker processes.
+        return Layup, (self.default, dict(self.walls))
 
     @classmethod
     def uniform(cls, material: Lamina, angles_deg: Sequence[float]) -> Layup:
@@ -47,9 +57,7 @@ class Layup:
     @classmethod
     def by_wall(cls, material: Lamina, **angles_deg: Sequence[float]) -> Layup:
         """Plies wall by wall, by the names of the section's walls (a box: top, bottom, left, right)."""
-        return cls(
-            default=None, walls=MappingProxyType({wall: stack(material, angles, wall) for wall, angles in angles_deg.items()})
-        )
+        return cls(default=None, walls={wall: stack(material, angles, wall) for wall, angles in angles_deg.items()})
 
     def plies(self, wall: str) -> tuple[Ply, ...]:
         """The plies of a wall; ``ValueError`` when the lay-up has none for it."""
@@ -58,6 +66,14 @@ class Layup:
             raise ValueError(f"layup has no plies for wall {wall!r}; it has them for {', '.join(sorted(self.walls))}.")
         return plies
 
+    def check_walls(self, walls: Sequence[str]) -> None:
+        """``ValueError`` unless there are plies for every one of ``walls`` and for no other."""
+        for wall in walls:
+            self.plies(wall)
+        unknown = sorted(set(self.walls) - set(walls))
+        if unknown:
+            raise ValueError(f"layup has plies for wall {unknown[0]!r}; the section has {', '.join(dict.fromkeys(walls))}.")
+
     def mirrored(self) -> Layup:
         """Every ply angle with its sign changed."""
 
@@ -65,14 +81,15 @@ class Layup:
             return tuple(Ply(ply.material, -ply.angle_deg) for ply in plies)
 
         default = None if self.default is None else mirror(self.default)
-        return Layup(default, MappingProxyType({wall: mirror(plies) for wall, plies in self.walls.items()}))
+        return Layup(default, {wall: mirror(plies) for wall, plies in self.walls.items()})
 
 
 def stack(material: Lamina, angles_deg: Sequence[float], name: str) -> tuple[Ply, ...]:
     """Plies of one material at the given angles, inner to outer face."""
-    if len(angles_deg) == 0:
-        raise ValueError(f"{name} = {list(angles_deg)!r} must hold at least one ply angle.")
-    return tuple(Ply(material, float(angle)) for angle in angles_deg)
+    angles = [float(angle) if is_number(angle) else angle for angle in angles_deg] if isinstance(angles_deg, Iterable) else []
+    if not angles:
+        raise ValueError(f"{name} = {angles_deg!r} must hold at least one ply angle.")
+    return tuple(Ply(material, angle) for angle in angles)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.structure.arguments import check_positive, is_number
+
 
 @dataclass(frozen=True, slots=True)
 class Lamina:
@@ -32,11 +34,8 @@ class Lamina:
     """kg/m³."""
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name != "nu12" and not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{field.name} = {value!r} must be a positive, finite number.")
-        if not abs(self.nu12) < np.sqrt(self.E1 / self.E2):
+        check_positive(**{field.name: getattr(self, field.name) for field in fields(self) if field.name != "nu12"})
+        if not (is_number(self.nu12) and abs(self.nu12) < np.sqrt(self.E1 / self.E2)):
             raise ValueError(
                 f"nu12 = {self.nu12!r} must be smaller in magnitude than sqrt(E1/E2) = {np.sqrt(self.E1 / self.E2):.4g}."
             )
@@ -44,7 +43,8 @@ class Lamina:
     @classmethod
     def isotropic(cls, E: float, nu: float, density: float) -> Lamina:
         """An isotropic sheet with Young's modulus E (Pa), Poisson's ratio nu and density (kg/m³)."""
-        if not -1.0 < nu < 0.5:
+        check_positive(E=E, density=density)
+        if not (is_number(nu) and -1.0 < nu < 0.5):
             raise ValueError(f"nu = {nu!r} must lie between -1 and 0.5.")
         shear_modulus = E / (2.0 * (1.0 + nu))
         return cls(E1=E, E2=E, G12=shear_modulus, G13=shear_modulus, G23=shear_modulus, nu12=nu, density=density)

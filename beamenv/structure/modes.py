@@ -18,7 +18,8 @@ class Modes:
     natural_frequencies: Array
     """(count,), rad/s."""
     mode_shapes: NDArray[np.float64] | NDArray[np.complex128]
-    """(N, count): coefficients of the trial functions, of unit modal mass; complex with gyroscopic coupling."""
+    """(N, count): coefficients of the trial functions, of unit modal mass; complex, for q = Re(shape·exp(iωt)), with
+    gyroscopic coupling."""
     families: tuple[str, ...]
     """lag, flap, extension or twist: where most of the mode's kinetic energy is."""
     participation: Array
@@ -43,19 +44,20 @@ def whirling_modes(
     With M = L Lᵀ and L⁻¹ K L⁻ᵀ = C Cᵀ the state [Cᵀ Lᵀq; Lᵀq̇] obeys ẏ = S y with S skew, so i S is Hermitian and every
     frequency is exact to round-off of the largest. Raises ``numpy.linalg.LinAlgError`` where K is not positive definite.
     """
-    root = np.linalg.cholesky(mass)
+    root = np.asarray(np.linalg.cholesky(mass), dtype=np.float64)
     skew = skew_form(reduced(root, stiffness), reduced(root, gyroscopic))
     size = len(mass)
     last = size if count is None else min(count, size)
     eigenvalues, vectors = eigh(1j * skew, subset_by_index=(size, size + last - 1), driver="evr")
     shapes = solve_triangular(root, vectors[size:], lower=True, trans="T")
     modal_mass = np.einsum("ij,ij->j", shapes.conj(), mass @ shapes).real
-    return eigenvalues, shapes / np.sqrt(modal_mass)
+    # S has the eigenvalues −iω for these vectors: conjugated, the shapes move as exp(+iωt).
+    return np.asarray(eigenvalues), np.asarray(shapes.conj() / np.sqrt(modal_mass), dtype=np.complex128)
 
 
 def whirling_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Array:
     """All N frequencies, rad/s, ascending; modes that have lost their stiffness are reported at zero."""
-    root = np.linalg.cholesky(mass)
+    root = np.asarray(np.linalg.cholesky(mass), dtype=np.float64)
     reduced_stiffness, reduced_gyroscopic = reduced(root, stiffness), reduced(root, gyroscopic)
     try:
         return stable_frequencies(reduced_stiffness, reduced_gyroscopic)
@@ -71,7 +73,7 @@ def reduced(root: Array, matrix: Array) -> Array:
 
 def skew_form(stiffness: Array, gyroscopic: Array) -> Array:
     """S (..., 2N, 2N) of reduced matrices (..., N, N); ``numpy.linalg.LinAlgError`` where a K is not positive definite."""
-    factor = np.linalg.cholesky(0.5 * (stiffness + np.swapaxes(stiffness, -1, -2)))
+    factor = np.asarray(np.linalg.cholesky(0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))), dtype=np.float64)
     size = factor.shape[-1]
     skew = np.zeros((*factor.shape[:-2], 2 * size, 2 * size))
     skew[..., :size, size:] = np.swapaxes(factor, -1, -2)

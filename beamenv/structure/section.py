@@ -1,4 +1,4 @@
-"""Sections: polygonal single cells, and their stiffness and inertia matrices at many stations at once."""
+"""Sections: polygonal single cells, and their stiffness matrices at many stations at once."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.structure.arguments import is_number
 from beamenv.structure.contour import Inlay, WallPoints, rotated, split_walls, wall_points
+from beamenv.structure.inertia import SectionInertia
 from beamenv.structure.laminate import Laminate, Layup, WallLaw, wall_law
 from beamenv.structure.wall_kinematics import (
-    DPHI,
     GX,
     GY,
     PHI,
@@ -21,7 +22,6 @@ from beamenv.structure.wall_kinematics import (
     TX,
     TY,
     LawTable,
-    PointMotion,
     ShearFlow,
     W,
     motion_rows,
@@ -50,6 +50,20 @@ class Section(ABC):
     def walls(self) -> tuple[str, ...]:
         """The wall that each of the K edges belongs to; edge k runs from vertex k to vertex k + 1."""
 
+    @property
+    @abstractmethod
+    def thickness_limit(self) -> float:
+        """Wall thickness (m) at which the walls would fill the section."""
+
+    def check_thickness(self, scale: float = 1.0) -> None:
+        """``ValueError`` unless the wall is thinner than its limit in a section of ``scale`` times the size."""
+        limit = scale * self.thickness_limit
+        if not (is_number(self.thickness) and self.thickness > 0.0):
+            raise ValueError(f"thickness = {self.thickness!r} of the section must be a positive number of metres.")
+        if not self.thickness < limit:
+            where = "" if scale == 1.0 else " at its narrow end"
+            raise ValueError(f"thickness = {self.thickness!r} of the section must be below {limit:.6g} m{where}, where walls meet.")
+
     def wall_width(self, wall: str) -> float:
         """Length (m) along the contour of a wall; ``ValueError`` unless it is one straight edge."""
         edges = [k for k, name in enumerate(self.walls) if name == wall]
@@ -62,8 +76,9 @@ class Section(ABC):
         """Classical stiffness (4, 4) for (w', θx', θy', φ'): EA, EI_flap, EI_lag, GJ on the diagonal and the couplings.
 
         The transverse shear strains are condensed out (Berdichevsky, Armanios and Badir, Composites Engineering 2, 1992).
-        Units N, N m, N m². Raises ``ValueError`` for an unknown ``shear`` theory or ``shear_flow``.
+        Units N, N m, N m². Raises ``ValueError`` for an unknown ``shear`` theory or ``shear_flow`` and for a lay-up of other walls.
         """
+        layup.check_walls(self.walls)
         walls = SpanWalls.build(self, layup, z=np.zeros(1), scale=np.ones(1), angle=np.zeros(1), shear=shear, shear_flow=shear_flow)
         full = walls.stiffness()[0]
         kept = [W, TX, TY, PHI]
@@ -87,12 +102,11 @@ class BoxSection(Section):
     thickness: float
 
     def __post_init__(self) -> None:
-        for name in ("width", "depth", "thickness"):
+        for name in ("width", "depth"):
             value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0.0):
+            if not (is_number(value) and value > 0.0):
                 raise ValueError(f"{name} = {value!r} of the section must be a positive number of metres.")
-        if self.thickness >= min(self.width, self.depth):
-            raise ValueError(f"thickness = {self.thickness!r} of the section must be below its width and depth.")
+        self.check_thickness()
 
     @property
     def vertices(self) -> Array:
@@ -105,12 +119,18 @@ class BoxSection(Section):
         """right, top, left, bottom."""
         return ("right", "top", "left", "bottom")
 
+    @property
+    def thickness_limit(self) -> float:
+        """The smaller of width and depth."""
+        return min(self.width, self.depth)
+
 
 @dataclass(frozen=True, slots=True)
 class PolygonSection(Section):
     """Any closed polygon: corners (x, y) of the mid-line in m, counter-clockwise, the wall name of each edge, the wall thickness.
 
-    Raises ``ValueError`` for fewer than three corners, a clockwise order, or names that are not one an edge.
+    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, names that are not one an edge,
+    or a wall too thick.
     """
 
     corners: tuple[tuple[float, float], ...]
@@ -120,11 +140,9 @@ class PolygonSection(Section):
     def __post_init__(self) -> None:
         if len(self.corners) < 3 or len(self.edge_walls) != len(self.corners):
             raise ValueError(f"corners = {self.corners!r} must be at least three, with one wall name for each edge.")
-        if not (np.isfinite(self.thickness) and self.thickness > 0.0):
-            raise ValueError(f"thickness = {self.thickness!r} of the section must be a positive number of metres.")
-        x, y = self.vertices.T
-        if not np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) > 0.0:
-            raise ValueError(f"corners = {self.corners!r} must go round counter-clockwise and enclose an area.")
+        if not (self._area > 0.0 and np.all(self._edge_lengths > 0.0)):
+            raise ValueError(f"corners = {self.corners!r} must be distinct, go round counter-clockwise and enclose an area.")
+        self.check_thickness()
 
     @property
     def vertices(self) -> Array:
@@ -135,6 +153,20 @@ class PolygonSection(Section):
     def walls(self) -> tuple[str, ...]:
         """As given."""
         return self.edge_walls
+
+    @property
+    def thickness_limit(self) -> float:
+        """4 area/perimeter: the diameter of the inscribed circle where one touches every edge, never less in a convex polygon."""
+        return float(4.0 * self._area / self._edge_lengths.sum())
+
+    @property
+    def _area(self) -> float:
+        x, y = self.vertices.T
+        return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+    @property
+    def _edge_lengths(self) -> Array:
+        return np.asarray(np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -194,55 +226,6 @@ class SpanWalls:
         return SectionInertia.integrate(motion, self.laws.density, self.points.ds)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SectionInertia:
-    """∮∫ρ XᵀY dn ds (S, 9, 9) for the generalised displacements, X and Y being U (lag), V (flap) and W (span)."""
-
-    lag_lag: Array
-    flap_flap: Array
-    span_span: Array
-    lag_span: Array
-
-    @classmethod
-    def integrate(cls, motion: PointMotion, density: Array, ds: Array) -> SectionInertia:
-        """Integrate over the walls, from the density moments (S, P, 7)."""
-        powers = np.add.outer(motion.powers, motion.powers)
-        weight = ds[..., None, None] * density[..., powers]
-
-        def product(left: Array, right: Array) -> Array:
-            stations = len(left)
-            return left.reshape(stations, -1, 9).transpose(0, 2, 1) @ (weight @ right).reshape(stations, -1, 9)
-
-        return cls(
-            lag_lag=product(motion.lag, motion.lag),
-            flap_flap=product(motion.flap, motion.flap),
-            span_span=product(motion.span, motion.span),
-            lag_span=product(motion.lag, motion.span),
-        )
-
-    @property
-    def mass(self) -> Array:
-        """(S, 9, 9)."""
-        return self.lag_lag + self.flap_flap + self.span_span
-
-    @property
-    def mass_per_length(self) -> Array:
-        """(S,), kg/m."""
-        return self.lag_lag[:, 0, 0]
-
-    @property
-    def polar(self) -> Array:
-        """I_p (S,), kg m."""
-        return self.lag_lag[:, DPHI, DPHI] + self.flap_flap[:, DPHI, DPHI]
-
-    @property
-    def spin_stiffness(self) -> Array:
-        """(S, 9, 9), kg/m etc., to be multiplied by Ω²: spin softening with the tennis-racket term."""
-        softening = -(self.lag_lag + self.span_span)
-        softening[:, DPHI, DPHI] += self.flap_flap[:, DPHI, DPHI]
-        return softening
-
-
 def check_theory(shear: str, shear_flow: str) -> None:
     """``ValueError`` unless both names are known."""
     if shear not in SHEAR_THEORIES:
@@ -268,6 +251,6 @@ def lay_out_laws(
     index[:] = [number(hosts[edge.wall]) for edge in points.edges]
     for inlay in inlays:
         law = number(hosts[inlay.wall].with_outer_layer(inlay.ply, inlay.thickness))
-        under = [k for k, edge in enumerate(points.edges) if edge.lies_under(inlay)]
-        index[np.ix_(np.flatnonzero(inlay.covers(z)), under)] = law
+        under = [edge.lies_under(inlay) for edge in points.edges]
+        index[np.ix_(inlay.covers(z), np.array(under))] = law
     return laws, np.repeat(index, 2, axis=1)

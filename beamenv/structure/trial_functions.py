@@ -43,12 +43,11 @@ class TrialSpace:
 
     def columns(self, motions: tuple[str, ...] | None) -> NDArray[np.intp]:
         """Indices of the coefficients that belong to ``motions`` (None: all)."""
-        for motion in motions or ():
-            if motion not in MOTIONS:
-                raise ValueError(f"motions = {motions!r} may name only {', '.join(MOTIONS)}.")
+        if motions is not None and not (motions and all(motion in MOTIONS for motion in motions)):
+            raise ValueError(f"motions = {motions!r} must be a tuple of one or more of {', '.join(MOTIONS)}.")
         wanted = FIELDS if motions is None else [name for motion in motions for name in MOTIONS[motion]]
         blocks = [np.arange(self.terms) + self.terms * k for k, name in enumerate(self.fields) if name in wanted]
-        return np.concatenate(blocks) if blocks else np.arange(0)
+        return np.concatenate(blocks)
 
     def evaluate(self, z: Array) -> dict[tuple[str, int], Array]:
         """Rows (stations, size) that give each field's derivative: keys (field, order), orders 0, 1, 2."""
@@ -115,9 +114,9 @@ def remaining_integrals(points: int) -> Array:
     values = legendre.legvander(nodes, points)
     degree = np.arange(1, points)
     tail = np.column_stack([1.0 - nodes, (values[:, degree - 1] - values[:, degree + 1]) / (2 * degree + 1)])
-    return tail @ ((degree_norms(points))[:, None] * values[:, :points].T * weights)
+    return np.asarray(tail @ (degree_norms(points)[:, None] * values[:, :points].T * weights))
 
 
 def degree_norms(points: int) -> Array:
     """(2k + 1)/2, the inverse squared norms of the Legendre polynomials k = 0 … points − 1."""
-    return np.arange(points) + 0.5
+    return np.arange(points, dtype=np.float64) + 0.5
