@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.structure import RotatingBeam
+from beamenv.structure.sweep import frequency_sweep
 from beamenv.thesis import Model
 from beamenv.thesis.response import ForcedBlade
 from beamenv.thesis.shapes import STATIONS, family_shapes
@@ -48,6 +49,12 @@ def locus_panels(labels: list[str], x: Array, x_label: str, loci: Array) -> list
         )
         for mode in range(loci.shape[2])
     ]
+
+
+def bending_alone(model: Model, beams: Beams) -> Array:
+    """Third and fourth frequency (labels, speeds, 2) of lag and flap without twist and stretch, up to the model's speed."""
+    loci = frequency_sweep(list(beams.values()), SPEEDS[SPEEDS <= model.speed], 4, ("lag", "flap"), gyroscopic=False)
+    return loci[..., 2:]
 
 
 def along_parameter(loci: Array, modes: list[int], skip: int = 0) -> Array:

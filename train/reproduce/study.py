@@ -73,6 +73,8 @@ class Outcome:
     header: Sequence[str] = ()
     rows: Sequence[Sequence[object]] = ()
     """The numbers of a table; a figure's are those of its curves."""
+    notes: Sequence[str] = ()
+    """Sentences with numbers that were computed beside the evidence."""
 
 
 @dataclass(frozen=True, slots=True)

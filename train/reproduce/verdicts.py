@@ -165,6 +165,27 @@ class Marginal(Rule):
 
 
 @dataclass(frozen=True, slots=True)
+class Below(Rule):
+    """The thesis says a quantity stays below a limit; evidence: its values over the range of what the thesis leaves open."""
+
+    limit: float
+    unit: str
+
+    def _judge(self, evidence: Array) -> Judgement:
+        low, high = float(evidence.min()), float(evidence.max())
+        verdict = Verdict.REPRODUCED if high < self.limit else Verdict.UNTESTABLE if low < self.limit else Verdict.NOT_REPRODUCED
+        margin = f"{span(np.array([low, high]) / self.limit - 1.0)} of the limit"
+        return Judgement(verdict, f"below {self.limit:g} {self.unit}", f"{low:.4g} … {high:.4g} {self.unit}", margin)
+
+    @property
+    def words(self) -> str:
+        return (
+            f"reproduced if below {self.limit:g} {self.unit} whatever is left open, not reproduced if above, "
+            "cannot be tested if what is left open decides"
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Holds(Rule):
     """The thesis states a fact of several cases; evidence: one (true) or zero (false) for each."""
 

@@ -1,0 +1,321 @@
+"""Section 5.5.2: controlled responses, with one voltage for all actuators and with one each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import lqg, no_control
+from beamenv.configuration import BladeConfig
+from beamenv.thesis import Model
+from train.reproduce.closed_loop import (
+    PATCH_LENGTH,
+    PATCH_WIDTH,
+    PULSE,
+    UNLIMITED,
+    blade,
+    controlled,
+    patches,
+    peak_voltages,
+    peaks,
+    plant_of,
+    response_panels,
+    settling_times,
+    simulate,
+)
+from train.reproduce.study import WITH_AND_WITHOUT, Curve, Outcome, Panel, Statement, Study
+from train.reproduce.study_patches import FIELD_OVER_THICKNESS, CoveringLayout, SheetLayout
+from train.reproduce.verdicts import Below, Changes, Holds, Large
+
+Array = NDArray[np.float64]
+Compute = Callable[[Model], Outcome]
+
+COVERAGES = (0.10, 0.25, 0.50, 1.00)
+OPEN_WEIGHTS = (0.05, 0.5, 5.0)
+"""ρ of the input weight, which the thesis does not print."""
+OPEN_LOADS = (30.0, 500.0)
+"""N/m: ours, and chapter 6's "500 kg/m" read as N/m."""
+
+
+def mfc_or_pzt(angle_deg: float) -> Compute:
+    """Figures 5.7 and 5.8."""
+
+    def compute(model: Model) -> Outcome:
+        beam = model.blade(angle_deg, pretwist_deg=30.0, presetting_deg=30.0)
+        layouts = {
+            "PZT": patches(ganged=True, material="PZT"),
+            "MFC": patches(ganged=True),
+            "MFC, V/thickness": SheetLayout(length=PATCH_LENGTH, width=PATCH_WIDTH, ganged=True, sheet=FIELD_OVER_THICKNESS),
+        }
+        blades = {name: blade(model, beam, layout) for name, layout in layouts.items()}
+        found, pair = controlled(model, blades), ["PZT", "MFC"]
+        plants = {name: plant_of(blades[name]) for name in pair}
+        free = {name: simulate(plant, no_control(plant), model.load) for name, plant in plants.items()}
+        evidence = {
+            "settling": [found[name].settling for name in pair],
+            "peak": [found[name].peak for name in pair],
+            "voltage": [found[name].asked[0] for name in pair],
+            "voltage-field": [found[name].asked[0] for name in ("PZT", "MFC, V/thickness")],
+            "control": [free["MFC"].settling, found["MFC"].settling],
+        }
+        notes = [
+            f"{name}: without control the tip settles after {free[name].settling:.2f} s from a peak of {1e6 * free[name].peak:.1f} µm, "
+            f"with control after {found[name].settling:.2f} s from {1e6 * found[name].peak:.1f} µm."
+            for name in pair
+        ]
+        return Outcome(evidence, response_panels(found), notes=notes)
+
+    return compute
+
+
+def coverage(model: Model) -> Outcome:
+    """Figure 5.9."""
+    beam = model.blade(30.0)
+    blades = {
+        f"{share:.0%} of the span": blade(model, beam, CoveringLayout(1, 1, length=share * beam.length, width=beam.width, ganged=True))
+        for share in COVERAGES
+    }
+    found = controlled(model, blades)
+    peak, settling, voltage = peaks(found), settling_times(found), peak_voltages(found)[:, 0]
+    evidence = {
+        "tip": peak[:3],
+        "voltage": voltage[:3],
+        "whole-tip": peak[2:],
+        "whole-settling": settling[2:],
+    }
+    return Outcome(evidence, response_panels(found))
+
+
+def two_plies(speed: float) -> Compute:
+    """Figures 5.10 and 5.11."""
+
+    def compute(model: Model) -> Outcome:
+        found = controlled(
+            model,
+            {f"θ = {a:g}°": blade(model, model.blade(a), patches(ganged=True), speed=speed) for a in (30.0, 60.0)},
+        )
+        return Outcome({"tip": peaks(found), "voltage": peak_voltages(found).T}, response_panels(found))
+
+    return compute
+
+
+def ganged_taper(model: Model) -> Outcome:
+    """Figure 5.12."""
+    found = controlled(
+        model, {f"η = {t:g}": blade(model, model.blade(30.0, taper=t), patches(ganged=True)) for t in (1.0, 2.0, 3.0)}
+    )
+    evidence = {"tip": peaks(found), "voltage": peak_voltages(found).T, "settling": settling_times(found)}
+    return Outcome(evidence, response_panels(found))
+
+
+def ganged_pretwist(model: Model) -> Outcome:
+    """Figure 5.13."""
+    found = controlled(
+        model, {f"β = {b:g}°": blade(model, model.blade(30.0, pretwist_deg=b), patches(ganged=True)) for b in (0.0, 30.0, 60.0)}
+    )
+    settling, voltage = settling_times(found), peak_voltages(found)[:, 0]
+    return Outcome({"settling": settling[1:] > settling[0], "voltage": voltage[1:] < voltage[0]}, response_panels(found))
+
+
+def individual_ply_angle(model: Model) -> Outcome:
+    """Figure 5.14."""
+    found = controlled(model, {f"θ = {a:g}°": blade(model, model.blade(a)) for a in (30.0, 60.0, 90.0)})
+    settling = settling_times(found)
+    evidence = {"tip": peaks(found), "voltage": peak_voltages(found).T, "settling": settling[[0, 2]]}
+    return Outcome(evidence, response_panels(found))
+
+
+def individual_taper(model: Model) -> Outcome:
+    """Figure 5.15."""
+    blades = {f"η = {t:g}": blade(model, model.blade(30.0, taper=t, pretwist_deg=30.0)) for t in (1.0, 2.0, 3.0)}
+    found = controlled(model, blades)
+    voltage = peak_voltages(found)
+    evidence = {
+        "tip": peaks(found),
+        "voltage": voltage[:, [0, 2, 3]].T,
+        "second": voltage[:, 1],
+        "limit": voltages_over_what_is_open(model, blades["η = 1"]),
+    }
+    return Outcome(evidence, response_panels(found))
+
+
+def voltages_over_what_is_open(model: Model, config: BladeConfig) -> Array:
+    """Peak voltages, were there no limit, for each input weight and load that the thesis leaves open."""
+    found = []
+    for weight in OPEN_WEIGHTS:
+        plant = plant_of(replace(config, effort_weight=weight, voltage_limits=(-UNLIMITED, UNLIMITED)))
+        found.append(simulate(plant, lqg(plant), model.load, 0.1).asked.max() / model.load)
+    return np.outer(found, OPEN_LOADS).ravel()
+
+
+def individual_pretwist(model: Model) -> Outcome:
+    """Figure 5.16."""
+    blades = {f"β = {b:g}°": blade(model, model.blade(30.0, pretwist_deg=b)) for b in (30.0, 60.0, 90.0)}
+    found = controlled(model, blades, pulse=PULSE)
+    settling, voltage = settling_times(found), peak_voltages(found)
+    evidence = {
+        "settling": settling[1:] > settling[0],
+        "first-three": (voltage[1:, :3] < voltage[0, :3]).astype(float),
+        "fourth": [voltage[1, 3] > voltage[0, 3]],
+    }
+    return Outcome(evidence, response_panels(found))
+
+
+def gyroscopic(model: Model) -> Outcome:
+    """Figure 5.17."""
+    beam = model.blade(0.0)
+    panels: list[Panel] = []
+    lags, apart = [], []
+    for direction in ("lag", "flap"):
+        found = {line: controlled(model, {"": blade(model, beam, gyroscopic=line == "solid")}, direction=direction)[""]
+                 for line in WITH_AND_WITHOUT}  # fmt: skip
+        drawn = [[Curve(c.x, c.y, "", line) for c in (panel.curves[0] for panel in response_panels({"": r}, direction))]
+                 for line, r in found.items()]  # fmt: skip
+        names = response_panels({"": found["solid"]}, direction)
+        panels += [replace(panel, curves=curves, title=f"{panel.title}, step in {direction}" if k else panel.title)
+                   for k, (panel, curves) in enumerate(zip(names, zip(*drawn, strict=True), strict=True))]  # fmt: skip
+        lags.append(turning_time(found["dotted"].times, found["dotted"].tip) > turning_time(found["solid"].times, found["solid"].tip))
+        apart.append(float(np.abs(found["dotted"].tip - found["solid"].tip).max() / found["solid"].peak))
+    evidence = {"visible": apart, "phase-lag": lags[:1], "phase-lag-flap": lags[1:]}
+    return Outcome(evidence, panels, WITH_AND_WITHOUT)
+
+
+def turning_time(times: Array, tip: Array, turn: int = 3) -> float:
+    """When the tip turns back for the ``turn``-th time, in s, between samples by a parabola."""
+    slope = np.diff(tip)
+    at = np.flatnonzero(np.diff(np.sign(slope)) != 0)[turn - 1]
+    return float(times[at + 1] + (times[1] - times[0]) * (slope[at] / (slope[at] - slope[at + 1]) - 0.5))
+
+
+ASKED = "voltages compared as asked for, drawn as limited to ±1500 V"
+LQG = f"sampled LQG from summed sensors, step of 30 N/m in flap; {ASKED}"
+GANGED = f"one voltage on four MFC actuators of 80 mm × 57 mm; {LQG}"
+EACH = f"four MFC actuators with a voltage each; sampled LQG, step of 30 N/m in flap; {ASKED}"
+WHY_TAPER = "The load per metre is the same while the blade gets thinner and lighter: see Figure 3.16."
+WHY_PZT = (
+    "A monolithic sheet puts V over 0.3 mm and not over 0.5 mm, is four times as stiff and pulls along and across: per volt it acts 2.5 times as much. "
+    "With one Q, R rule it therefore takes less voltage. Eq. 5.2 divides the MFC's voltage by its thickness too."
+)
+WHY_PLIES = "The input weight is the energy the actuators store, less in a stiffer blade: the same rule then asks for more voltage."
+
+
+def mfc_study(name: str, angle_deg: float) -> Study:
+    """Figure 5.7 or 5.8."""
+    return Study(
+        name,
+        f"MFC against PZT, θ = {angle_deg:g}°",
+        f"30° pretwist, 30° presetting, 200 rad/s; one voltage on four actuators of 80 mm × 57 mm; {LQG}; the same Q, R rule",
+        (
+            Statement("settling", "MFC settles sooner than PZT", Changes(-1)),
+            Statement("peak", "MFC has the smaller peak displacement", Changes(-1), "Stiffness matters as much as control here: see the peaks without it."),
+            Statement("voltage", "MFC takes the smaller voltage", Changes(-1), WHY_PZT),
+            Statement("voltage-field", "The same with the MFC's field taken as V/thickness", Changes(-1), WHY_PZT),
+            Statement("control", "Control shortens the settling time (MFC against none)", Changes(-1)),
+        ),
+        mfc_or_pzt(angle_deg),
+    )
+
+
+def plies_study(name: str, speed: float) -> Study:
+    """Figure 5.10 or 5.11."""
+    return Study(
+        name,
+        f"Two ply angles at {speed:g} rad/s",
+        f"untwisted; {GANGED}",
+        (
+            Statement("tip", "60° plies have the smaller tip displacement", Changes(-1)),
+            Statement("voltage", "60° plies take the smaller voltage", Changes(-1), WHY_PLIES),
+        ),
+        two_plies(speed),
+    )
+
+
+STUDIES = (
+    mfc_study("figure-5.7", 30.0),
+    mfc_study("figure-5.8", 60.0),
+    Study(
+        "figure-5.9",
+        "Coverage by MFC from the root",
+        f"θ = 30°, untwisted, 200 rad/s; one actuator and one sensor of the full width; {LQG}",
+        (
+            Statement("tip", "Tip displacement falls from 10 to 25 to 50 % coverage", Changes(-1)),
+            Statement("voltage", "Voltage falls from 10 to 25 to 50 % coverage", Changes(-1)),
+            Statement("whole-tip", "With 100 % coverage the tip displacement increases (against 50 %)", Changes(+1)),
+            Statement("whole-settling", "With 100 % coverage the settling time increases (against 50 %)", Changes(+1)),
+        ),
+        coverage,
+    ),
+    plies_study("figure-5.10", 100.0),
+    plies_study("figure-5.11", 200.0),
+    Study(
+        "figure-5.12",
+        "Taper, one voltage",
+        f"θ = 30°, untwisted, 200 rad/s; {GANGED}",
+        (
+            Statement("tip", "Taper lowers the tip displacement", Changes(-1), WHY_TAPER),
+            Statement("voltage", "Taper lowers the voltage", Changes(-1), WHY_TAPER),
+            Statement("settling", "Taper lengthens the settling time", Changes(+1)),
+        ),
+        ganged_taper,
+    ),
+    Study(
+        "figure-5.13",
+        "Pretwist, one voltage",
+        f"θ = 30°, 200 rad/s; {GANGED}",
+        (
+            Statement("settling", "The untwisted blade settles sooner than 30° and 60° pretwist", Holds()),
+            Statement("voltage", "The untwisted blade takes the higher peak voltage", Holds()),
+        ),
+        ganged_pretwist,
+    ),
+    Study(
+        "figure-5.14",
+        "Ply angle, individual voltages",
+        f"untwisted, 200 rad/s; {EACH}",
+        (
+            Statement("tip", "Tip displacement falls as the ply angle grows", Changes(-1)),
+            Statement("voltage", "The voltages fall as the ply angle grows", Changes(-1), WHY_PLIES),
+            Statement("settling", "90° plies settle sooner than 30°", Changes(-1)),
+        ),
+        individual_ply_angle,
+    ),
+    Study(
+        "figure-5.15",
+        "Taper, individual voltages",
+        f"θ = 30°, 30° pretwist, 200 rad/s; {EACH}",
+        (
+            Statement("tip", "Taper lowers the tip displacement", Changes(-1), WHY_TAPER),
+            Statement("voltage", "Taper lowers the peak voltage on actuators 1, 3 and 4", Changes(-1), WHY_TAPER),
+            Statement("second", "Taper raises the voltage on actuator 2", Changes(+1)),
+            Statement("limit", "Voltages stay well below 1500 V", Below(1500.0, "V"),
+                      "The thesis prints neither its load nor its input weight: 30 and 500 N/m, ρ from 0.05 to 5."),
+        ),
+        individual_taper,
+    ),
+    Study(
+        "figure-5.16",
+        "Pretwist, individual voltages, rectangular pulse",
+        f"θ = 30°, 200 rad/s; pulse of {PULSE:g} s (the thesis names none); {EACH}",
+        (
+            Statement("settling", "30° pretwist settles sooner than 60° and 90°", Holds()),
+            Statement("first-three", "30° pretwist takes slightly higher peak voltages on the first three actuators", Holds()),
+            Statement("fourth", "On the fourth actuator 60° pretwist takes the higher one", Holds()),
+        ),
+        individual_pretwist,
+    ),
+    Study(
+        "figure-5.17",
+        "Controlled response with and without gyroscopic coupling",
+        f"θ = 0°, untwisted, 200 rad/s; steps of 30 N/m in lag and in flap; four MFC actuators with a voltage each; sampled LQG",
+        (
+            Statement("visible", "The difference can be readily seen", Large()),
+            Statement("phase-lag", "Without gyroscopic coupling the response lags (third turning point later; lag)", Holds(),
+                      "Coupling softens the lag mode (Figure 3.5), so the response without it is ahead, not behind."),
+            Statement("phase-lag-flap", "The same in flap", Holds()),
+        ),
+        gyroscopic,
+    ),
+)  # fmt: skip
