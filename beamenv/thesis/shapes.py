@@ -26,12 +26,12 @@ class Shape:
     frequency: float
     """rad/s."""
     values: Array
-    """Displacement at ``STATIONS``, one at the tip."""
+    """Displacement at ``STATIONS``, at most one, positive at the tip."""
 
     @property
     def bow(self) -> float:
         """Mean distance from the straight line between root and tip: the straighter the beam, the smaller."""
-        return float(np.trapezoid(np.abs(self.values - STATIONS), STATIONS))
+        return float(np.trapezoid(np.abs(self.values - STATIONS * self.values[-1]), STATIONS))
 
 
 def family_shapes(
@@ -57,8 +57,12 @@ def family_shapes(
 
 
 def normalised(displacement: Array | ComplexArray) -> Array:
-    """A shape divided by its tip value: real, one at the tip."""
-    return np.asarray((displacement / displacement[-1]).real)
+    """A shape in phase with its tip, divided by its largest displacement: real, positive at the tip.
+
+    (Not by the tip's own: under pretwist the tip of a mode may stand still.)
+    """
+    in_phase = (displacement * np.conj(displacement[-1])).real
+    return np.asarray(in_phase / np.abs(in_phase).max())
 
 
 def assurance(mass: Array, first: ComplexArray | Array, second: ComplexArray | Array) -> Array:

@@ -36,7 +36,7 @@ def shape_panels(found: dict[str, list[Shape]]) -> list[Panel]:
         Panel(
             f"{ORDINALS[mode]} mode",
             "z/L",
-            "displacement / tip",
+            "displacement / largest",
             [Curve(STATIONS, found[key][mode].values, label, line) for key, (label, line) in styles.items()],
         )
         for mode in range(3)
@@ -129,7 +129,7 @@ def resonances(amplitude: np.ndarray) -> np.ndarray:
     return inner[(inner > amplitude[:-2]) & (inner > amplitude[2:])]
 
 
-STRAIGHT = "straightness: mean distance of the shape, one at the tip, from the line between root and tip"
+STRAIGHT = "straightness: mean distance of the shape, at most one, from the line between root and tip"
 BOX = "θ = 0°, untwisted, 200 rad/s"
 
 STUDIES = (
@@ -193,7 +193,7 @@ STUDIES = (
         (
             Statement("tip", "Gyroscopic forces tend to increase the tip displacement", Marginal(+1)),
             Statement("considerable", "The effect on the forced response is considerable: responses apart, over the peak", Large()),
-            Statement("newmark", "Newmark's method with the thesis' constants (a₃, a₄ corrected) gives the exact response", Small(0.01, 0.05)),
+            Statement("newmark", "Newmark's method with the thesis' constants (a₃, a₄ corrected) gives the exact response", Small(0.01, 0.05), aside=True),
         ),
         forced_vibration,
     ),

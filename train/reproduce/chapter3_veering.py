@@ -128,7 +128,7 @@ def shapes_through(beam: RotatingBeam, veering: Veering) -> list[Panel]:
             modes = beam.modes(veering.speed + step, veering.lower + 2, LAG_EXTENSION)
             shape = normalised(rows @ modes.mode_shapes[:, veering.lower + offset])
             curves.append(Curve(STATIONS, shape, f"{veering.speed + step:.0f} rad/s"))
-        panels.append(Panel(name, "z/L", "displacement / tip", curves))
+        panels.append(Panel(name, "z/L", "displacement / largest", curves))
     return panels
 
 
@@ -166,7 +166,7 @@ STUDIES = (
             Statement("veerings", "Second lag and first extension, third lag and second extension veer at 430 and 925 rad/s: least gap",
                       Matches(PRINTED, 0.02, 0.10, "rad/s"),
                       "The speeds the thesis reads off are near those at which the uncoupled loci cross; the coupled loci are closest later."),
-            Statement("crossings", "The same, taken as where the loci cross without coupling", Matches(PRINTED, 0.02, 0.10, "rad/s")),
+            Statement("crossings", "The same, taken as where the loci cross without coupling", Matches(PRINTED, 0.02, 0.10, "rad/s"), aside=True),
         ),
         loci,
     ),

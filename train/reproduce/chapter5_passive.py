@@ -142,7 +142,7 @@ def ply_angle_study(name: str, title: str, rotating: bool, extra: tuple[Statemen
         PATCHES,
         (
             Statement("softened", SOFTENED, Holds(), WHY_STIFFENED),
-            Statement("printed-density", f"{SOFTENED}: with the printed density of 8528 kg/m³ (data sheet: 5440)", Holds(), WHY_STIFFENED),
+            Statement("printed-density", f"{SOFTENED}: with the printed density of 8528 kg/m³ (data sheet: 5440)", Holds(), aside=True),
             Statement("stiffened", "MFC raises them beyond 75°", Holds(), WHY_STIFFENED),
             Statement("significant", "The change is significant", Large(), "Sheets of 0.3 mm in walls of 10 mm can hardly do more."),
             *extra,
@@ -165,7 +165,7 @@ STUDIES = (
         "untwisted, at mid-span, without patches; ã2 is what the higher-order theory adds to the coupling of θx' with γx",
         (
             Statement("falls", "ã2 decreases beyond 75° (thesis' shear flow)", Changes(-1)),
-            Statement("closed-cell", "The same with constant shear flow around the cell", Changes(-1)),
+            Statement("closed-cell", "The same with constant shear flow around the cell", Changes(-1), aside=True),
         ),
         shear_bending,
     ),
@@ -175,7 +175,7 @@ STUDIES = (
         f"θ = 0°; {PATCHES}",
         (
             Statement("softened", "Piezoelectric material softens the rotating beam", Holds(), WHY_STIFFENED),
-            Statement("softened-printed", "The same for MFC with the printed density", Holds(), WHY_STIFFENED),
+            Statement("softened-printed", "The same for MFC with the printed density", Holds(), aside=True),
             Statement("first", "The difference in the first frequency grows with speed (up to 100 rad/s)", Changes(+1)),
             Statement("others", "The difference in the second to fourth frequency shrinks with speed", Changes(-1)),
         ),

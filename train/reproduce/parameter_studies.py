@@ -30,7 +30,7 @@ def shape_panels(beams: Beams, speed: float, family: str) -> tuple[list[Panel], 
         Panel(
             f"{ORDINALS[mode]} {family} mode",
             "z/L",
-            "displacement / tip",
+            "displacement / largest",
             [Curve(STATIONS, found[mode].values, label) for label, found in shapes.items()],
         )
         for mode in range(3)

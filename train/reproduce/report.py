@@ -8,19 +8,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from train.reproduce.catalogue import CHAPTERS
+from train.reproduce.catalogue import CHAPTERS, STUDIES
 from train.reproduce.ledger import ROWS, counts
 from train.reproduce.runner import Record
 from train.reproduce.study import Study
-from train.reproduce.verdicts import Verdict, weakest
+from train.reproduce.verdicts import Verdict
 
 TITLE = "The thesis, regenerated and judged"
 INTRODUCTION = (
     "D. N. Vadiraja, Vibration Analysis, Control and Optimal Placement of MFC Actuators and Sensors on Rotating Thin-Walled "
     "Composite Cantilever Beams, IIT Guwahati, 2008. Made by `beamenv reproduce`. Every verdict is computed from the numbers beside it by "
-    "the rule stated with it; a table or figure, and a concluding statement, takes the weakest verdict of what decides it. Step loads are "
-    "30 N/m, so that ±1500 V matters; the thesis prints no load for its figures. Where the thesis leaves a configuration open or misprints "
-    "it, the one used is named."
+    "the rule stated with it; a table or figure, and a concluding statement, takes the weakest verdict of the statements that decide it. "
+    "Questions of our own stand beside them and decide nothing. Step loads are 30 N/m, so that ±1500 V matters; the thesis prints no load for "
+    "its figures. Where the thesis leaves a configuration open or misprints it, the one used is named."
 )
 SYMBOL = {Verdict.REPRODUCED: "●", Verdict.TREND: "◐", Verdict.NOT_REPRODUCED: "○", Verdict.UNTESTABLE: "–"}
 STYLE = """
@@ -103,8 +103,9 @@ def shown_verdict(verdict: Verdict) -> str:
 def overview(records: Sequence[Record], markup: Markup) -> list[str]:
     """How many tables and figures, statements and conclusions have each verdict."""
     judgements = {record.name: record.judgements for record in records if not record.error}
-    studies = counts([weakest([judgement.verdict for judgement in found.values()]) for found in judgements.values()])
-    statements = counts([judgement.verdict for found in judgements.values() for judgement in found.values()])
+    judged = [(study, judgements[study.name]) for study in STUDIES if study.name in judgements]
+    studies = counts([study.verdict(found) for study, found in judged])
+    statements = counts([verdict for study, found in judged for verdict in study.verdicts(found)])
     rows = counts([row.verdict(judgements) for row in ROWS])
     header = ["", *(shown_verdict(verdict) for verdict in Verdict)]
     body = [
@@ -138,10 +139,12 @@ def section(study: Study, record: Record, markup: Markup) -> list[str]:
     rows = []
     for statement in study.statements:
         found = record.judgements[statement.key]
-        cells = [statement.text, found.thesis, found.ours, found.deviation, shown_verdict(found.verdict), statement.rule.words]
+        text = f"Our own question: {statement.text}" if statement.aside else statement.text
+        cells = [text, found.thesis, found.ours, found.deviation, shown_verdict(found.verdict), statement.rule.words]
         rows.append(cells)
-    verdict = weakest([found.verdict for found in record.judgements.values()])
-    parts.append(markup.paragraph(f"Verdict: {shown_verdict(verdict)}."))
+    verdicts = study.verdicts(record.judgements)
+    share = f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements reproduced"
+    parts.append(markup.paragraph(f"Verdict: {shown_verdict(study.verdict(record.judgements))} ({share})."))
     parts.append(markup.table(["statement", "thesis", "ours", "deviation", "verdict", "rule"], rows))
     remarks = dict.fromkeys(statement.remark for statement in study.statements if statement.remark)
     parts += [markup.paragraph(text) for text in (*remarks, *record.notes)]

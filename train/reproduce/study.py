@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.thesis import Model
-from train.reproduce.verdicts import Judgement, Rule
+from train.reproduce.verdicts import Judgement, Rule, Verdict, weakest
 
 Array = NDArray[np.float64]
 
@@ -26,6 +26,8 @@ class Statement:
     rule: Rule
     remark: str = ""
     """What to know of it: why ours differs, or what the numbers mean."""
+    aside: bool = False
+    """Our own question beside the thesis' statement: shown, but no part of any verdict."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,6 +90,14 @@ class Study:
     """What was computed, where the thesis leaves it open or misprints it."""
     statements: tuple[Statement, ...]
     compute: Callable[[Model], Outcome]
+
+    def verdict(self, judgements: Mapping[str, Judgement]) -> Verdict:
+        """The weakest verdict of the thesis' statements."""
+        return weakest(self.verdicts(judgements))
+
+    def verdicts(self, judgements: Mapping[str, Judgement]) -> list[Verdict]:
+        """Those of the thesis' statements, asides left out."""
+        return [judgements[statement.key].verdict for statement in self.statements if not statement.aside]
 
     def judge(self, outcome: Outcome) -> dict[str, Judgement]:
         """The judgement of every statement; ``ValueError`` unless the outcome has evidence for exactly these."""
