@@ -56,7 +56,7 @@ def _sweep(beam: RotatingBeam, speeds: Array, count: int, motions: tuple[str, ..
 
 def mass_reduced(matrices: BeamMatrices) -> tuple[Array, Array, Array]:
     """K_e, K_Ω, G₁ (N, N) in coordinates in which M is the identity."""
-    root = np.linalg.cholesky(matrices.mass)
+    root = np.asarray(np.linalg.cholesky(matrices.mass), dtype=np.float64)
     return (
         reduced(root, matrices.elastic_stiffness),
         reduced(root, matrices.spin_stiffness),

@@ -4,29 +4,37 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from beamenv.configuration import CHANDRA_CHOPRA, BeamConfig
+from beamenv.configuration import CHANDRA_CHOPRA, ON_EVERY_WALL, BeamConfig
 from beamenv.reduction import REFERENCE_LOAD
 from beamenv.structure import RotatingBeam
 
 PLIES = 6
 
 
-def uniform(angle_deg: float) -> tuple[float, ...]:
-    """Six plies at one angle on every wall: the circumferentially uniform stiffness (CUS) of the thesis."""
+Plies = tuple[tuple[str, tuple[float, ...]], ...]
+
+
+def plies(angle_deg: float) -> tuple[float, ...]:
+    """Six plies at one angle."""
     return (float(angle_deg),) * PLIES
 
 
-def antisymmetric(angle_deg: float) -> tuple[tuple[str, tuple[float, ...]], ...]:
+def every_wall(angle_deg: float) -> Plies:
+    """The circumferentially uniform stiffness (CUS) of the thesis."""
+    return ((ON_EVERY_WALL, plies(angle_deg)),)
+
+
+def antisymmetric(angle_deg: float) -> Plies:
     """The circumferentially antisymmetric stiffness (CAS): top and bottom mirrored, sides alternating."""
     alternating = (float(angle_deg), -float(angle_deg)) * (PLIES // 2)
-    return (("top", uniform(angle_deg)), ("bottom", uniform(-angle_deg)), ("left", alternating), ("right", alternating))
+    return (("top", plies(angle_deg)), ("bottom", plies(-angle_deg)), ("left", alternating), ("right", alternating))
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
     """Everything the studies are computed from; change a field and the verdicts may change."""
 
-    box: BeamConfig = field(default_factory=lambda: BeamConfig(ply_angles_deg=uniform(0.0), pretwist_deg=0.0))
+    box: BeamConfig = field(default_factory=lambda: BeamConfig(ply_angles_deg=every_wall(0.0), pretwist_deg=0.0))
     """The thesis' box, untwisted, θ = 0: c = 0.127 m and b = 0.0254 m are halves of its mid-line, R₀ = 0.1 L."""
     validation_box: BeamConfig = CHANDRA_CHOPRA.beam
     """The box of Chandra and Chopra, top and bottom mirrored, fibres at 30° from the span."""
@@ -39,7 +47,7 @@ class Model:
 
     def blade(self, angle_deg: float = 0.0, **changes: float | str | int) -> BeamConfig:
         """The thesis' box with all plies at ``angle_deg`` and other fields of ``BeamConfig`` changed."""
-        return replace(self.box, ply_angles_deg=uniform(angle_deg), **changes)  # type: ignore[arg-type]
+        return replace(self.box, ply_angles_deg=every_wall(angle_deg), **changes)  # type: ignore[arg-type]
 
     def beam(self, angle_deg: float = 0.0, **changes: float | str | int) -> RotatingBeam:
         """That blade, without patches."""

@@ -73,7 +73,7 @@ class ForcedBlade:
         transition = expm(dynamics * interval)
         final = -np.linalg.solve(dynamics, load * force)
         state = -final
-        times = interval * np.arange(round(duration / interval) + 1)
+        times = np.linspace(0.0, duration, round(duration / interval) + 1)
         displaced = np.empty(len(times))
         for step in range(len(times)):
             displaced[step] = tip @ state
@@ -97,7 +97,9 @@ class ForcedBlade:
         force = load * self._force
         steps = round(duration / interval)
         history = newmark(matrices.mass, damping, stiffness, lambda _: force, interval, steps, THESIS_SCHEME)
-        return interval * np.arange(steps + 1), history @ self.beam.displacements(np.array([self.beam.length]))[DIRECTIONS[self.direction][0]][0]
+        return np.linspace(0.0, duration, steps + 1), history @ self.beam.displacements(np.array([self.beam.length]))[
+            DIRECTIONS[self.direction][0]
+        ][0]
 
     def frequency_response(self, frequencies: Array) -> Array:
         """Amplitude (K,) of the tip, m per N/m, at ``frequencies`` (K,) in rad/s."""

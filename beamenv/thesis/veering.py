@@ -39,7 +39,9 @@ def locate_veering(beam: RotatingBeam, lower: int, speeds: Array, motions: tuple
     gaps = loci[:, lower + 1] - loci[:, lower]
     at = int(np.argmin(gaps))
     if at in (0, len(speeds) - 1):
-        raise ValueError(f"speeds = {speeds[0]:g} … {speeds[-1]:g} rad/s must contain the least gap of loci {lower} and {lower + 1}.")
+        raise ValueError(
+            f"speeds = {speeds[0]:g} … {speeds[-1]:g} rad/s must contain the least gap of loci {lower} and {lower + 1}."
+        )
     near = slice(at - 1, at + 2)
     curvature, slope, level = np.polyfit(speeds[near] - speeds[at], gaps[near], 2)
     offset = -slope / (2.0 * curvature)

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from train.reproduce import (
     chapter2,
     chapter3_gyroscopic,
+    chapter3_presetting,
+    chapter3_pretwist,
     chapter3_tables,
     chapter3_taper,
-    chapter3_twist,
     chapter3_veering,
-    chapter5_control,
+    chapter5_individual,
     chapter5_modes,
+    chapter5_one_voltage,
     chapter5_passive,
 )
 from train.reproduce.study import Study
@@ -25,9 +27,13 @@ CHAPTERS: tuple[tuple[str, tuple[Study, ...]], ...] = (
         + chapter3_gyroscopic.STUDIES
         + chapter3_veering.STUDIES
         + chapter3_taper.STUDIES
-        + chapter3_twist.STUDIES,
+        + chapter3_pretwist.STUDIES
+        + chapter3_presetting.STUDIES,
     ),
-    ("Chapter 5: control", chapter5_modes.STUDIES + chapter5_passive.STUDIES + chapter5_control.STUDIES),
+    (
+        "Chapter 5: control",
+        chapter5_modes.STUDIES + chapter5_passive.STUDIES + chapter5_one_voltage.STUDIES + chapter5_individual.STUDIES,
+    ),
 )
 """Chapter 6 comes as one more entry here, and its concluding statements as rows of ``ledger.ROWS``."""
 

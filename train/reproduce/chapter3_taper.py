@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -36,7 +37,7 @@ def tapered(model: Model, angle_deg: float = 30.0, pretwist_deg: float = 0.0) ->
     return {f"η = {taper:g}": model.beam(angle_deg, pretwist_deg=pretwist_deg, taper=taper) for taper in TAPERS}
 
 
-def shapes(family: str):  # noqa: ANN201
+def shapes(family: str) -> Callable[[Model], Outcome]:
     """Figures 3.11 and 3.12."""
 
     def compute(model: Model) -> Outcome:
@@ -98,8 +99,11 @@ def forced(model: Model) -> Outcome:
     """Figure 3.16."""
     beams = tapered(model, 30.0, 30.0)
     uniform, pressure = step_responses(model, beams), step_responses(model, beams, pressure=True)
-    panels = [replace(response.panel, title=f"{response.panel.title}, {name}") for name, responses in
-              (("uniform", uniform), ("falling with the chord", pressure)) for response in responses.values()]  # fmt: skip
+    panels = [
+        replace(response.panel, title=f"{response.panel.title}, {name}")
+        for name, responses in (("uniform", uniform), ("falling with the chord", pressure))
+        for response in responses.values()
+    ]
     cases = [*uniform.values(), *pressure.values()]
     evidence = {
         "peak": [bool(np.all(np.diff(case.peaks) < 0.0)) for case in cases],
@@ -118,7 +122,8 @@ SHAPE_STATEMENTS = (
     Statement("higher", "In the second and third mode taper straightens the beam", Changes(-1)),
 )
 WHY_TAPER = (
-    "A tapered blade is thinner, and lighter outboard, so that less centrifugal tension holds it: under one and the same load per metre its tip "
+    "A tapered blade is thinner, and lighter outboard, so that less centrifugal tension holds it: under one and the same load per "
+    "metre its tip "
     "goes further. The thesis does not say how its load is spread, and takes the tension of a uniform beam."
 )
 WHY_TURN = (
@@ -136,10 +141,14 @@ STUDIES = (
         "θ = 30°, untwisted",
         (
             Statement("lower", "Taper raises the first two frequencies", Changes(+1)),
-            Statement("higher", "Taper lowers the third and fourth frequencies", Changes(-1), "Twist is among our first four modes."),
+            Statement(
+                "higher", "Taper lowers the third and fourth frequencies", Changes(-1), "Twist is among our first four modes."
+            ),
             Statement("bending", "The same in bending alone, up to 200 rad/s", Changes(-1), aside=True),
             Statement("speed", "Every frequency rises with speed", Changes(+1)),
-            Statement("exchange", "In the first two modes the dominant motion changes from flap to lag and vice versa (η = 1)", Holds()),
+            Statement(
+                "exchange", "In the first two modes the dominant motion changes from flap to lag and vice versa (η = 1)", Holds()
+            ),
         ),
         over_speed,
     ),
@@ -166,17 +175,29 @@ STUDIES = (
     Study(
         "figure-3.16",
         "Forced response over taper",
-        "θ = 30°, 30° pretwist, 200 rad/s; steps of 30 N/m at the root, 1 % modal damping; the thesis names neither direction nor spread",
+        "θ = 30°, 30° pretwist, 200 rad/s; steps of 30 N/m at the root, 1 % modal damping; the thesis names neither direction nor "
+        "spread",
         (
-            Statement("peak", "Taper lowers the tip displacement (in lag and in flap, with two spreads of the load)", Holds(share=0.5), WHY_TAPER),
-            Statement("reductions", "The peak falls by 25.87, 41.49 and 52.19 % for η = 2, 3, 4: peaks over that of η = 1 (uniform, flap)",
-                      Matches(PRINTED_PEAKS, 0.05, 0.25), WHY_TAPER),
+            Statement(
+                "peak",
+                "Taper lowers the tip displacement (in lag and in flap, with two spreads of the load)",
+                Holds(share=0.5),
+                WHY_TAPER,
+            ),
+            Statement(
+                "reductions",
+                "The peak falls by 25.87, 41.49 and 52.19 % for η = 2, 3, 4: peaks over that of η = 1 (uniform, flap)",
+                Matches(PRINTED_PEAKS, 0.05, 0.25),
+                WHY_TAPER,
+            ),
             Statement("lag", "Tip displacement under a uniform load in lag", Changes(-1), aside=True),
             Statement("flap", "Tip displacement under a uniform load in flap", Changes(-1), aside=True),
             Statement("pressure-lag", "Tip displacement under a load in lag that falls with the chord", Changes(-1), aside=True),
             Statement("pressure-flap", "Tip displacement under a load in flap that falls with the chord", Changes(-1), aside=True),
-            Statement("newmark", "Newmark's method with the thesis' constants gives the exact response", Small(0.01, 0.05), aside=True),
+            Statement(
+                "newmark", "Newmark's method with the thesis' constants gives the exact response", Small(0.01, 0.05), aside=True
+            ),
         ),
         forced,
     ),
-)  # fmt: skip
+)

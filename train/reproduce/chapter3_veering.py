@@ -46,9 +46,7 @@ def loci(model: Model) -> Outcome:
     beam = model.beam(0.0)
     paths = {line: frequency_sweep(beam, SPEEDS, 5, LAG_EXTENSION, line == "solid") for line in WITH_AND_WITHOUT}
     found, crossings, critical = veerings(beam), uncoupled_crossings(beam), beam.critical_speed
-    curves = [
-        Curve(SPEEDS, paths[line][:, k], f"{ORDINALS[k]} locus", line) for k in range(5) for line in WITH_AND_WITHOUT
-    ]
+    curves = [Curve(SPEEDS, paths[line][:, k], f"{ORDINALS[k]} locus", line) for k in range(5) for line in WITH_AND_WITHOUT]
     panel = Panel(
         "lag and extension", "speed (rad/s)", "natural frequency (rad/s)", curves, marked=[*(v.speed for v in found), critical]
     )
@@ -78,11 +76,14 @@ def lag_buckles(beam: RotatingBeam) -> list[bool]:
 
 def uncoupled_trends(beam: RotatingBeam) -> list[bool]:
     """Without coupling lag rises and extension falls with speed; with it the first extension rises."""
-    below = SPEEDS[SPEEDS < 0.3 * beam.critical_speed]
+    below = SPEEDS[0.3 * beam.critical_speed > SPEEDS]
     lag, extension = (frequency_sweep(beam, SPEEDS, 1, (motion,), gyroscopic=False)[:, 0] for motion in ("lag", "extension"))
     coupled = frequency_sweep(beam, below, 3, LAG_EXTENSION)[:, 2]
-    return [bool(np.all(np.diff(lag) > 0.0)), bool(np.all(np.diff(extension[SPEEDS < beam.critical_speed]) < 0.0)),
-            bool(np.all(np.diff(coupled) > 0.0))]  # fmt: skip
+    return [
+        bool(np.all(np.diff(lag) > 0.0)),
+        bool(np.all(np.diff(extension[beam.critical_speed > SPEEDS]) < 0.0)),
+        bool(np.all(np.diff(coupled) > 0.0)),
+    ]
 
 
 def mode_exchange(which: int) -> Callable[[Model], Outcome]:
@@ -123,11 +124,12 @@ def shapes_through(beam: RotatingBeam, veering: Veering) -> list[Panel]:
     rows = beam.displacements(STATIONS * beam.length)["u"]
     panels = []
     for offset, name in enumerate(("lower locus, lag", "upper locus, lag")):
-        curves = []
+        curves: list[Curve] = []
         for step in (-100.0, 0.0, 100.0):
             modes = beam.modes(veering.speed + step, veering.lower + 2, LAG_EXTENSION)
             shape = normalised(rows @ modes.mode_shapes[:, veering.lower + offset])
-            curves.append(Curve(STATIONS, shape, f"{veering.speed + step:.0f} rad/s"))
+            sign = -1.0 if curves and curves[0].y @ shape < 0.0 else 1.0
+            curves.append(Curve(STATIONS, sign * shape, f"{veering.speed + step:.0f} rad/s"))
         panels.append(Panel(name, "z/L", "displacement / largest", curves))
     return panels
 
@@ -135,7 +137,8 @@ def shapes_through(beam: RotatingBeam, veering: Veering) -> list[Panel]:
 def exchange_study(name: str, title: str, which: int) -> Study:
     """Figure 3.9 or 3.10."""
     wide = (
-        "The loci stay a wide gap apart (Figure 3.8's CSV): gyroscopic coupling is strong there, so the modes change over hundreds of rad/s. "
+        "The loci stay a wide gap apart (Figure 3.8's CSV): gyroscopic coupling is strong there, so the modes change over "
+        "hundreds of rad/s. "
         "MAC weighted with the mass matrix."
     )
     return Study(
@@ -143,7 +146,12 @@ def exchange_study(name: str, title: str, which: int) -> Study:
         title,
         "θ = 0°, untwisted; at the least gap found by us, and at the thesis' speed",
         (
-            Statement("abrupt", f"Mode shapes change abruptly for a small change of speed: exchanged within ±{CLOSE:g} rad/s", Holds(), wide),
+            Statement(
+                "abrupt",
+                f"Mode shapes change abruptly for a small change of speed: exchanged within ±{CLOSE:g} rad/s",
+                Holds(),
+                wide,
+            ),
             Statement("exchange", "The loci exchange their modes: exchanged within ±330 rad/s", Holds(), wide),
         ),
         mode_exchange(which),
@@ -156,20 +164,39 @@ STUDIES = (
         "First five lag–extension loci to 1500 rad/s",
         "θ = 0°, untwisted; vertical lines: both veerings and the critical speed",
         (
-            Statement("critical", "The first frequency becomes zero at about 1480 rad/s", Matches((1480.0,), 0.02, 0.10, "rad/s"),
-                      "The extension's stiffness is used up at Ω* = (π/2L)√(a11/b1) for every hub radius; the thesis reads its value off the plot."),
-            Statement("lag-buckles", "With coupling the lag mode becomes zero, without it the extension mode", Holds(),
-                      "Both vanish at the same Ω*, where the stretch has lost its stiffness: followed from rest, the locus that vanishes is the first lag, "
-                      "but at 1400 rad/s 82 % of its kinetic energy is in extension."),
+            Statement(
+                "critical",
+                "The first frequency becomes zero at about 1480 rad/s",
+                Matches((1480.0,), 0.02, 0.10, "rad/s"),
+                "The extension's stiffness is used up at Ω* = (π/2L)√(a11/b1) for every hub radius; the thesis reads its value "
+                "off the plot.",
+            ),
+            Statement(
+                "lag-buckles",
+                "With coupling the lag mode becomes zero, without it the extension mode",
+                Holds(),
+                "Both vanish at the same Ω*, where the stretch has lost its stiffness: followed from rest, the locus that "
+                "vanishes is the first lag, "
+                "but at 1400 rad/s 82 % of its kinetic energy is in extension.",
+            ),
             Statement("rises-then-falls", "The first lag frequency rises with speed, then falls as coupling dominates", Holds()),
             Statement("uncoupled", "Without coupling lag rises and extension falls with speed; with it extension rises", Holds()),
-            Statement("veerings", "Second lag and first extension, third lag and second extension veer at 430 and 925 rad/s: least gap",
-                      Matches(PRINTED, 0.02, 0.10, "rad/s"),
-                      "The speeds the thesis reads off are near those at which the uncoupled loci cross; the coupled loci are closest later."),
-            Statement("crossings", "The same, taken as where the loci cross without coupling", Matches(PRINTED, 0.02, 0.10, "rad/s"), aside=True),
+            Statement(
+                "veerings",
+                "Second lag and first extension, third lag and second extension veer at 430 and 925 rad/s: least gap",
+                Matches(PRINTED, 0.02, 0.10, "rad/s"),
+                "The speeds the thesis reads off are near those at which the uncoupled loci cross; the coupled loci are closest "
+                "later.",
+            ),
+            Statement(
+                "crossings",
+                "The same, taken as where the loci cross without coupling",
+                Matches(PRINTED, 0.02, 0.10, "rad/s"),
+                aside=True,
+            ),
         ),
         loci,
     ),
     exchange_study("figure-3.9", "Mode shapes through the first veering", 0),
     exchange_study("figure-3.10", "Mode shapes through the second veering", 1),
-)  # fmt: skip
+)

@@ -20,12 +20,11 @@ from train.reproduce.verdicts import Changes, Holds, Large
 
 Array = NDArray[np.float64]
 
-SIX = {"actuators": 6, "sensors": 6}
 SHEETS: dict[str, PatchLayout | None] = {
     "no patches": None,
-    "MFC": patches(**SIX),
-    "PZT": patches(material="PZT", **SIX),
-    "MFC, printed density": SheetLayout(length=PATCH_LENGTH, width=PATCH_WIDTH, sheet=PRINTED_DENSITY, **SIX),
+    "MFC": patches(actuators=6, sensors=6),
+    "PZT": patches(material="PZT", actuators=6, sensors=6),
+    "MFC, printed density": SheetLayout(6, 6, length=PATCH_LENGTH, width=PATCH_WIDTH, sheet=PRINTED_DENSITY),
 }
 TURN_DEG = 75.0
 TAPERS = (1.0, 2.0, 3.0, 4.0)
@@ -53,9 +52,7 @@ def change_panels(x: Array, x_label: str, found: Array) -> list[Panel]:
 
 def frequency_rows(x: Array, found: Array) -> list[list[object]]:
     """The frequencies themselves, for the CSV."""
-    return [
-        [f"{value:g}", name, *(f"{f:.6g}" for f in found[k, i])] for k, name in enumerate(SHEETS) for i, value in enumerate(x)
-    ]
+    return [[f"{value:g}", name, *(f"{f:.6g}" for f in found[k, i])] for k, name in enumerate(SHEETS) for i, value in enumerate(x)]
 
 
 HEADER = ["blade", *(f"{name} frequency (rad/s)" for name in ORDINALS[:4])]
@@ -117,9 +114,11 @@ def shear_bending(model: Model) -> Outcome:
     thesis = np.array(
         [[shear_bending_stiffness(model.beam(a, taper=taper, shear_flow="thesis")) for a in PLY_ANGLES_DEG] for taper in TAPERS]
     )
-    curves = [Curve(PLY_ANGLES_DEG, 1e-3 * row, f"η = {taper:g}", line)
-              for taper, mine, theirs in zip(TAPERS, values, thesis, strict=True)
-              for row, line in ((mine, "solid"), (theirs, "dotted"))]  # fmt: skip
+    curves = [
+        Curve(PLY_ANGLES_DEG, 1e-3 * row, f"η = {taper:g}", line)
+        for taper, mine, theirs in zip(TAPERS, values, thesis, strict=True)
+        for row, line in ((mine, "solid"), (theirs, "dotted"))
+    ]
     panel = Panel("ã2 at mid-span", "ply angle (°)", "ã2 (kN m)", curves)
     beyond = PLY_ANGLES_DEG >= TURN_DEG
     evidence = {"falls": np.abs(thesis[:, beyond]), "closed-cell": np.abs(values[:, beyond])}
@@ -128,7 +127,8 @@ def shear_bending(model: Model) -> Outcome:
 
 PATCHES = "six MFC or PZT actuators and sensors of 80 mm × 57 mm, equally spaced over 0 … 0.7 L; untwisted"
 WHY_STIFFENED = (
-    "A host of hoop plies (E = 5.2 GPa along the span at θ = 0°) is stiffened by sheets of 30 GPa (MFC) and 124 GPa (PZT), one of spanwise plies "
+    "A host of hoop plies (E = 5.2 GPa along the span at θ = 0°) is stiffened by sheets of 30 GPa (MFC) and 124 GPa (PZT), one of "
+    "spanwise plies "
     "(207 GPa at θ = 90°) is softened: the other way round than the thesis has it. It gives no reason that could be checked."
 )
 SOFTENED = "MFC lowers the first four frequencies up to θ = 75°"
@@ -142,9 +142,13 @@ def ply_angle_study(name: str, title: str, rotating: bool, extra: tuple[Statemen
         PATCHES,
         (
             Statement("softened", SOFTENED, Holds(), WHY_STIFFENED),
-            Statement("printed-density", f"{SOFTENED}: with the printed density of 8528 kg/m³ (data sheet: 5440)", Holds(), aside=True),
+            Statement(
+                "printed-density", f"{SOFTENED}: with the printed density of 8528 kg/m³ (data sheet: 5440)", Holds(), aside=True
+            ),
             Statement("stiffened", "MFC raises them beyond 75°", Holds(), WHY_STIFFENED),
-            Statement("significant", "The change is significant", Large(), "Sheets of 0.3 mm in walls of 10 mm can hardly do more."),
+            Statement(
+                "significant", "The change is significant", Large(), "Sheets of 0.3 mm in walls of 10 mm can hardly do more."
+            ),
             *extra,
         ),
         over_ply_angle(rotating),

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 PATCH_LENGTH, PATCH_WIDTH = 0.08, 0.057
 """m: chapter 5's patches."""
-DURATION, SHOWN = 2.0, 0.4
+DURATION, SHOWN = 2.0, 0.25
 """s: long enough to settle, and what is drawn."""
 UNLIMITED = 1e6
 """V: a drive limit that no voltage reaches; voltages are compared as the law asks for them, which saturation would hide."""
@@ -111,7 +111,7 @@ def simulate(
     voltages[-1] = voltages[-2]
     final = 0.0 if pulse else float(tips[-steps // 10 :].mean())
     asked = np.abs(voltages).max(axis=0)
-    return Response(plant.control_interval * np.arange(steps + 1), tips, voltages, final, asked)
+    return Response(np.linspace(0.0, steps * plant.control_interval, steps + 1), tips, voltages, final, asked)
 
 
 def controlled(

@@ -80,7 +80,9 @@ def with_earlier(output: Path, records: list[Record]) -> list[Record]:
 def report(records: list[Record], output: Path) -> None:
     """What came out, in a few lines."""
     by_name = {study.name: study for study in chosen([])}
-    verdicts = counts([verdict for record in records if not record.error for verdict in by_name[record.name].verdicts(record.judgements)])
+    verdicts = counts(
+        [verdict for record in records if not record.error for verdict in by_name[record.name].verdicts(record.judgements)]
+    )
     typer.echo("Statements: " + ", ".join(f"{number} {verdict.value}" for verdict, number in verdicts.items()))
     judgements = {record.name: record.judgements for record in with_earlier(output, records) if not record.error}
     rows = counts([row.verdict(judgements) for row in ROWS])

@@ -20,6 +20,8 @@ Beams = Mapping[str, RotatingBeam]
 
 ORDINALS = ("first", "second", "third", "fourth", "fifth")
 SPEEDS = np.linspace(0.0, 400.0, 41)
+FEW_PERIODS = 0.12
+"""s: what can be told apart of four responses in one panel."""
 PLY_ANGLES_DEG = np.linspace(0.0, 90.0, 19)
 
 
@@ -53,7 +55,7 @@ def locus_panels(labels: list[str], x: Array, x_label: str, loci: Array) -> list
 
 def bending_alone(model: Model, beams: Beams) -> Array:
     """Third and fourth frequency (labels, speeds, 2) of lag and flap without twist and stretch, up to the model's speed."""
-    loci = frequency_sweep(list(beams.values()), SPEEDS[SPEEDS <= model.speed], 4, ("lag", "flap"), gyroscopic=False)
+    loci = frequency_sweep(list(beams.values()), SPEEDS[model.speed >= SPEEDS], 4, ("lag", "flap"), gyroscopic=False)
     return loci[..., 2:]
 
 
@@ -82,6 +84,7 @@ def step_responses(model: Model, beams: Beams, pressure: bool = False) -> dict[s
                 label: ForcedBlade(beam, model.speed, direction, model.damping_ratio, pressure=pressure)
                 for label, beam in beams.items()
             },
+            FEW_PERIODS,
         )
         for direction in ("lag", "flap")
     }

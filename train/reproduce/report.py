@@ -17,15 +17,19 @@ from train.reproduce.verdicts import Verdict
 TITLE = "The thesis, regenerated and judged"
 INTRODUCTION = (
     "D. N. Vadiraja, Vibration Analysis, Control and Optimal Placement of MFC Actuators and Sensors on Rotating Thin-Walled "
-    "Composite Cantilever Beams, IIT Guwahati, 2008. Made by `beamenv reproduce`. Every verdict is computed from the numbers beside it by "
-    "the rule stated with it; a table or figure, and a concluding statement, takes the weakest verdict of the statements that decide it. "
-    "Questions of our own stand beside them and decide nothing. Step loads are 30 N/m, so that ±1500 V matters; the thesis prints no load for "
+    "Composite Cantilever Beams, IIT Guwahati, 2008. Made by `beamenv reproduce`. Every verdict is computed from the numbers "
+    "beside it by "
+    "the rule stated with it; a table or figure, and a concluding statement, takes the weakest verdict of the statements that "
+    "decide it. "
+    "Questions of our own stand beside them and decide nothing. Step loads are 30 N/m, so that ±1500 V matters; the thesis prints "
+    "no load for "
     "its figures. Where the thesis leaves a configuration open or misprints it, the one used is named."
 )
 SYMBOL = {Verdict.REPRODUCED: "●", Verdict.TREND: "◐", Verdict.NOT_REPRODUCED: "○", Verdict.UNTESTABLE: "–"}
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a}
-table{border-collapse:collapse;margin:.6rem 0;font-size:13px}td,th{border:1px solid #ccc;padding:.25rem .5rem;text-align:left;vertical-align:top}
+table{border-collapse:collapse;margin:.6rem 0;font-size:13px}
+td,th{border:1px solid #ccc;padding:.25rem .5rem;text-align:left;vertical-align:top}
 th{background:#f3f3f3}img{max-width:100%;height:auto}h3{margin-top:2.4rem}.wide{overflow-x:auto}td.v{white-space:nowrap}
 """
 
@@ -127,13 +131,19 @@ def ledger(records: Sequence[Record], markup: Markup) -> list[str]:
         deciding = ", ".join(dict.fromkeys(study for study, _ in row.decided_by)) or "nothing"
         why = row.remark if verdict is not Verdict.REPRODUCED else ""
         rows.append([row.section, row.text, shown_verdict(verdict) if verdict else "not run", deciding, why])
-    return [markup.heading(2, "Concluding statements"), markup.table(["section", "statement", "verdict", "decided by", "why"], rows)]
+    return [
+        markup.heading(2, "Concluding statements"),
+        markup.table(["section", "statement", "verdict", "decided by", "why"], rows),
+    ]
 
 
 def section(study: Study, record: Record, markup: Markup) -> list[str]:
     """One table or figure."""
     kind, number = study.name.split("-")
-    parts = [markup.heading(3, f"{kind.capitalize()} {number}: {study.title}"), markup.paragraph(f"Configuration: {study.configuration}.")]
+    parts = [
+        markup.heading(3, f"{kind.capitalize()} {number}: {study.title}"),
+        markup.paragraph(f"Configuration: {study.configuration}."),
+    ]
     if record.error:
         return [*parts, markup.paragraph(f"This study failed: {record.error}")]
     rows = []

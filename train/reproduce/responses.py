@@ -15,9 +15,9 @@ from train.reproduce.study import Curve, Panel
 Array = NDArray[np.float64]
 
 DURATION, SHOWN = 4.0, 0.4
-"""s: long enough to settle, and what is drawn and integrated by Newmark's method."""
-EVERY = 80
-"""Newmark's points that are drawn: one in so many."""
+"""s: long enough to settle, and what is integrated by Newmark's method too."""
+EXACT_EVERY, NEWMARK_EVERY = 4, 60
+"""Points that are drawn: one in so many."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,8 +33,11 @@ class ForcedResponses:
     """(blades,): largest difference between Newmark and exact over the peak."""
 
 
-def forced_responses(model: Model, blades: Mapping[str, ForcedBlade]) -> ForcedResponses:
-    """The responses to the model's step load, by label; all blades are loaded and observed in their own direction."""
+def forced_responses(model: Model, blades: Mapping[str, ForcedBlade], drawn: float = SHOWN) -> ForcedResponses:
+    """The responses to the model's step load, by label, of which the first ``drawn`` s are drawn.
+
+    All blades are loaded and observed in their own direction.
+    """
     curves, numbers = [], []
     for label, blade in blades.items():
         times, tip = blade.step_response(model.load, DURATION)
@@ -42,8 +45,9 @@ def forced_responses(model: Model, blades: Mapping[str, ForcedBlade]) -> ForcedR
         peak = float(np.abs(tip).max())
         error = float(np.abs(integrated - tip[: len(shown)]).max()) / peak
         numbers.append((peak, settling_time(times, tip, blade.static_displacement(model.load)), error))
-        curves.append(Curve(shown[::4], 1e3 * tip[: len(shown) : 4], label))
-        curves.append(Curve(shown[::EVERY], 1e3 * integrated[::EVERY], label, "points"))
+        last = np.searchsorted(shown, drawn, side="right")
+        curves.append(Curve(shown[:last:EXACT_EVERY], 1e3 * tip[:last:EXACT_EVERY], label))
+        curves.append(Curve(shown[:last:NEWMARK_EVERY], 1e3 * integrated[:last:NEWMARK_EVERY], label, "points"))
     peaks, settling, errors = np.array(numbers).T
     direction = next(iter(blades.values())).direction
     return ForcedResponses(Panel(f"step in {direction}", "time (s)", "tip displacement (mm)", curves), peaks, settling, errors)

@@ -71,7 +71,9 @@ def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Recor
         judgements = study.judge(outcome)
         picture = draw(outcome, f"{study.name.capitalize().replace('-', ' ')}: {study.title}")
     except Exception as error:  # noqa: BLE001 - whatever fails in one study must not stop the others
-        return Record(study.name, time.perf_counter() - start, {}, error=f"{type(error).__name__}: {error}", fingerprint=fingerprint)
+        return Record(
+            study.name, time.perf_counter() - start, {}, error=f"{type(error).__name__}: {error}", fingerprint=fingerprint
+        )
     write(folder / f"{study.name}.csv", csv_text(outcome).encode())
     write(folder / f"{study.name}.png", picture)
     tabulated = study.name.startswith("table")
@@ -98,9 +100,7 @@ def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | No
         return None
     judgements = {key: Judgement(**(value | {"verdict": Verdict(value["verdict"])})) for key, value in kept["judgements"].items()}
     record = Record(**(kept | {"judgements": judgements}))
-    return replace(
-        record, notes=tuple(record.notes), header=tuple(record.header), rows=tuple(tuple(row) for row in record.rows)
-    )
+    return replace(record, notes=tuple(record.notes), header=tuple(record.header), rows=tuple(tuple(row) for row in record.rows))
 
 
 def source_fingerprint(model: Model) -> str:

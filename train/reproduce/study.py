@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from beamenv.thesis import Model
 from train.reproduce.verdicts import Judgement, Rule, Verdict, weakest
@@ -67,8 +68,8 @@ class Grid:
 class Outcome:
     """What a study computed."""
 
-    evidence: Mapping[str, ArrayLike]
-    """What each statement, by its key, is judged by."""
+    evidence: Mapping[str, Any]
+    """What each statement, by its key, is judged by: numbers in any shape."""
     panels: Sequence[Panel | Grid]
     lines: Mapping[str, str] = field(default_factory=dict)
     """What solid, dotted and dashed stand for."""

@@ -53,9 +53,12 @@ class Rule(ABC):
     def _judge(self, evidence: Array) -> Judgement: ...
 
     @property
-    @abstractmethod
     def words(self) -> str:
         """The rule in words."""
+        return self._words()
+
+    @abstractmethod
+    def _words(self) -> str: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,9 +81,9 @@ class Matches(Rule):
         verdict = Verdict.REPRODUCED if worst <= self.tolerance else Verdict.TREND if worst <= self.trend else self.beyond
         return Judgement(verdict, listed(printed, self.unit), listed(ours, self.unit), deviations(off))
 
-    @property
-    def words(self) -> str:
-        return f"reproduced within {percent(self.tolerance)} of every number, trend within {percent(self.trend)}, else {self.beyond.value}"
+    def _words(self) -> str:
+        within = f"reproduced within {percent(self.tolerance)} of every number, trend within {percent(self.trend)}"
+        return f"{within}, else {self.beyond.value}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,8 +109,7 @@ class Changes(Rule):
     def _verb(self) -> str:
         return "rise" if self.direction > 0 else "fall"
 
-    @property
-    def words(self) -> str:
+    def _words(self) -> str:
         return f"reproduced if every step {self._verb}s, trend if first to last {self._verb}s in every series"
 
 
@@ -120,11 +122,12 @@ class Small(Rule):
 
     def _judge(self, evidence: Array) -> Judgement:
         largest = float(np.abs(evidence).max())
-        verdict = Verdict.REPRODUCED if largest <= self.limit else Verdict.TREND if largest <= self.trend else Verdict.NOT_REPRODUCED
+        verdict = (
+            Verdict.REPRODUCED if largest <= self.limit else Verdict.TREND if largest <= self.trend else Verdict.NOT_REPRODUCED
+        )
         return Judgement(verdict, f"no effect (≤ {percent(self.limit)})", f"at most {percent(largest)}", span(evidence))
 
-    @property
-    def words(self) -> str:
+    def _words(self) -> str:
         return f"reproduced if no change exceeds {percent(self.limit)}, trend up to {percent(self.trend)}"
 
 
@@ -137,11 +140,12 @@ class Large(Rule):
 
     def _judge(self, evidence: Array) -> Judgement:
         largest = float(np.abs(evidence).max())
-        verdict = Verdict.REPRODUCED if largest >= self.limit else Verdict.TREND if largest >= self.trend else Verdict.NOT_REPRODUCED
+        verdict = (
+            Verdict.REPRODUCED if largest >= self.limit else Verdict.TREND if largest >= self.trend else Verdict.NOT_REPRODUCED
+        )
         return Judgement(verdict, f"considerable (≥ {percent(self.limit)})", f"up to {percent(largest)}", span(evidence))
 
-    @property
-    def words(self) -> str:
+    def _words(self) -> str:
         return f"reproduced if the largest change is at least {percent(self.limit)}, trend from {percent(self.trend)}"
 
 
@@ -158,8 +162,7 @@ class Marginal(Rule):
         verdict = Verdict.NOT_REPRODUCED if not rightly else Verdict.REPRODUCED if small else Verdict.TREND
         return Judgement(verdict, f"marginally {'up' if self.direction > 0 else 'down'}", span(evidence), span(evidence))
 
-    @property
-    def words(self) -> str:
+    def _words(self) -> str:
         way = "up" if self.direction > 0 else "down"
         return f"reproduced if every change is {way} by at most {percent(self.limit)}, trend if {way} by more"
 
@@ -177,8 +180,7 @@ class Below(Rule):
         margin = f"{span(np.array([low, high]) / self.limit - 1.0)} of the limit"
         return Judgement(verdict, f"below {self.limit:g} {self.unit}", f"{low:.4g} … {high:.4g} {self.unit}", margin)
 
-    @property
-    def words(self) -> str:
+    def _words(self) -> str:
         return (
             f"reproduced if below {self.limit:g} {self.unit} whatever is left open, not reproduced if above, "
             "cannot be tested if what is left open decides"
@@ -197,8 +199,7 @@ class Holds(Rule):
         ours = f"holds in {int(round(evidence.sum()))} of {evidence.size} cases"
         return Judgement(verdict, "holds in all cases", ours, percent(1.0 - held) + " do not")
 
-    @property
-    def words(self) -> str:
+    def _words(self) -> str:
         return f"reproduced if it holds in every case, trend from {percent(self.share)} of them"
 
 
