@@ -10,13 +10,12 @@ from beamenv.structure.sweep import frequency_sweep
 from beamenv.thesis import Model
 from beamenv.thesis.response import ForcedBlade
 from beamenv.thesis.shapes import STATIONS, Shape, family_shapes
+from train.reproduce.parameter_studies import ORDINALS, SPEEDS
 from train.reproduce.responses import forced_responses
 from train.reproduce.study import WITH_AND_WITHOUT, Curve, Outcome, Panel, Statement, Study
 from train.reproduce.verdicts import Changes, Holds, Large, Marginal, Small
 
-ORDINALS = ("first", "second", "third", "fourth", "fifth")
 PLY_ANGLES_DEG = (0.0, 30.0, 45.0, 60.0, 90.0)
-SPEEDS = np.linspace(0.0, 400.0, 41)
 LAG_EXTENSION = ("lag", "extension")
 AT_REST = {"solid": "200 rad/s, with gyroscopic coupling", "dotted": "200 rad/s, without", "dashed": "at rest"}
 

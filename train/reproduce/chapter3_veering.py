@@ -12,7 +12,7 @@ from beamenv.structure.sweep import frequency_sweep
 from beamenv.thesis import Model
 from beamenv.thesis.shapes import STATIONS, normalised
 from beamenv.thesis.veering import LAG_EXTENSION, Veering, exchange, locate_veering
-from train.reproduce.chapter3_gyroscopic import ORDINALS
+from train.reproduce.parameter_studies import ORDINALS
 from train.reproduce.study import WITH_AND_WITHOUT, Curve, Outcome, Panel, Statement, Study
 from train.reproduce.verdicts import Holds, Matches
 

@@ -1,13 +1,12 @@
-"""The command ``beamenv reproduce``."""
+"""What ``beamenv reproduce`` does: run, show progress, write the page, sum up."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from train.reproduce.catalogue import chosen
+from train.reproduce.catalogue import STUDIES, chosen
 from train.reproduce.ledger import ROWS, counts
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import Record, load, run, write
@@ -15,20 +14,14 @@ from train.reproduce.study import Study
 from train.reproduce.verdicts import Verdict
 
 
-def reproduce(
-    names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
-    output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
-    fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
-    docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
-) -> None:
-    """Regenerate the thesis' tables and figures and judge its statements."""
-    try:
-        studies = chosen(names or [])
-    except ValueError as error:
-        typer.echo(str(error), err=True)
-        raise typer.Exit(2) from None
-    interrupted = False
+def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:
+    """Run the named studies (all for none), write the page, and return the exit status.
+
+    0: done; 1: a study failed; 130: interrupted, and the same call goes on from there. ``ValueError`` for an unknown name.
+    """
+    studies = chosen(names)
     records: list[Record] = []
+    interrupted = False
     try:
         run_with_progress(studies, output, fresh, records)
     except KeyboardInterrupt:
@@ -37,9 +30,8 @@ def reproduce(
     report(records, output)
     if interrupted:
         typer.echo("Interrupted: the same command goes on from here.", err=True)
-        raise typer.Exit(130)
-    if any(record.error for record in records):
-        raise typer.Exit(1)
+        return 130
+    return int(any(record.error for record in records))
 
 
 def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, records: list[Record]) -> None:
@@ -73,13 +65,13 @@ def with_earlier(output: Path, records: list[Record]) -> list[Record]:
     """The records of this run, and of earlier ones from the same sources."""
     known = {record.name: record for record in records}
     fingerprint = records[0].fingerprint if records else None
-    earlier = [load(output, study.name, fingerprint) for study in chosen([]) if study.name not in known]
+    earlier = [load(output, study.name, fingerprint) for study in STUDIES if study.name not in known]
     return [*records, *(record for record in earlier if record is not None)]
 
 
 def report(records: list[Record], output: Path) -> None:
     """What came out, in a few lines."""
-    by_name = {study.name: study for study in chosen([])}
+    by_name = {study.name: study for study in STUDIES}
     verdicts = counts(
         [verdict for record in records if not record.error for verdict in by_name[record.name].verdicts(record.judgements)]
     )

