@@ -110,7 +110,7 @@ class ForcedBlade:
 
 
 def settling_time(times: Array, displacement: Array, final: float, band: float = 0.05) -> float:
-    """When the response stays within ``band`` of its largest excursion from ``final`` for good, in s; its duration if it never does."""
+    """When the response stays within ``band`` of its largest excursion from ``final`` for good, in s; or its duration."""
     excursion = np.abs(displacement - final)
     outside = np.flatnonzero(excursion > band * excursion.max())
     return float(times[min(outside[-1] + 1, len(times) - 1)]) if len(outside) else float(times[0])

@@ -66,7 +66,7 @@ def normalised(displacement: Array | ComplexArray) -> Array:
 
 
 def assurance(mass: Array, first: ComplexArray | Array, second: ComplexArray | Array) -> Array:
-    """Modal assurance criterion weighted by mass, (columns of ``first``, columns of ``second``): 1 for the same mode, 0 for another."""
+    """Modal assurance criterion weighted by mass, (columns of ``first``, columns of ``second``): 1 for the same mode."""
     cross = np.abs(first.conj().T @ mass @ second) ** 2
     own = [np.einsum("ij,ij->j", shapes.conj(), mass @ shapes).real for shapes in (first, second)]
     return np.asarray(cross / np.outer(*own))
