@@ -176,7 +176,12 @@ STUDIES = (
         "untwisted; the speeds of Table 3.3",
         (
             Statement("considerable", "Considerable variation between the analyses with and without gyroscopic coupling", Large()),
-            Statement("softening", "Coupling softens the first, second and fourth frequency", Holds()),
+            Statement(
+                "softening",
+                "Coupling softens the first, second and fourth frequency",
+                Holds(),
+                "The fourth of 60° is the first extension, which it stiffens.",
+            ),
             Statement(
                 "stiffening",
                 "Coupling stiffens the third frequency",

@@ -90,7 +90,12 @@ STUDIES = (
         (
             Statement("first", "The first frequency falls with presetting", Changes(-1)),
             Statement("second", "The second frequency rises with presetting", Changes(+1)),
-            Statement("third", "The third frequency falls with presetting", Changes(-1)),
+            Statement(
+                "third",
+                "The third frequency falls with presetting",
+                Changes(-1),
+                "Beyond about 280 rad/s our third mode is the first twist.",
+            ),
             Statement(
                 "fourth",
                 "The fourth frequency rises with presetting",

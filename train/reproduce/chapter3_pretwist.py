@@ -33,14 +33,14 @@ def pretwisted(model: Model) -> Beams:
 
 def lag_shapes(model: Model) -> Outcome:
     """Figure 3.17."""
-    panels, bows = shape_panels(pretwisted(model), model.speed, "lag")
-    return Outcome({"first": bows[:1], "higher": bows[1:], "marginal": bows[0] / bows[0, 0] - 1.0}, panels)
+    panels, bows, apart = shape_panels(pretwisted(model), model.speed, "lag")
+    return Outcome({"first": bows[:1], "higher": bows[1:], "marginal": apart[0]}, panels)
 
 
 def flap_shapes(model: Model) -> Outcome:
     """Figure 3.18."""
-    panels, bows = shape_panels(pretwisted(model), model.speed, "flap")
-    evidence = {"odd": bows[[0, 2]], "second": bows[1:2], "marginal": (bows / bows[:, :1] - 1.0)}
+    panels, bows, apart = shape_panels(pretwisted(model), model.speed, "flap")
+    evidence = {"odd": bows[[0, 2]], "second": bows[1:2], "marginal": apart}
     return Outcome(evidence, panels)
 
 
@@ -111,7 +111,7 @@ STUDIES = (
         (
             Statement("first", "In the first mode pretwist bends the beam", Changes(+1)),
             Statement("higher", "In the second and third mode pretwist straightens the beam", Changes(-1), MIXED),
-            Statement("marginal", "Marginal influence on the first mode", Small(0.05, 0.10)),
+            Statement("marginal", "Marginal influence on the first mode: largest difference of the shapes", Small(0.05, 0.10)),
         ),
         lag_shapes,
     ),
@@ -122,7 +122,9 @@ STUDIES = (
         (
             Statement("odd", "In the first and third mode pretwist straightens the beam", Changes(-1), MIXED),
             Statement("second", "In the second mode pretwist bends the beam", Changes(+1)),
-            Statement("marginal", "Marginal influence on the flap shapes", Small(0.05, 0.10)),
+            Statement(
+                "marginal", "Marginal influence on the flap shapes: largest difference of the shapes", Small(0.05, 0.10), MIXED
+            ),
         ),
         flap_shapes,
     ),
@@ -141,7 +143,10 @@ STUDIES = (
             ),
             Statement("first", "The same without the number: stiffer at rest, softer at 200 rad/s", Holds(), aside=True),
             Statement(
-                "second", "Pretwist softens the second mode at low speed (rest) and stiffens it at high speed (200 rad/s)", Holds()
+                "second",
+                "Pretwist softens the second mode at low speed (rest) and stiffens it at high speed (200 rad/s)",
+                Holds(),
+                "At 200 rad/s no pretwist changes it by as much as 0.1 %.",
             ),
             Statement("third", "Pretwist stiffens the third mode", Changes(+1), THIRD),
             Statement("fourth", "Pretwist softens the fourth mode", Changes(-1), THIRD),
@@ -153,7 +158,13 @@ STUDIES = (
             ),
             Statement("at-rest", "The first flap frequency rises with pretwist (at rest)", Changes(+1)),
             Statement("lag-at-rest", "The first lag frequency falls with pretwist (at rest)", Changes(-1)),
-            Statement("shallow", "Pretwist has a shallow effect on the first two frequencies", Small(0.05, 0.10)),
+            Statement(
+                "shallow",
+                "Pretwist has a shallow effect on the first two frequencies",
+                Small(0.05, 0.10),
+                remark="The first lag frequency at rest falls by 4, 14 and 23 % for 30, 60 and 90°; at 200 rad/s the two change "
+                "by at most 4 %.",
+            ),
         ),
         pretwist_over_speed,
     ),

@@ -109,39 +109,9 @@ def convergence(enough: int, pretwist_deg: float, presetting_deg: float) -> Call
         voltage = np.array([error(found[r].voltages, reference.voltages) for r in MODES])
         config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
         truncated = truncation_errors(build_plant(with_modes(config, REFERENCE_MODES)))
-        shown = reference.times <= 0.1
-        labels = {r: f"{r} modes" for r in DRAWN} | {REFERENCE_MODES: f"{REFERENCE_MODES} modes"}
+        panels = [*few_modes_panels(found), *error_panels(tip, voltage, truncated)]
         at = MODES.index(enough)
         evidence = {"tip": tip[at:], "voltage": voltage[at:]}
-        states = 2 * np.array(MODES)
-        panels = [
-            Panel(
-                "tip displacement in flap",
-                "time (s)",
-                "displacement (mm)",
-                [Curve(reference.times[shown], 1e3 * found[r].tip[shown], name) for r, name in labels.items()],
-            ),
-            Panel(
-                "voltage",
-                "time (s)",
-                "voltage (V)",
-                [Curve(reference.times[shown], found[r].voltages[shown, 0], name) for r, name in labels.items()],
-            ),
-            Panel(
-                "controlled response",
-                "modes",
-                "error against 24 modes",
-                [Curve(np.array(MODES), tip, "tip"), Curve(np.array(MODES), voltage, "voltage")],
-                logarithmic=True,
-            ),
-            Panel(
-                "open-loop steps",
-                "states",
-                "error against 48 states",
-                [Curve(states, values, name) for name, values in truncated.items()],
-                logarithmic=True,
-            ),
-        ]
         rows = [
             [r, f"{t:.4g}", f"{v:.4g}", 2 * r, *(f"{values[k]:.4g}" for values in truncated.values())]
             for k, (r, t, v) in enumerate(zip(MODES, tip, voltage, strict=True))
@@ -150,6 +120,30 @@ def convergence(enough: int, pretwist_deg: float, presetting_deg: float) -> Call
         return Outcome(evidence, panels, {}, header, rows, [needed(tip, voltage, truncated)])
 
     return compute
+
+
+def few_modes_panels(found: dict[int, Response]) -> list[Panel]:
+    """Tip displacement and voltage of models with some numbers of modes."""
+    labels = {r: f"{r} mode{'s' if r > 1 else ''}" for r in (*DRAWN, REFERENCE_MODES)}
+    shown = found[REFERENCE_MODES].times <= 0.1
+    times = found[REFERENCE_MODES].times[shown]
+    tips = [Curve(times, 1e3 * found[r].tip[shown], name) for r, name in labels.items()]
+    voltages = [Curve(times, found[r].voltages[shown, 0], name) for r, name in labels.items()]
+    return [
+        Panel("tip displacement in flap", "time (s)", "displacement (mm)", tips),
+        Panel("voltage", "time (s)", "voltage (V)", voltages),
+    ]
+
+
+def error_panels(tip: Array, voltage: Array, truncated: dict[str, Array]) -> list[Panel]:
+    """Errors over the number of modes and of states."""
+    modes = np.array(MODES, dtype=float)
+    controlled = [Curve(modes, tip, "tip"), Curve(modes, voltage, "voltage")]
+    steps = [Curve(2.0 * modes, values, name) for name, values in truncated.items()]
+    return [
+        Panel("controlled response", "modes", f"error against {REFERENCE_MODES} modes", controlled, logarithmic=True),
+        Panel("open-loop steps", "states", f"error against {2 * REFERENCE_MODES} states", steps, logarithmic=True),
+    ]
 
 
 def needed(tip: Array, voltage: Array, truncated: dict[str, Array]) -> str:
@@ -169,8 +163,7 @@ def needed(tip: Array, voltage: Array, truncated: dict[str, Array]) -> str:
 
 
 VOLTAGE = (
-    "A step in voltage excites high modes that the tip hardly shows; the thesis judged by eye. Its modes are not ours: they "
-    "hold no or few twist modes."
+    "A step in voltage excites high modes that the tip hardly shows; the thesis judged by eye, and does not print its weights."
 )
 
 

@@ -25,8 +25,8 @@ FEW_PERIODS = 0.12
 PLY_ANGLES_DEG = np.linspace(0.0, 90.0, 19)
 
 
-def shape_panels(beams: Beams, speed: float, family: str) -> tuple[list[Panel], Array]:
-    """A panel for each of three modes of a family, and how bowed each shape is, (modes, beams)."""
+def shape_panels(beams: Beams, speed: float, family: str) -> tuple[list[Panel], Array, Array]:
+    """A panel for each of three modes of a family, how bowed each shape is and how far from the first beam's, (modes, beams)."""
     shapes = {label: family_shapes(beam, speed, family) for label, beam in beams.items()}
     panels = [
         Panel(
@@ -37,7 +37,9 @@ def shape_panels(beams: Beams, speed: float, family: str) -> tuple[list[Panel], 
         )
         for mode in range(3)
     ]
-    return panels, np.array([[found[mode].bow for found in shapes.values()] for mode in range(3)])
+    bows = np.array([[found[mode].bow for found in shapes.values()] for mode in range(3)])
+    values = np.array([[found[mode].values for found in shapes.values()] for mode in range(3)])
+    return panels, bows, np.abs(values - values[:, :1]).max(axis=2)
 
 
 def locus_panels(labels: list[str], x: Array, x_label: str, loci: Array) -> list[Panel]:
