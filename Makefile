@@ -6,16 +6,17 @@ ARGS ?=
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: help compare benchmark test slow lint format install clean
+.PHONY: help compare reproduce benchmark test slow lint format install clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make compare    train the agents, compare every controller, write tables and figures"
 	@echo "make test       run the tests; make slow runs the slow ones"
+	@echo "make reproduce  regenerate the thesis' tables and figures and judge its statements"
 	@echo "make benchmark  measure steps per second beside Gymnasium's CartPole"
 	@echo "make lint       check style and types; make format puts the style right"
 
-compare benchmark: $(INSTALLED)
+compare reproduce benchmark: $(INSTALLED)
 	$(BIN)/beamenv $@ $(ARGS)
 
 test: $(INSTALLED)

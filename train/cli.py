@@ -203,3 +203,22 @@ def benchmark(as_json: JsonOption = False) -> None:
         print_json(results)
     else:
         show(results)
+
+
+@app.command()
+def reproduce(
+    names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
+    output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
+    fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
+    docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
+) -> None:
+    """Regenerate the thesis' tables and figures and judge its statements. About half a minute.
+
+    An interrupted run goes on from what its folder holds.
+    """
+    with one_sentence():
+        from train.reproduce.command import reproduce as run
+
+        status = run(names or [], output, fresh, docs)
+    if status:
+        raise typer.Exit(status)

@@ -44,7 +44,8 @@ def whirling_modes(
     With M = L Lᵀ and L⁻¹ K L⁻ᵀ = C Cᵀ the state [Cᵀ Lᵀq; Lᵀq̇] obeys ẏ = S y with S skew, so i S is Hermitian and every
     frequency is exact to round-off of the largest. Raises ``numpy.linalg.LinAlgError`` where K is not positive definite.
     """
-    skew, root = skew_form(mass, gyroscopic, stiffness)
+    root = np.asarray(np.linalg.cholesky(mass), dtype=np.float64)
+    skew = skew_form(reduced(root, stiffness), reduced(root, gyroscopic))
     size = len(mass)
     last = size if count is None else min(count, size)
     eigenvalues, vectors = eigh(1j * skew, subset_by_index=(size, size + last - 1), driver="evr")
@@ -56,33 +57,45 @@ def whirling_modes(
 
 def whirling_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Array:
     """All N frequencies, rad/s, ascending; modes that have lost their stiffness are reported at zero."""
-    try:
-        skew, _ = skew_form(mass, gyroscopic, stiffness)
-    except np.linalg.LinAlgError:
-        return diverged_frequencies(mass, gyroscopic, stiffness)
-    return np.asarray(np.linalg.eigvalsh(1j * skew)[len(mass) :])
-
-
-def skew_form(mass: Array, gyroscopic: Array, stiffness: Array) -> tuple[Array, Array]:
-    """S (2N, 2N) and the Cholesky factor L of M."""
     root = np.asarray(np.linalg.cholesky(mass), dtype=np.float64)
-
-    def scaled(matrix: Array) -> Array:
-        half = solve_triangular(root, matrix, lower=True)
-        return np.asarray(solve_triangular(root, half.T, lower=True).T)
-
-    reduced = scaled(stiffness)
-    factor = np.linalg.cholesky(0.5 * (reduced + reduced.T))
-    return np.block([[np.zeros_like(factor), factor.T], [-factor, -scaled(gyroscopic)]]), root
+    reduced_stiffness, reduced_gyroscopic = reduced(root, stiffness), reduced(root, gyroscopic)
+    try:
+        return stable_frequencies(reduced_stiffness, reduced_gyroscopic)
+    except np.linalg.LinAlgError:
+        return diverged_frequencies(reduced_stiffness, reduced_gyroscopic)
 
 
-def diverged_frequencies(mass: Array, gyroscopic: Array, stiffness: Array) -> Array:
-    """|Im λ| of the first-order matrix past the critical speed, where some modes diverge (λ real)."""
-    size = len(mass)
-    first_order = np.block(
-        [[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, gyroscopic)]]
-    )
-    return np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2]
+def reduced(root: Array, matrix: Array) -> Array:
+    """L⁻¹ X L⁻ᵀ for the Cholesky factor L of M: the matrix in coordinates in which M is the identity."""
+    half = solve_triangular(root, matrix, lower=True)
+    return np.asarray(solve_triangular(root, half.T, lower=True).T)
+
+
+def skew_form(stiffness: Array, gyroscopic: Array) -> Array:
+    """S (..., 2N, 2N) of reduced matrices (..., N, N); ``numpy.linalg.LinAlgError`` where a K is not positive definite."""
+    factor = np.asarray(np.linalg.cholesky(0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))), dtype=np.float64)
+    size = factor.shape[-1]
+    skew = np.zeros((*factor.shape[:-2], 2 * size, 2 * size))
+    skew[..., :size, size:] = np.swapaxes(factor, -1, -2)
+    skew[..., size:, :size] = -factor
+    skew[..., size:, size:] = -gyroscopic
+    return skew
+
+
+def stable_frequencies(stiffness: Array, gyroscopic: Array) -> Array:
+    """All N frequencies (..., N), rad/s, ascending, of reduced matrices (..., N, N) with positive definite K."""
+    skew = skew_form(stiffness, gyroscopic)
+    return np.asarray(np.linalg.eigvalsh(1j * skew)[..., skew.shape[-1] // 2 :])
+
+
+def diverged_frequencies(stiffness: Array, gyroscopic: Array) -> Array:
+    """|Im λ| (..., N) of the first-order matrix past the critical speed, where some modes diverge (λ real); reduced matrices."""
+    size = stiffness.shape[-1]
+    first_order = np.zeros((*stiffness.shape[:-2], 2 * size, 2 * size))
+    first_order[..., :size, size:] = np.eye(size)
+    first_order[..., size:, :size] = -stiffness
+    first_order[..., size:, size:] = -gyroscopic
+    return np.sort(np.abs(np.linalg.eigvals(first_order).imag), axis=-1)[..., ::2]
 
 
 def critical_speed(elastic_stiffness: Array, spin_stiffness: Array) -> float:

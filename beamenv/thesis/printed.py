@@ -1,0 +1,24 @@
+"""The thesis' printed tables, as data."""
+
+from __future__ import annotations
+
+import csv
+from importlib.resources import files
+
+PRINTED = ("table-2.1", "table-2.2", "table-3.1", "table-3.2", "table-3.3", "table-3.4")
+
+
+def printed_table(name: str) -> list[dict[str, str]]:
+    """The rows of a printed table, each a mapping of column names to what is printed; ``ValueError`` for an unknown name.
+
+    Frequencies are in rad/s, in Table 3.2 in Hz. An empty cell is one on which the thesis contradicts itself.
+    """
+    if name not in PRINTED:
+        raise ValueError(f"name = {name!r} must be one of {', '.join(PRINTED)}.")
+    text = files("beamenv.thesis").joinpath("numbers", f"{name}.csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
+
+
+def numbers(name: str, column: str) -> tuple[float, ...]:
+    """One column of a printed table as numbers."""
+    return tuple(float(row[column]) for row in printed_table(name))

@@ -1,0 +1,111 @@
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from beamenv.thesis import Model
+from train.cli import app
+from train.reproduce.catalogue import chosen
+from train.reproduce.report import html_page, markdown_page
+from train.reproduce.runner import load, run, source_fingerprint
+from train.reproduce.study import Curve, Outcome, Panel, Statement, Study
+from train.reproduce.verdicts import Holds, Verdict
+
+
+def counted(name="figure-3.2", fails=False):
+    calls = []
+
+    def compute(model):
+        calls.append(model)
+        if fails:
+            raise ZeroDivisionError("no such blade")
+        x = np.linspace(0.0, 1.0, 5)
+        return Outcome({"fact": [True]}, [Panel("one", "x (m)", "y (m)", [Curve(x, x, "a"), Curve(x, 2 * x, "b", "dotted")])])
+
+    study = Study(name, "a title", "a configuration", (Statement("fact", "It is so", Holds()),), compute)
+    return study, calls
+
+
+def test_what_is_finished_is_not_done_again(tmp_path):
+    study, calls = counted()
+    first = run([study], tmp_path)
+    again = run([study], tmp_path)
+    assert len(calls) == 1 and again == first
+    run([study], tmp_path, fresh=True)
+    assert len(calls) == 2
+
+
+def test_another_model_is_not_taken_for_the_finished_one(tmp_path):
+    study, calls = counted()
+    run([study], tmp_path)
+    run([study], tmp_path, model=Model(speed=150.0))
+    assert len(calls) == 2
+    assert source_fingerprint(Model()) != source_fingerprint(Model(speed=150.0))
+
+
+def test_a_lost_picture_is_made_again(tmp_path):
+    study, calls = counted()
+    run([study], tmp_path)
+    (tmp_path / "figure-3.2.png").unlink()
+    assert load(tmp_path, "figure-3.2") is None
+    run([study], tmp_path)
+    assert len(calls) == 2
+
+
+def test_a_failing_study_is_reported_and_does_not_stop_the_others(tmp_path):
+    broken, _ = counted("figure-3.2", fails=True)
+    good, _ = counted("figure-3.3")
+    records = run([broken, good], tmp_path)
+    assert records[0].error == "ZeroDivisionError: no such blade" and not records[1].error
+    assert not (tmp_path / "figure-3.2.json").exists() and (tmp_path / "figure-3.3.png").exists()
+    page = markdown_page([replace(records[0])])
+    assert "This study failed: ZeroDivisionError: no such blade" in page and "Failed: figure-3.2." in page
+
+
+def test_an_interrupted_run_keeps_what_it_finished(tmp_path):
+    first, calls = counted("figure-3.2")
+    second, _ = counted("figure-3.3")
+
+    def stop(record):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run([first, second], tmp_path, finished=stop)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-3.2.csv", "figure-3.2.json", "figure-3.2.png"]
+    run([first, second], tmp_path)
+    assert len(calls) == 1
+
+
+def test_a_table_leaves_a_csv_a_picture_and_a_page_that_needs_nothing_else(tmp_path):
+    records = run(chosen(["table-3.4"]), tmp_path)
+    lines = (tmp_path / "table-3.4.csv").read_text().splitlines()
+    assert len(lines) == 16 and lines[1].startswith('"c/h = 10, ω1",119.59')
+    assert (tmp_path / "table-3.4.png").read_bytes().startswith(b"\x89PNG")
+    page = html_page(records, tmp_path)
+    assert "data:image/png;base64," in page and 'src="data' in page and "http" not in page
+    assert "119.59" in page and Verdict.REPRODUCED.value in page
+
+
+def test_records_survive_their_file(tmp_path):
+    record = run(chosen(["table-3.4"]), tmp_path)[0]
+    assert load(tmp_path, "table-3.4", record.fingerprint) == record
+    assert json.loads((tmp_path / "table-3.4.json").read_text())["judgements"]["thesis"]["verdict"] == "reproduced"
+
+
+def test_command_writes_the_page_and_the_documentation(tmp_path):
+    result = CliRunner().invoke(
+        app, ["reproduce", "table-3.4", "figure-3.3", "--output", str(tmp_path / "out"), "--docs", str(tmp_path / "docs")]
+    )
+    assert result.exit_code == 0, result.output
+    page = (tmp_path / "docs" / "thesis.md").read_text()
+    assert "![figure-3.3](figures/figure-3.3.png)" in page and (tmp_path / "docs" / "figures" / "figure-3.3.png").exists()
+    assert "not run" in page and "hapter 6" not in page
+    assert (tmp_path / "out" / "report.html").exists() and (tmp_path / "out" / "report.md").exists()
+
+
+def test_command_lists_the_known_names_for_an_unknown_one(tmp_path):
+    result = CliRunner().invoke(app, ["reproduce", "table-9", "--output", str(tmp_path)])
+    assert result.exit_code == 2
+    assert "table-9" in result.output and "figure-5.17" in result.output

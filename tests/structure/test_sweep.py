@@ -1,0 +1,52 @@
+import time
+
+import numpy as np
+import pytest
+
+from beamenv.configuration import BeamConfig
+from beamenv.structure.sweep import frequency_sweep
+
+BOX = BeamConfig(ply_angles_deg=(0.0,) * 6, pretwist_deg=0.0)
+BLADE = BeamConfig().build()
+
+
+@pytest.mark.parametrize("gyroscopic", [True, False])
+@pytest.mark.parametrize("motions", [None, ("lag", "extension")])
+def test_sweep_gives_each_speeds_own_frequencies(gyroscopic, motions):
+    speeds = [0.0, 130.0, 400.0]
+    swept = frequency_sweep(BLADE, speeds, 5, motions, gyroscopic)
+    alone = [BLADE.natural_frequencies(speed, 5, motions, gyroscopic) for speed in speeds]
+    np.testing.assert_allclose(swept, alone, rtol=1e-8)
+
+
+def test_sweep_goes_on_past_the_critical_speed():
+    box = BOX.build()
+    speeds = [0.5 * box.critical_speed, 1.05 * box.critical_speed]
+    swept = frequency_sweep(box, speeds, 3, ("lag", "extension"))
+    assert swept[1, 0] == pytest.approx(0.0, abs=1e-3)
+    np.testing.assert_allclose(swept[1], box.natural_frequencies(speeds[1], 3, ("lag", "extension")), rtol=1e-7, atol=1e-3)
+
+
+def test_many_blades_stack_along_the_first_axis():
+    blades = [BeamConfig(taper=taper).build() for taper in (1.0, 2.0)]
+    swept = frequency_sweep(blades, [100.0, 200.0], 4)
+    assert swept.shape == (2, 2, 4)
+    np.testing.assert_allclose(swept[1, 0], blades[1].natural_frequencies(100.0, 4), rtol=1e-8)
+
+
+def test_two_hundred_speeds_of_ten_terms_take_less_than_two_seconds():
+    BLADE.matrices  # noqa: B018 - assembled once, not counted
+    start = time.perf_counter()
+    frequency_sweep(BLADE, np.linspace(0.0, 400.0, 200), 6)
+    assert time.perf_counter() - start < 2.0
+
+
+@pytest.mark.parametrize("speeds", [[-1.0], [np.nan], [[100.0]]])
+def test_speeds_must_be_a_row_of_numbers_from_zero(speeds):
+    with pytest.raises(ValueError, match="speeds"):
+        frequency_sweep(BLADE, speeds)
+
+
+def test_count_must_not_exceed_the_trial_functions():
+    with pytest.raises(ValueError, match="count = 61"):
+        frequency_sweep(BLADE, [0.0], 61)

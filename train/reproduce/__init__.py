@@ -1,0 +1,1 @@
+"""The thesis' tables and figures, regenerated from the model and judged by stated rules: ``beamenv reproduce``."""

@@ -1,0 +1,49 @@
+"""All studies, in the thesis' order, and the finding of them by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from train.reproduce import (
+    chapter2,
+    chapter3_gyroscopic,
+    chapter3_presetting,
+    chapter3_pretwist,
+    chapter3_tables,
+    chapter3_taper,
+    chapter3_veering,
+    chapter5_individual,
+    chapter5_modes,
+    chapter5_one_voltage,
+    chapter5_passive,
+)
+from train.reproduce.study import Study
+
+CHAPTERS: tuple[tuple[str, tuple[Study, ...]], ...] = (
+    ("Chapter 2: couplings", chapter2.STUDIES),
+    (
+        "Chapter 3: vibration",
+        chapter3_tables.STUDIES
+        + chapter3_gyroscopic.STUDIES
+        + chapter3_veering.STUDIES
+        + chapter3_taper.STUDIES
+        + chapter3_pretwist.STUDIES
+        + chapter3_presetting.STUDIES,
+    ),
+    (
+        "Chapter 5: control",
+        chapter5_modes.STUDIES + chapter5_passive.STUDIES + chapter5_one_voltage.STUDIES + chapter5_individual.STUDIES,
+    ),
+)
+"""Chapter 6 comes as one more entry here, and its concluding statements as rows of ``ledger.ROWS``."""
+
+STUDIES: tuple[Study, ...] = tuple(study for _, studies in CHAPTERS for study in studies)
+NAMES = tuple(study.name for study in STUDIES)
+
+
+def chosen(names: Sequence[str]) -> tuple[Study, ...]:
+    """The studies of these names in the thesis' order, all for none; ``ValueError`` for an unknown name, listing the known ones."""
+    unknown = [name for name in names if name not in NAMES]
+    if unknown:
+        raise ValueError(f"name = {unknown[0]!r} must be one of {', '.join(NAMES)}.")
+    return tuple(study for study in STUDIES if not names or study.name in names)

@@ -1,0 +1,134 @@
+"""Running studies: each is computed, drawn and written whole before the next; what is there already is not done again."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from importlib.resources import files
+from pathlib import Path
+
+from beamenv.thesis import Model
+from train.reproduce.figures import curve_rows, draw
+from train.reproduce.study import Outcome, Study
+from train.reproduce.verdicts import Judgement, Verdict
+
+FINGERPRINTED = ("beamenv", "baselines", "train.reproduce")
+SOURCES = (".py", ".csv", ".mplstyle")
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What is kept of a study: enough for the page, beside its CSV and PNG."""
+
+    name: str
+    seconds: float
+    judgements: dict[str, Judgement]
+    notes: tuple[str, ...] = ()
+    header: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    """The numbers of a table; a figure's are in its CSV only."""
+    error: str = ""
+    """Why the study failed, if it did."""
+    fingerprint: str = ""
+
+
+def run(
+    studies: Sequence[Study],
+    folder: Path,
+    model: Model | None = None,
+    fresh: bool = False,
+    finished: Callable[[Record], None] = lambda record: None,
+) -> list[Record]:
+    """Run studies into ``folder`` and return their records, calling ``finished`` after each.
+
+    A study whose record is there, made by the same sources from the same model, is not run again unless ``fresh``. One that fails
+    is recorded with its error and does not stop the others.
+    """
+    model = model or Model()
+    folder.mkdir(parents=True, exist_ok=True)
+    fingerprint = source_fingerprint(model)
+    records = []
+    for study in studies:
+        kept = None if fresh else load(folder, study.name, fingerprint)
+        record = kept or run_one(study, folder, model, fingerprint)
+        records.append(record)
+        finished(record)
+    return records
+
+
+def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Record:
+    """Compute, judge, draw and write one study."""
+    start = time.perf_counter()
+    try:
+        outcome = study.compute(model)
+        judgements = study.judge(outcome)
+        picture = draw(outcome, f"{study.name.capitalize().replace('-', ' ')}: {study.title}")
+    except Exception as error:  # noqa: BLE001 - whatever fails in one study must not stop the others
+        return Record(
+            study.name, time.perf_counter() - start, {}, error=f"{type(error).__name__}: {error}", fingerprint=fingerprint
+        )
+    write(folder / f"{study.name}.csv", csv_text(outcome).encode())
+    write(folder / f"{study.name}.png", picture)
+    tabulated = study.name.startswith("table")
+    record = Record(
+        name=study.name,
+        seconds=time.perf_counter() - start,
+        judgements=judgements,
+        notes=tuple(outcome.notes),
+        header=tuple(outcome.header) if tabulated else (),
+        rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if tabulated else (),
+        fingerprint=fingerprint,
+    )
+    write(folder / f"{study.name}.json", json.dumps(asdict(record), ensure_ascii=False, indent=1).encode())
+    return record
+
+
+def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | None:
+    """The record of a finished study, if it and its files are there and, when a fingerprint is given, up to date."""
+    path = folder / f"{name}.json"
+    if not all((folder / f"{name}.{kind}").is_file() for kind in ("json", "csv", "png")):
+        return None
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    if fingerprint is not None and kept["fingerprint"] != fingerprint:
+        return None
+    judgements = {key: Judgement(**(value | {"verdict": Verdict(value["verdict"])})) for key, value in kept["judgements"].items()}
+    record = Record(**(kept | {"judgements": judgements}))
+    return replace(record, notes=tuple(record.notes), header=tuple(record.header), rows=tuple(tuple(row) for row in record.rows))
+
+
+def source_fingerprint(model: Model) -> str:
+    """A digest of the sources and data that results depend on, and of the model."""
+    digest = hashlib.sha256(repr(model).encode())
+    for package in FINGERPRINTED:
+        for content in sources(Path(str(files(package)))):
+            digest.update(content)
+    return digest.hexdigest()[:16]
+
+
+def sources(folder: Path) -> list[bytes]:
+    """The contents of all source and data files of a package, in order of their paths."""
+    return [path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in SOURCES]
+
+
+def csv_text(outcome: Outcome) -> str:
+    """A table's own rows, then every point of every curve where there are no rows of its own."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    header, rows = (outcome.header, outcome.rows) if outcome.rows else curve_rows(outcome)
+    writer.writerow(header)
+    writer.writerows(rows)
+    return buffer.getvalue()
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(f"{path.name}.part")
+    partial.write_bytes(content)
+    os.replace(partial, path)
