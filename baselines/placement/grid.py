@@ -12,6 +12,9 @@ from baselines.placement.sqp import SequentialQuadratic
 
 Array = NDArray[np.float64]
 
+CHUNK = 600
+"""Layouts between two reports of progress."""
+
 
 @dataclass(frozen=True, slots=True)
 class Grid:
@@ -24,33 +27,36 @@ class Grid:
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
         """Search; ``ValueError`` for more than two patches. Neither start nor generator matters."""
-        layouts, shape = self._layouts(recorder)
-        costs = np.full(len(layouts), np.inf)
-        for first in range(0, len(layouts), 600):
-            costs[first : first + 600] = recorder.costs(layouts[first : first + 600])
+        layouts, shape, where = self._layouts(recorder)
+        table = np.full(int(np.prod(shape)), np.inf)
+        for first in range(0, len(layouts), CHUNK):
+            table[where[first : first + CHUNK]] = recorder.costs(layouts[first : first + CHUNK])
             recorder.note(0.9 * first / len(layouts))
-        for index in local_minima(costs, shape)[: self.polished]:
-            SequentialQuadratic().descend(recorder, layouts[index])
+        at = np.full(table.shape, -1)
+        at[where] = np.arange(len(layouts))
+        for index in local_minima(table.reshape(shape))[: self.polished]:
+            SequentialQuadratic().descend(recorder, layouts[at[index]])
         recorder.note(1.0)
 
-    def _layouts(self, recorder: Recorder) -> tuple[Array, tuple[int, ...]]:
-        """(N, count) feasible layouts on a grid of the slack, and the grid's shape."""
+    def _layouts(self, recorder: Recorder) -> tuple[Array, tuple[int, ...], NDArray[np.intp]]:
+        """(N, count) ordered layouts on a grid of the slack, the grid's shape, and the place (N,) of each in it."""
         bounds = recorder.problem.bounds
         if bounds.count > len(self.points):
             raise ValueError(f"method = 'grid' serves one or two patches, not {bounds.count}: take another method.")
         axis = bounds.low + np.linspace(0.0, bounds.slack, self.points[bounds.count - 1])
         grid = np.stack(np.meshgrid(*[axis] * bounds.count, indexing="ij"), axis=-1)
-        ordered = np.sort(grid.reshape(-1, bounds.count), axis=1)  # each layout of two comes twice; the second is repaired away
-        return ordered + bounds.length * np.arange(bounds.count), grid.shape[:-1]
+        flat = grid.reshape(-1, bounds.count)
+        where = np.flatnonzero(np.all(np.diff(flat, axis=1) >= 0.0, axis=1))
+        return flat[where] + bounds.length * np.arange(bounds.count), grid.shape[:-1], where
 
 
-def local_minima(costs: Array, shape: tuple[int, ...]) -> NDArray[np.intp]:
-    """Indices of grid points no dearer than their neighbours, cheapest first."""
-    table = np.pad(costs.reshape(shape), 1, constant_values=np.inf)
-    centre = tuple(slice(1, -1) for _ in shape)
-    least = np.ones(shape, dtype=bool)
-    for axis in range(len(shape)):
+def local_minima(costs: Array) -> NDArray[np.intp]:
+    """Flat indices of finite grid points no dearer than their neighbours, cheapest first."""
+    table = np.pad(costs, 1, constant_values=np.inf)
+    centre = (slice(1, -1),) * costs.ndim
+    least = np.isfinite(costs)
+    for axis in range(costs.ndim):
         for shift in (-1, 1):
             least &= table[centre] <= np.roll(table, shift, axis=axis)[centre]
     found = np.flatnonzero(least)
-    return found[np.argsort(costs[found], kind="stable")]
+    return found[np.argsort(costs.ravel()[found], kind="stable")]
