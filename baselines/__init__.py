@@ -1,8 +1,11 @@
 """Classical controllers of the blade, and the evaluation that every controller goes through."""
 
 from baselines.controller import Controller, LinearController
+from baselines.episodes import Episodes, roll_out
+from baselines.evaluation import Estimate, Evaluation, evaluate
 from baselines.lqg import lqg
 from baselines.lqr import lqr
+from baselines.metrics import EpisodeMetrics
 from baselines.no_control import no_control
 from baselines.persistent_load import PersistentLoad
 from baselines.stationary import closed_loop_poles, stationary_cost
@@ -10,12 +13,18 @@ from baselines.velocity_feedback import velocity_feedback
 
 __all__ = [
     "Controller",
+    "Episodes",
+    "EpisodeMetrics",
+    "Estimate",
+    "Evaluation",
     "LinearController",
     "PersistentLoad",
     "closed_loop_poles",
+    "evaluate",
     "lqg",
     "lqr",
     "no_control",
+    "roll_out",
     "stationary_cost",
     "velocity_feedback",
 ]

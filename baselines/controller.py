@@ -74,7 +74,7 @@ class LinearController:
         state: Array | None = None,
         episode_start: ArrayLike | None = None,
         deterministic: bool = True,
-    ) -> tuple[NDArray[np.float32], Array | None]:
+    ) -> tuple[Array, Array | None]:
         """Action (m,) or (N, m) in units of the drive limit, and the next memory (None for a law without memory).
 
         ``observation`` (p,) or (N, p) is normalised as the environment gives it; rows where ``episode_start`` is true
@@ -94,7 +94,7 @@ class LinearController:
         product = np.concatenate([memory, measured], axis=-1) @ self._fused
         action = np.clip(product[..., order:], self._limits[0], self._limits[1])
         following = product[..., :order] + action @ self._feedback
-        return action.astype(np.float32), following if order else None
+        return action, following if order else None
 
     def in_physical_units(self) -> LinearController:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 
@@ -36,14 +37,27 @@ class Operators:
         return replace(self, **{f.name: to_array(getattr(self, f.name)) for f in fields(self) if f.type == "Any"})
 
 
-def advance(operators: Operators, joined: Any) -> tuple[Any, Any, Any, Any]:
+def advance(operators: Operators, joined: Any, out: Any = None) -> tuple[Any, Any, Any, Any]:
     """One control interval, exactly.
 
     ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
-    increment of J over the interval (...,) in J s.
+    increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., n + m + 2 + n + p + 2) may be given to
+    hold the product, and the first three arrays are then views of it.
     """
     n, p = operators.states, operators.outputs
-    product = joined @ operators.fused
-    increment = (product[..., n + p + 2 :] * joined).sum(-1)
+    product = joined @ operators.fused if out is None else product_into(out, joined, operators.fused)
+    increment = row_dot(product[..., n + p + 2 :], joined)
     return product[..., :n], product[..., n : n + p], product[..., n + p : n + p + 2], increment
+
+
+def product_into(out: Any, left: Any, right: Any) -> Any:
+    """The matrix product, written to ``out``: NumPy arrays."""
+    return np.dot(left, right, out) if left.ndim == 1 else np.matmul(left, right, out)  # for one row, dot starts faster
+
+
+def row_dot(left: Any, right: Any) -> Any:
+    """Scalar products (...,) over the last axis of two NumPy arrays or torch tensors."""
+    if not isinstance(left, np.ndarray):
+        return (left * right).sum(-1)
+    return left.dot(right) if left.ndim == 1 else np.einsum("...i,...i->...", left, right)

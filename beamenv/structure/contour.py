@@ -105,13 +105,15 @@ def wall_points(vertices: Array, edges: tuple[Edge, ...]) -> WallPoints:
     """Gauss points on the closed polygon with the given vertices (S, K, 2), counter-clockwise."""
     step = np.roll(vertices, -1, axis=1) - vertices
     length = np.hypot(step[..., 0], step[..., 1])
+    # An inlay as wide as its wall leaves edges of no length on both sides: no weight, any direction.
+    direction = step / np.where(length > 0.0, length, 1.0)[..., None]
     points = (vertices[:, :, None, :] + GAUSS_POSITIONS[:, None] * step[:, :, None, :]).reshape(len(vertices), -1, 2)
     return WallPoints(
         edges=edges,
         x=points[..., 0],
         y=points[..., 1],
-        l=np.repeat(step[..., 1] / length, 2, axis=1),
-        m=np.repeat(-step[..., 0] / length, 2, axis=1),
+        l=np.repeat(direction[..., 1], 2, axis=1),
+        m=np.repeat(-direction[..., 0], 2, axis=1),
         ds=np.repeat(0.5 * length, 2, axis=1),
         along=(length[:, :, None] * GAUSS_POSITIONS).reshape(len(vertices), -1),
     )

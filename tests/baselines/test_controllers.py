@@ -39,8 +39,7 @@ def test_a_batch_is_its_blades_one_by_one(law):
         batch, batched = law.predict(row, batched)
         one, single = law.predict(row[2], single)
         assert batch.shape == (5, 2)
-        assert batch.dtype == np.float32
-        np.testing.assert_allclose(one, batch[2], rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(one, batch[2], rtol=1e-12, atol=1e-15)
 
 
 def test_an_episode_start_forgets_that_blade_alone(law):
@@ -59,7 +58,7 @@ def test_voltages_never_leave_asymmetric_limits(law):
     memory = None
     for row in observations(law, size=50.0):
         action, memory = law.predict(row, memory)
-        assert action.min() >= -1 / 3 - 1e-7
+        assert action.min() >= -1 / 3
         assert action.max() <= 1.0
 
 
@@ -74,7 +73,7 @@ def test_physical_units_give_the_same_voltages(law):
     for row in observations(law):
         action, memory = law.predict(row, memory)
         volts, physical_memory = physical.predict(row * law.measurement_scale, physical_memory)
-        np.testing.assert_allclose(volts, action * law.voltage_scale, rtol=1e-5)
+        np.testing.assert_allclose(volts, action * law.voltage_scale, rtol=1e-12, atol=1e-12)
 
 
 def test_the_filter_predicts_with_the_clipped_voltage(small_plant):
@@ -90,7 +89,7 @@ def test_the_filter_predicts_with_the_clipped_voltage(small_plant):
         estimate = estimate + L @ (observation * plant.sensor_full_scale - held.C @ estimate)
         voltage = np.clip(-K @ estimate, -1.0, 3.0)
         clipped += np.any(np.isin(voltage, (-1.0, 3.0)))
-        np.testing.assert_allclose(3.0 * action, voltage, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(3.0 * action, voltage, rtol=1e-9, atol=1e-9)
         estimate = held.A @ estimate + held.B @ voltage
     assert clipped > 0
 

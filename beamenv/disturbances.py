@@ -1,0 +1,164 @@
+"""Disturbances: for a batch of blades, the line loads and the sensor noise of one sampling instant after another.
+
+At instant k each blade has one row [load case + white load (2), N/m, held over [t_k, t_k + Δt] | sensor noise (p) of the
+reading at t_k]. The white parts are normals times a factor of their covariance, factorised once.
+
+There are two ways to draw them. ``SharedDisturbances`` has one generator for the whole batch: fast. ``SeededDisturbances``
+has a generator for each blade, so that a blade meets the same episode whatever else is in its batch. Neither keeps a
+generator: it is handed in at every call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.loads import LoadCases
+from beamenv.plant import Plant
+from beamenv.scenarios import Scenario
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+Generator = np.random.Generator
+
+BLOCK = 64
+"""Instants that ``SeededDisturbances`` draws at a time: enough to make a generator's call cheap."""
+
+
+def noise_factor(plant: Plant, scenario: Scenario) -> Array:
+    """F (2 + p, 2 + p): standard normals (…, 2 + p) @ F are [white loads, N/m | sensor noise, in the plant's unit]."""
+    p = len(plant.C)
+    factor = np.zeros((2 + p, 2 + p))
+    if scenario.white_load:
+        factor[:2, :2] = _square_root(plant.process_noise / plant.control_interval)
+    if scenario.sensor_noise:
+        factor[2:, 2:] = _square_root(plant.sensor_noise / plant.control_interval)
+    return factor
+
+
+def _square_root(covariance: Array) -> Array:
+    """Symmetric root: unlike a Cholesky factor it exists for a singular covariance too."""
+    values, vectors = np.linalg.eigh(covariance)
+    return (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+
+
+class SharedDisturbances:
+    """Disturbances of N blades from one generator, drawn anew at every instant.
+
+    ``shape`` is that of the batch: () for one blade, (blocks, size) for more. Memory is (blocks, column, blade).
+    """
+
+    def __init__(self, factor: Array, shape: tuple[int, ...]) -> None:
+        self._factor = factor if np.any(factor - np.diag(np.diagonal(factor))) else np.diagonal(factor).copy()
+        self._normals, self._rows = columns_first(shape, len(factor))
+        _, self._amplitude = columns_first(shape, 2)
+        self._steps = np.zeros(math.prod(shape), dtype=np.int64)
+        self._cases: LoadCases | None = None
+
+    def begin(self, rows: Rows, cases: LoadCases, generator: Generator) -> Array:
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise (len(rows), p) there."""
+        self._cases = merged(self._cases, rows, cases)
+        self._steps[rows] = 0
+        at = place(rows, self._rows.shape[:-1])
+        self._amplitude[at] = cases.amplitude
+        disturbance = self._scaled(generator.standard_normal((len(rows), self._rows.shape[-1])))
+        self._rows[at] = disturbance
+        return disturbance[:, 2:]
+
+    def loads(self, out: Array) -> None:
+        """Write the line loads of this instant to ``out`` (…, 2)."""
+        assert self._cases is not None
+        np.multiply(self._amplitude, self._cases.gain(self._steps).reshape(*out.shape[:-1], 1), out=out)
+        np.add(out, self._rows[..., :2], out=out)
+
+    def next(self, generator: Generator, resting: Rows | None = None) -> Array:
+        """Go to the next instant; the sensor noise (…, p) there. ``resting`` makes no difference here."""
+        self._steps += 1
+        generator.standard_normal(out=self._normals)
+        if self._factor.ndim == 1:
+            np.multiply(self._rows, self._factor, out=self._rows)
+        else:
+            self._rows[...] = self._rows @ self._factor
+        return self._rows[..., 2:]
+
+    def _scaled(self, normals: Array) -> Array:
+        return normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
+
+
+class SeededDisturbances:
+    """Disturbances of N blades, each from its own generator.
+
+    The rows of the next ``BLOCK`` instants lie in a ring that all blades read at the same place; each blade's part is
+    drawn again whenever its own episode has used up its block. ``shape`` is that of the batch: () or (blocks, size).
+    """
+
+    def __init__(self, factor: Array, shape: tuple[int, ...]) -> None:
+        count = math.prod(shape)
+        self._factor = factor
+        self._ring = np.zeros((BLOCK, count, len(factor)))
+        seen = self._ring.reshape(BLOCK, *shape, len(factor))
+        self._loads, self._noise = list(seen[..., :2]), list(seen[..., 2:])
+        self._at = 0
+        self._begun = np.zeros(count, dtype=np.int64)  # place in the ring where a blade's blocks begin
+        self._due: dict[int, Rows] = {}
+        self._drawn = np.zeros(count, dtype=np.int64)  # instants drawn so far, of each blade's episode
+        self._cases: LoadCases | None = None
+
+    def begin(self, rows: Rows, cases: LoadCases, generators: Sequence[Generator]) -> Array:
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise (len(rows), p) there."""
+        self._cases = merged(self._cases, rows, cases)
+        self._begun[rows] = self._at
+        self._due = {start: np.flatnonzero(self._begun == start) for start in np.unique(self._begun).tolist()}
+        self._drawn[rows] = 0
+        self._draw(rows, generators)
+        return self._ring[self._at, rows, 2:]
+
+    def loads(self, out: Array) -> None:
+        """Write the line loads of this instant to ``out`` (…, 2)."""
+        out[...] = self._loads[self._at]
+
+    def next(self, generators: Sequence[Generator], resting: Rows | None = None) -> Array:
+        """Go to the next instant; the sensor noise (…, p) there.
+
+        Nothing is drawn for blades that are ``resting``: their episode is over, their generator waits for the next.
+        """
+        self._at = (self._at + 1) % BLOCK
+        due = self._due.get(self._at)
+        if due is not None:
+            self._draw(due if resting is None else np.setdiff1d(due, resting), generators)
+        return self._noise[self._at]
+
+    def _draw(self, rows: Rows, generators: Sequence[Generator]) -> None:
+        """Draw the next block of ``rows``, whose blocks begin here."""
+        if not len(rows):
+            return
+        assert self._cases is not None
+        normals = np.empty((len(rows), BLOCK, len(self._factor)))
+        for row, tape in zip(rows.tolist(), normals, strict=True):
+            generators[row].standard_normal(out=tape)
+        disturbance = (normals @ self._factor).swapaxes(0, 1)
+        cases = self._cases if len(rows) == len(self._cases) else self._cases.rows(rows)
+        disturbance[..., :2] += cases.at(self._drawn[rows] + np.arange(BLOCK)[:, None])
+        self._ring[(self._at + np.arange(BLOCK)[:, None]) % BLOCK, rows] = disturbance
+        self._drawn[rows] += BLOCK
+
+
+def columns_first(shape: tuple[int, ...], columns: int) -> tuple[Array, Array]:
+    """Zeros that lie in memory as (blocks, column, blade), and the same seen as (blocks, blade, column): fast for large
+    batches, since every column is contiguous. Both (column,) for the shape () of a single blade.
+    """
+    memory = np.zeros((*shape[:-1], columns, *shape[-1:]))
+    return memory, memory.swapaxes(-2, -1) if shape else memory
+
+
+def place(rows: Rows, shape: tuple[int, ...]) -> tuple[Rows, ...]:
+    """Index of ``rows`` in arrays of the batch's shape."""
+    return np.divmod(rows, shape[-1]) if shape else ()
+
+
+def merged(cases: LoadCases | None, rows: Rows, others: LoadCases) -> LoadCases:
+    """``cases`` with those of ``rows`` exchanged for ``others``."""
+    return others if cases is None or len(rows) == len(cases) else cases.replace(rows, others)

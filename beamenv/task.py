@@ -1,0 +1,146 @@
+"""The arguments and the spaces that the single and the batched environment share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from gymnasium.spaces import Box
+from numpy.typing import NDArray
+
+from beamenv.configuration import BladeConfig, blade_config, build_plant
+from beamenv.plant import Plant
+from beamenv.scenarios import Scenario, scenario, with_load
+from beamenv.simulation import FAILURE_STRAIN, Motion
+
+Array = NDArray[np.float64]
+
+BladeArgument = BladeConfig | Mapping[str, Any] | None
+DesignArgument = BladeConfig | Mapping[str, Any] | str | None
+ScenarioArgument = Scenario | Mapping[str, Any] | str | None
+
+INFO = ("volts", "tip_displacement", "energy", "effort", "cost_increment")
+"""What info holds of a ``Motion``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What an environment is made of, its arguments checked and resolved."""
+
+    config: BladeConfig
+    design_config: BladeConfig
+    scenario: Scenario
+    steps: int
+    """Control intervals in an episode."""
+    physical_units: bool
+
+    @property
+    def plant(self) -> Plant:
+        """The true plant: what moves."""
+        return build_plant(self.config)
+
+    @property
+    def design_plant(self) -> Plant:
+        """The plant that controllers are designed for; the true one unless said otherwise."""
+        return build_plant(self.design_config)
+
+    def action_space(self) -> Box:
+        """Voltages, normalised or in V."""
+        lowest, highest = self.plant.voltage_limits
+        return Box(lowest, highest, dtype=np.float64) if self.physical_units else Box(-1.0, 1.0, (len(lowest),), np.float64)
+
+    def observation_space(self) -> Box:
+        """Sensor readings, normalised or in A."""
+        full_scale = self.plant.sensor_full_scale
+        one = np.ones_like(full_scale)
+        return Box(-full_scale, full_scale, dtype=np.float64) if self.physical_units else Box(-one, one, dtype=np.float64)
+
+
+def resolve_task(
+    preset: str,
+    speed: float | None,
+    blade: BladeArgument,
+    design: DesignArgument,
+    scenario_argument: ScenarioArgument,
+    duration: float,
+    physical_units: bool,
+) -> Task:
+    """The task meant by the arguments of an environment; ValueError names the one that is wrong."""
+    config = blade_config(preset, blade, speed)
+    interval = config.control_interval
+    if isinstance(duration, bool) or not isinstance(duration, (int, float, np.number)) or not interval / 2 < duration < math.inf:
+        raise ValueError(
+            f"duration is {duration!r}, but must be a number of seconds, at least one control interval of {interval:g} s."
+        )
+    if not isinstance(physical_units, (bool, np.bool_)):
+        raise ValueError(f"physical_units is {physical_units!r}, but must be True or False.")
+    return Task(
+        config=config,
+        design_config=config if design is None else _design_config(preset, speed, design),
+        scenario=scenario(scenario_argument),
+        steps=round(duration / interval),
+        physical_units=bool(physical_units),
+    )
+
+
+def _design_config(preset: str, speed: float | None, design: BladeConfig | Mapping[str, Any] | str) -> BladeConfig:
+    """A name is a preset; a dictionary changes ``preset`` at ``speed``, not the true blade's own changes to it."""
+    if isinstance(design, str):
+        return blade_config(design, None, speed)
+    own_speed = isinstance(design, BladeConfig) or (isinstance(design, Mapping) and "speed" in design)
+    return blade_config(preset, design, None if own_speed else speed)
+
+
+def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
+    """The action as float64; ValueError unless it has the shape and all its numbers are finite."""
+    action = _numbers("action", action)
+    if action.shape != shape:
+        raise ValueError(f"action has shape {action.shape}, but must have shape {shape}.")
+    finite = np.isfinite(action)
+    if b"\0" in finite.tobytes():  # a blade alone has no time for ``all``
+        wrong = np.argwhere(~finite)[0].tolist()
+        raise ValueError(f"action{wrong} is {action[tuple(wrong)]}, but every number must be finite.")
+    return action
+
+
+def _numbers(name: str, value: Any) -> Array:
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {value!r}, but must be an array of numbers.") from None
+
+
+def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> tuple[Scenario, Array | None]:
+    """Scenario and initial states ((n,) or (rows, n), or None) of one reset, as its options say."""
+    options = {} if options is None else options
+    if unknown := sorted(set(options) - {"load", "initial_state"}):
+        raise ValueError(f"options has the key {unknown[0]!r}, but may hold only 'load' and 'initial_state'.")
+    chosen = with_load(task.scenario, options["load"]) if "load" in options else task.scenario
+    return chosen, _initial_state(task.plant, options["initial_state"], rows) if "initial_state" in options else None
+
+
+def _initial_state(plant: Plant, value: Any, rows: int) -> Array:
+    state = _numbers("options['initial_state']", value)
+    n = len(plant.A)
+    if state.shape not in ((n,), (rows, n)):
+        raise ValueError(f"options['initial_state'] has shape {state.shape}, but must have shape ({n},) or ({rows}, {n}).")
+    strain = np.abs(state @ plant.strain.T).max(initial=0.0)
+    if not (np.isfinite(state).all() and strain <= FAILURE_STRAIN):
+        raise ValueError(
+            f"options['initial_state'] strains the blade by {strain:.3g}, but must be finite and stay below {FAILURE_STRAIN:g}."
+        )
+    return state
+
+
+def information(motion: Motion) -> dict[str, Any]:
+    """The info arrays of a motion, by the names in ``INFO``."""
+    return {
+        "volts": motion.volts,
+        "tip_displacement": motion.tip_displacement,
+        "energy": motion.energy,
+        "effort": motion.effort,
+        "cost_increment": motion.cost_increment,
+    }

@@ -1,0 +1,78 @@
+"""The proof that cost, noise and controller mean the same thing: measured in the environment, LQG costs its analytic optimum."""
+
+from dataclasses import replace
+
+import gymnasium
+import numpy as np
+import pytest
+
+import beamenv  # noqa: F401
+from baselines import PersistentLoad, lqg, lqr, no_control, stationary_cost, velocity_feedback
+
+EPISODES, DURATION, SETTLE = 256, 4.0, 1.0
+OTHERS = {
+    "no control": no_control,
+    "velocity feedback": velocity_feedback,
+    "LQR": lqr,
+    "the thesis' LQG": lambda plant: lqg(plant, "continuous"),
+    "LQG with load estimate": lambda plant: lqg(plant, persistent_load=PersistentLoad()),
+}
+
+
+@pytest.fixture(name="envs", scope="module")
+def _envs():
+    """White noise only, and a drive that never saturates."""
+    return gymnasium.make_vec(
+        beamenv.ENV_ID, num_envs=EPISODES, scenario="white", duration=DURATION, blade={"voltage_limits": (-1e6, 1e6)}
+    )
+
+
+@pytest.fixture(name="plant", scope="module")
+def _plant(envs):
+    return envs.unwrapped.plant
+
+
+def mean_costs(law, envs, seed=0):
+    """(EPISODES,), J: mean cost per second of each blade once its start is forgotten."""
+    observation, _ = envs.reset(seed=seed)
+    interval, memory, cost = envs.unwrapped.plant.control_interval, None, np.zeros(EPISODES)
+    for step in range(round(DURATION / interval)):
+        action, memory = law.predict(envs.unwrapped.state if law.observes == "state" else observation, memory)
+        observation, _, failed, _, info = envs.step(action)
+        assert np.abs(observation).max() < 1.0
+        assert np.abs(info["volts"]).max() < 1e6
+        assert not failed.any()
+        cost += info["cost_increment"] * (step * interval >= SETTLE)
+    return cost / (DURATION - SETTLE)
+
+
+def test_measured_cost_of_lqg_is_the_analytic_optimum_within_its_95_percent_interval(envs, plant):
+    law = lqg(plant)
+    costs = mean_costs(law, envs)
+    half_width = 1.96 * costs.std(ddof=1) / np.sqrt(EPISODES)
+    optimum = stationary_cost(plant, law)
+    assert half_width < 0.02 * optimum
+    assert abs(costs.mean() - optimum) < half_width
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_measured_cost_of_other_laws_is_the_analytic_one(envs, plant, name):
+    law = OTHERS[name](plant)
+    costs = mean_costs(law, envs)
+    assert abs(costs.mean() - stationary_cost(plant, law)) < 3.0 * costs.std(ddof=1) / np.sqrt(EPISODES)
+
+
+def test_no_other_law_without_the_true_state_costs_less_than_lqg(plant):
+    optimum = stationary_cost(plant, lqg(plant))
+    assert stationary_cost(plant, lqr(plant)) < optimum
+    for name in OTHERS.keys() - {"LQR"}:
+        assert stationary_cost(plant, OTHERS[name](plant)) > optimum, name
+
+
+def test_no_other_gain_of_regulator_or_filter_costs_less_on_the_thesis_blade(plant):
+    law = lqg(plant)
+    optimum, random = stationary_cost(plant, law), np.random.default_rng(0)
+    for size in np.repeat([0.003, 0.03, 0.3], 20):
+        for gains in (("state_gain", "measurement_gain"), ("measurement_input",), ("transition", "voltage_input")):
+            changed = {gain: getattr(law, gain) * (1.0 + size * random.normal(size=getattr(law, gain).shape)) for gain in gains}
+            assert stationary_cost(plant, replace(law, **changed)) > optimum

@@ -1,0 +1,145 @@
+"""Bad input gets one sentence that names it, and changes nothing."""
+
+import gymnasium
+import numpy as np
+import pytest
+
+import beamenv
+from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, SensorHistory, VectorSensorHistory
+
+WRONG = [
+    ({"preset": "wing"}, "preset = 'wing' must be one of thesis"),
+    ({"speed": 1e5}, "speed = 100000.0 rad/s must be at least 0 and below the critical speed"),
+    ({"blade": {"beam": {"thickness": -0.01}}}, "thickness"),
+    ({"blade": {"beam": {"colour": "red"}}}, "colour"),
+    ({"blade": {"patches": {"actuators": (0.0, 0.01)}}}, "overlap"),
+    ({"blade": {"patches": {"sensors": (2.0,)}}}, "sensors"),
+    ({"design": "wing"}, "'wing'"),
+    ({"scenario": "storm"}, "scenario is 'storm', but must be one of default"),
+    ({"duration": 0.0}, "duration is 0.0, but must be a number of seconds, at least one control interval"),
+    ({"duration": -1.0}, "duration is -1.0"),
+    ({"duration": float("nan")}, "duration is nan"),
+    ({"duration": "long"}, "duration is 'long'"),
+    ({"physical_units": "yes"}, "physical_units is 'yes', but must be True or False"),
+    ({"render_mode": "ansi"}, "render_mode is 'ansi'"),
+]
+
+
+@pytest.mark.parametrize("cls", [RotatingBeamEnv, RotatingBeamVectorEnv])
+@pytest.mark.parametrize(("arguments", "sentence"), WRONG)
+def test_a_bad_argument_is_named(cls, arguments, sentence):
+    with pytest.raises(ValueError, match=sentence) as caught:
+        cls(**arguments)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"num_envs": 0}, "num_envs is 0, but must be a positive integer"),
+        ({"num_envs": 2.5}, "num_envs is 2.5"),
+        ({"num_envs": True}, "num_envs is True"),
+        ({"max_episode_steps": 0}, "max_episode_steps is 0, but must be a positive integer"),
+        ({"autoreset_mode": "Never"}, "autoreset_mode is 'Never', but must be one of 'NextStep', 'SameStep'"),
+        ({"autoreset_mode": gymnasium.vector.AutoresetMode.DISABLED}, "autoreset_mode is"),
+    ],
+)
+def test_a_bad_argument_of_the_batch_is_named(arguments, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        RotatingBeamVectorEnv(**arguments)
+
+
+ACTIONS = [
+    (lambda shape: np.zeros((*shape[:-1], shape[-1] + 1)), r"action has shape \(.*5,?\), but must have shape \(.*4,?\)"),
+    (lambda shape: 0.0, r"action has shape \(\), but must have shape"),
+    (lambda shape: np.full(shape, np.nan), r"action\[0.*\] is nan, but every number must be finite"),
+    (lambda shape: np.full(shape, -np.inf), r"action\[0.*\] is -inf, but every number must be finite"),
+    (lambda shape: "full", "action is 'full', but must be an array of numbers"),
+    (lambda shape: None, "action"),
+    (lambda shape: [[1.0], [1.0, 2.0]], r"action is \[\[1.0\], \[1.0, 2.0\]\], but must be an array of numbers"),
+]
+
+
+def environments():
+    return [(RotatingBeamEnv(), (4,)), (RotatingBeamVectorEnv(3), (3, 4)), (RotatingBeamVectorEnv(3, physical_units=True), (3, 4))]
+
+
+@pytest.mark.parametrize(("bad_action", "sentence"), ACTIONS)
+def test_a_bad_action_is_named_and_changes_nothing(bad_action, sentence):
+    for (env, shape), (twin, _) in zip(environments(), environments(), strict=True):
+        for each in (env, twin):
+            each.reset(seed=1)
+            each.step(np.full(shape, 0.1))
+        with pytest.raises(ValueError, match=sentence):
+            env.step(bad_action(shape))
+        assert np.array_equal(env.state, twin.state)
+        for _ in range(3):
+            assert np.array_equal(env.step(np.full(shape, 0.1))[0], twin.step(np.full(shape, 0.1))[0])
+
+
+def test_one_bad_blade_stops_the_whole_batch():
+    envs = RotatingBeamVectorEnv(3)
+    envs.reset(seed=0)
+    before = envs.state
+    actions = np.zeros((3, 4))
+    actions[1, 2] = np.nan
+    with pytest.raises(ValueError, match=r"action\[1, 2\] is nan"):
+        envs.step(actions)
+    assert np.array_equal(envs.state, before)
+
+
+def test_a_huge_but_finite_action_only_saturates():
+    env = RotatingBeamEnv()
+    env.reset(seed=0)
+    *_, info = env.step(np.array([1e300, -1e300, 1e200, 0.0]))
+    np.testing.assert_array_equal(info["volts"], [1500.0, -1500.0, 1500.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"wind": 1.0}, "options has the key 'wind', but may hold only 'load' and 'initial_state'"),
+        ({"load": 3.0}, r"options\['load'\] is 3.0, but must be a dictionary"),
+        ({"load": {"size": 3.0}}, r"options\['load'\] is a dictionary with the key 'size'"),
+        ({"load": {"case": "gust"}}, r"options\['load'\]\['case'\] is 'gust', but must be one of step, pulse"),
+        ({"load": {"magnitude": -3.0}}, "magnitude is -3.0"),
+        ({"initial_state": np.zeros(5)}, r"options\['initial_state'\] has shape \(5,\), but must have shape \(22,\)"),
+        ({"initial_state": np.full(22, np.nan)}, r"options\['initial_state'\] strains the blade by nan, but must be finite"),
+        ({"initial_state": np.full(22, 1e3)}, r"options\['initial_state'\] strains the blade by"),
+        ({"initial_state": "rest"}, r"options\['initial_state'\] is 'rest', but must be an array of numbers"),
+    ],
+)
+def test_a_bad_reset_option_is_named_and_changes_nothing(options, sentence):
+    for (env, shape), (twin, _) in zip(environments(), environments(), strict=True):
+        env.reset(seed=1)
+        twin.reset(seed=1)
+        with pytest.raises(ValueError, match=sentence):
+            env.reset(seed=2, options=options)
+        assert np.array_equal(env.step(np.zeros(shape))[0], twin.step(np.zeros(shape))[0])
+
+
+@pytest.mark.parametrize("seed", [[1, 2], [1, 2, -3], [1, 2, 0.5], [1, 2, None], "abc", 0.5])
+def test_bad_seeds_of_a_batch_are_named(seed):
+    envs = RotatingBeamVectorEnv(3)
+    with pytest.raises(ValueError, match="seed is .*, but must be an integer, or a sequence of 3 integers that are not negative"):
+        envs.reset(seed=seed)
+
+
+def test_stepping_or_drawing_before_a_reset_is_refused():
+    for env, shape in environments():
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(np.zeros(shape))
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        RotatingBeamEnv(render_mode="rgb_array").render()
+
+
+@pytest.mark.parametrize("length", [0, -1, 2.5, True, "long"])
+def test_a_bad_history_length_is_named(length):
+    for wrap in (lambda: SensorHistory(RotatingBeamEnv(), length), lambda: VectorSensorHistory(RotatingBeamVectorEnv(2), length)):
+        with pytest.raises(ValueError, match="length is .*, but must be a positive integer"):
+            wrap()
+
+
+def test_a_history_wants_normalised_units():
+    with pytest.raises(ValueError, match="env has physical_units=True"):
+        SensorHistory(gymnasium.make(beamenv.ENV_ID, physical_units=True))

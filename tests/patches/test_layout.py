@@ -1,0 +1,83 @@
+"""Where patches may lie, and what is said about where they may not."""
+
+import math
+import re
+
+import pytest
+
+from beamenv.patches import MFC, PZT, PatchLayout, actuation, patch_force
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, RotatingBeam
+
+SPAN = 2.0
+BLADE = RotatingBeam(BoxSection(0.254, 0.0508, 0.01016), Layup.uniform(GRAPHITE_EPOXY, angles_deg=[30]), SPAN)
+
+
+def test_a_number_of_patches_is_spaced_equally_over_the_inner_seven_tenths():
+    layout = PatchLayout(actuators=4, sensors=2)
+    assert layout.actuator_positions(SPAN) == pytest.approx((0.0, 1.315 / 3, 2 * 1.315 / 3, 1.315))
+    assert layout.sensor_positions(SPAN) == pytest.approx((0.0, 1.4 - 0.085))
+
+
+def test_a_single_patch_sits_at_the_root():
+    assert PatchLayout(actuators=1).actuator_positions(SPAN) == (0.0,)
+
+
+def test_given_positions_are_kept_in_their_order():
+    assert PatchLayout(actuators=[0.9, 0.1]).actuator_positions(SPAN) == (0.9, 0.1)
+
+
+def test_patches_may_touch_each_other_and_both_limits():
+    layout = PatchLayout(actuators=(0.0, 0.085, 1.315))
+    assert layout.actuator_positions(SPAN) == (0.0, 0.085, 1.315)
+    assert len(layout.inlays(SPAN)) == 3 + 4
+
+
+def test_actuators_are_above_and_sensors_below_with_fibres_along_the_span():
+    inlays = PatchLayout(actuators=2, sensors=3).inlays(SPAN)
+    assert [inlay.wall for inlay in inlays] == ["top"] * 2 + ["bottom"] * 3
+    assert {inlay.ply.angle_deg for inlay in inlays} == {90.0}
+
+
+def test_material_names_give_their_sheets():
+    assert PatchLayout(material="MFC").patch is MFC
+    assert PatchLayout(material="PZT").patch is PZT
+
+
+def placed(**fields):
+    return lambda: PatchLayout(**fields).inlays(SPAN)
+
+
+REFUSED = {
+    "overlap": (placed(actuators=(0.0, 0.05)), r"actuators = \(0\.0, 0\.05\) must be at least one patch length, 0\.085 m, apart"),
+    "too many": (placed(sensors=18), "sensors = 18 must be at least one patch length, 0.085 m, apart"),
+    "same place twice": (placed(actuators=(0.4, 0.4)), "actuators = .* so that patches do not overlap"),
+    "before the root": (
+        placed(actuators=(-0.01,)),
+        r"actuators = \(-0\.01,\) must have their root-side edges between 0 and 1\.315 m",
+    ),
+    "beyond 0.7 L": (placed(sensors=(1.32,)), r"sensors = \(1\.32,\) must .* within 0 and 0\.7 of the 2 m span"),
+    "no room at all": (placed(length=1.5), r"length = 1\.5 of the patches must be at most 0\.7 of the 2 m span"),
+    "unknown material": (placed(material="PVDF"), "material = 'PVDF' of the patches must be one of MFC, PZT"),
+    "none": (placed(actuators=0), "actuators = 0 must be at least one patch"),
+    "minus one": (placed(sensors=-1), "sensors = -1 must be at least one patch"),
+    "empty list": (placed(sensors=()), r"sensors = \(\) must be one or more finite positions"),
+    "not a number": (placed(actuators=(0.1, math.nan)), r"actuators = \(0\.1, nan\) must be one or more finite positions"),
+    "yes": (placed(actuators=True), "actuators = True must be a number of patches or their positions"),
+    "text": (placed(actuators="root"), "actuators = 'root' must be a number of patches or their positions"),
+    "no length": (placed(length=0.0), r"length = 0\.0 of the patches must be a positive number of metres"),
+    "width as text": (placed(width="57 mm"), "width = '57 mm' of the patches must be a positive number of metres"),
+    "wider than the wall, passive or not": (
+        lambda: actuation(BLADE, PatchLayout(width=0.3, passive=False)),
+        r"width = 0\.3 m must be positive and at most the top wall's 0\.254 m",
+    ),
+    "off the blade": (lambda: patch_force(BLADE, MFC, "top", 1.95, 0.1, 0.05), "must lie on the blade, 0 to 2.0 m"),
+    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall = 'nose' must name one straight wall"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_layout_is_refused_by_name_and_value(case):
+    attempt, words = REFUSED[case]
+    with pytest.raises(ValueError, match=words) as refusal:
+        attempt()
+    assert re.fullmatch(r"[^\n]+\.", str(refusal.value))

@@ -1,0 +1,135 @@
+"""One sentence names the argument, its value and what is allowed."""
+
+import math
+from functools import partial
+
+import pytest
+
+from beamenv.structure import (
+    GRAPHITE_EPOXY,
+    BoxSection,
+    Inlay,
+    Lamina,
+    Layup,
+    Ply,
+    PolygonSection,
+    RotatingBeam,
+)
+
+NAN = math.nan
+OBLIQUE = Layup.uniform(GRAPHITE_EPOXY, angles_deg=[30] * 6)
+box = partial(BoxSection, width=0.254, depth=0.0508)
+lamina = partial(Lamina, E1=2e11, E2=5e9, G12=3e9, G13=3e9, G23=2.5e9, nu12=0.25, density=1500.0)
+graphite_walls = partial(Layup.by_wall, GRAPHITE_EPOXY)
+
+
+def blade(**changes):
+    return RotatingBeam(**{"section": box(thickness=0.01), "layup": OBLIQUE, "length": 2.0, **changes})
+
+
+def blade_with(**changes):
+    patch = {"wall": "top", "start": 0.5, "length": 0.1, "width": 0.05, "ply": Ply(GRAPHITE_EPOXY, 90.0), "thickness": 3e-4}
+    return lambda: blade(inlays=(Inlay(**{**patch, **changes}),))
+
+
+def triangle(corners=((0.0, 0.0), (0.1, 0.0), (0.0, 0.1)), walls=("a", "b", "c"), thickness=0.001):
+    return lambda: PolygonSection(corners, walls, thickness)
+
+
+def overlapping_inlays():
+    pair = (Inlay("top", start, 0.1, 0.05, Ply(GRAPHITE_EPOXY, 90.0), 3e-4) for start in (0.3, 0.25))
+    return blade(inlays=tuple(pair))
+
+
+REFUSED = {
+    "negative thickness": (lambda: box(thickness=-0.01), r"thickness = -0\.01 of the section must be a positive number"),
+    "thickness not a number": (lambda: box(thickness=NAN), "thickness = nan of the section must be a positive"),
+    "thickness missing": (lambda: box(thickness=None), "thickness = None of the section must be a positive"),
+    "wall too thick": (lambda: box(thickness=0.06), r"thickness = 0\.06 of the section must be below 0\.0508 m"),
+    "infinite width": (lambda: BoxSection(math.inf, 0.05, 0.01), "width = inf of the section must be a positive"),
+    "two corners": (triangle(((0.0, 0.0), (0.1, 0.0)), ("a", "b")), "corners = .* must be at least three"),
+    "names for other edges": (triangle(walls=("a", "b")), "corners = .* one wall name for each edge"),
+    "clockwise": (triangle(((0.0, 0.0), (0.0, 0.1), (0.1, 0.0))), "corners = .* counter-clockwise"),
+    "the same corner twice": (triangle(((0.0, 0.0), (0.1, 0.0), (0.1, 0.0))), "corners = .* must be distinct"),
+    "corner not a number": (triangle(((0.0, 0.0), (0.1, 0.0), (NAN, 0.1))), "corners = .*nan"),
+    "polygon too thick": (triangle(thickness=0.1), r"thickness = 0\.1 of the section must be below 0\.0585786 m"),
+    "unknown theory": (lambda: blade(shear="timoshenko"), "shear = 'timoshenko' must be one of higher_order, first_order, rigid"),
+    "unknown flow": (lambda: blade(shear_flow="open"), "shear_flow = 'open' must be one of consistent, thesis"),
+    "unknown theory of a section": (lambda: box(thickness=0.01).stiffness(OBLIQUE, shear="stiff"), "shear = 'stiff' must be"),
+    "no plies for a wall": (
+        lambda: blade(layup=graphite_walls(top=[0])),
+        "layup has no plies for wall 'right'; it has them for top",
+    ),
+    "no plies in a section": (lambda: box(thickness=0.01).stiffness(graphite_walls(top=[0])), "layup has no plies for wall"),
+    "plies for no wall": (
+        lambda: blade(layup=graphite_walls(top=[0], bottom=[0], left=[0], right=[0], nose=[0])),
+        "layup has plies for wall 'nose'; the section has right, top, left, bottom",
+    ),
+    "no plies": (lambda: Layup.uniform(GRAPHITE_EPOXY, []), r"angles_deg = \[\] must hold at least one ply angle"),
+    "one number for plies": (lambda: Layup.uniform(GRAPHITE_EPOXY, 30), "angles_deg = 30 must hold at least one ply angle"),
+    "ply angle not a number": (lambda: Layup.uniform(GRAPHITE_EPOXY, [0, NAN]), "angle_deg = nan must be a finite number"),
+    "ply of no material": (lambda: Layup.uniform("steel", [0]), "material = 'steel' of a ply must be a Lamina"),
+    "negative modulus": (lambda: lamina(E2=-1.0), r"E2 = -1\.0 must be a positive, finite number"),
+    "no density": (lambda: lamina(density=0.0), r"density = 0\.0 must be a positive"),
+    "Poisson's ratio too large": (
+        lambda: lamina(nu12=6.4),
+        r"nu12 = 6\.4 must be smaller in magnitude than sqrt\(E1/E2\) = 6\.325",
+    ),
+    "Poisson's ratio not a number": (lambda: lamina(nu12=NAN), "nu12 = nan must be smaller"),
+    "isotropic Poisson's ratio": (lambda: Lamina.isotropic(7e10, 0.6, 2700.0), r"nu = 0\.6 must lie between -1 and 0\.5"),
+    "isotropic modulus": (lambda: Lamina.isotropic(-7e10, 0.3, 2700.0), "E = -70000000000.0 must be a positive"),
+    "no terms": (lambda: blade(terms=0), "terms = 0 must be an integer from 1 to 30"),
+    "half a term": (lambda: blade(terms=2.5), r"terms = 2\.5 must be an integer from 1 to 30"),
+    "no length": (lambda: blade(length=0.0), r"length = 0\.0 must be a positive"),
+    "length as text": (lambda: blade(length="2 m"), "length = '2 m' must be a positive"),
+    "negative hub": (lambda: blade(hub_radius=-0.1), r"hub_radius = -0\.1 must be zero or a positive number of metres"),
+    "pretwist not a number": (lambda: blade(pretwist_deg=NAN), "pretwist_deg = nan must be a finite number of degrees"),
+    "negative taper": (lambda: blade(taper=-1.0), r"taper = -1\.0 must be a positive"),
+    "tip of wall only": (
+        lambda: blade(taper=6.0),
+        r"thickness = 0\.01 of the section must be below 0\.00846667 m at its narrow end",
+    ),
+    "negative speed": (lambda: blade().natural_frequencies(-1.0), r"speed = -1\.0 must be zero or a positive number of rad/s"),
+    "speed not a number": (lambda: blade().natural_frequencies(NAN), "speed = nan must be zero or a positive"),
+    "speed as text": (lambda: blade().natural_frequencies("fast"), "speed = 'fast' must be zero or a positive"),
+    "more modes than terms": (lambda: blade().natural_frequencies(count=61), "count = 61 must be an integer from 1 to 60"),
+    "no modes": (lambda: blade().modes(count=0), "count = 0 must be an integer from 1 to 60"),
+    "more modes than chosen motions": (lambda: blade().modes(count=11, motions=("twist",)), "count = 11 must be .* from 1 to 10"),
+    "unknown motion": (
+        lambda: blade().modes(motions=("lead",)),
+        r"motions = \('lead',\) must be a tuple of one or more of lag, flap",
+    ),
+    "motion not in a tuple": (lambda: blade().natural_frequencies(motions="lag"), "motions = 'lag' must be a tuple"),
+    "no motion": (lambda: blade().natural_frequencies(motions=()), r"motions = \(\) must be a tuple of one or more"),
+    "overlapping inlays": (overlapping_inlays, r"inlays at 0\.25 and 0\.3 m on the top wall must be 0\.1 m apart"),
+    "inlay past the tip": (blade_with(start=1.95), r"inlay from 1\.95 to 2\.05 m must lie on the blade, 0 to 2\.0 m"),
+    "inlay before the root": (blade_with(start=-0.1), r"inlay from -0\.1 to 0\.0 m must lie on the blade"),
+    "inlay wider than its wall": (blade_with(width=0.3), r"inlay width = 0\.3 m must be .* at most the top wall's 0\.254 m"),
+    "inlay as thick as its wall": (blade_with(thickness=0.01), r"inlay thickness = 0\.01 m must be .* below the wall's 0\.01 m"),
+    "inlay on no wall": (
+        blade_with(wall="nose"),
+        "wall = 'nose' must name one straight wall of the section: right, top, left, bottom",
+    ),
+    "inlay nowhere": (blade_with(start=NAN), "inlay from nan to nan m must lie on the blade"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_input_is_refused_by_name_and_value(case):
+    attempt, words = REFUSED[case]
+    with pytest.raises(ValueError, match=words) as refusal:
+        attempt()
+    assert str(refusal.value).endswith(".")
+    assert "\n" not in str(refusal.value)
+
+
+def test_inlay_that_fits_the_root_but_not_the_tapered_tip_is_refused():
+    inlay = Inlay("top", 0.0, 0.1, 0.2, Ply(GRAPHITE_EPOXY, 90.0), 3e-4)
+    blade(inlays=(inlay,))
+    with pytest.raises(ValueError, match=r"width = 0\.2 m must be .* at most the top wall's 0\.127 m"):
+        blade(inlays=(inlay,), taper=2.0)
+
+
+def test_patches_may_touch():
+    pair = (Inlay("top", start, 0.1, 0.05, Ply(GRAPHITE_EPOXY, 90.0), 3e-4) for start in (0.1, 0.2))
+    assert blade(inlays=tuple(pair)).natural_frequencies(0.0, 1)[0] > 0.0

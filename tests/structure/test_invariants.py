@@ -1,0 +1,132 @@
+"""What holds for every blade: random lay-ups, planforms and theories."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, RotatingBeam
+
+ANGLES = st.lists(st.floats(-90.0, 90.0), min_size=1, max_size=4)
+WALLS = ("top", "bottom", "left", "right")
+
+
+@st.composite
+def layups(draw):
+    if draw(st.booleans()):
+        return Layup.uniform(GRAPHITE_EPOXY, draw(ANGLES))
+    return Layup.by_wall(GRAPHITE_EPOXY, **{wall: draw(ANGLES) for wall in WALLS})
+
+
+FEW_TERMS, ANY_LAYUP, ANY_PRETWIST = st.integers(2, 7), layups(), st.floats(-60.0, 60.0)
+
+
+@st.composite
+def blades(draw, terms=FEW_TERMS, layup=ANY_LAYUP, pretwist=ANY_PRETWIST):
+    """Boxes of the thesis' order of size with random walls, lay-ups and theories."""
+    return RotatingBeam(
+        section=BoxSection(draw(st.floats(0.1, 0.3)), draw(st.floats(0.04, 0.2)), draw(st.floats(0.001, 0.015))),
+        layup=draw(layup),
+        length=draw(st.floats(1.0, 4.0)),
+        hub_radius=draw(st.floats(0.0, 1.0)),
+        pretwist_deg=draw(pretwist),
+        presetting_deg=draw(st.floats(-90.0, 90.0)),
+        taper=draw(st.floats(1.0, 2.0)),
+        shear=draw(st.sampled_from(["higher_order", "first_order", "rigid"])),
+        shear_flow=draw(st.sampled_from(["consistent", "thesis"])),
+        terms=draw(terms),
+    )
+
+
+SHARE_OF_CRITICAL_SPEED = st.floats(0.0, 0.98)
+few = settings(max_examples=40)
+
+
+@few
+@given(beam=blades())
+def test_mass_and_stiffness_are_symmetric_and_the_gyroscopic_matrix_skew(beam):
+    matrices = beam.matrices
+    for matrix in (matrices.mass, matrices.elastic_stiffness, matrices.spin_stiffness):
+        assert np.array_equal(matrix, matrix.T)
+    assert np.array_equal(matrices.gyroscopic, -matrices.gyroscopic.T)
+
+
+@few
+@given(beam=blades())
+def test_mass_and_elastic_stiffness_are_positive_definite(beam):
+    """Every motion has kinetic energy and every deformation strain energy."""
+    for matrix in (beam.matrices.mass, beam.matrices.elastic_stiffness):
+        scale = np.sqrt(np.diag(matrix))
+        assert np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min() > 0.0
+
+
+@few
+@given(beam=blades(), share=SHARE_OF_CRITICAL_SPEED)
+def test_frequencies_are_real_below_the_critical_speed(beam, share):
+    """K > 0 there, so that every λ of the first-order matrix is imaginary: no mode diverges or flutters."""
+    speed = share * beam.critical_speed
+    frequencies = beam.natural_frequencies(speed, beam.space.size)
+    assert np.all(frequencies > 0.0)
+    matrices, size = beam.matrices, beam.space.size
+    below = -np.linalg.solve(matrices.mass, np.hstack([matrices.stiffness(speed), speed * matrices.gyroscopic]))
+    eigenvalues = np.linalg.eigvals(np.vstack([np.hstack([np.zeros((size, size)), np.eye(size)]), below]))
+    assert np.abs(eigenvalues.real).max() < 1e-6 * np.abs(eigenvalues).max()
+    assert np.sort(np.abs(eigenvalues.imag))[::2][-3:] == pytest.approx(frequencies[-3:], rel=1e-6)
+
+
+@few
+@given(beam=blades())
+def test_the_critical_speed_is_the_first_at_which_a_mode_loses_its_stiffness(beam):
+    below, above = (
+        beam.natural_frequencies(factor * beam.critical_speed, 1, gyroscopic=False)[0] for factor in (1.0 - 1e-6, 1.0 + 1e-6)
+    )
+    assert above == 0.0 < below
+
+
+@few
+@given(beam=blades(terms=st.integers(2, 6)), share=SHARE_OF_CRITICAL_SPEED)
+def test_more_terms_never_raise_a_frequency_without_gyroscopic_coupling(beam, share):
+    """Rayleigh and Ritz: the trial spaces are nested, and any speed below the finer blade's critical one will do."""
+    finer = replace(beam, terms=beam.terms + 1)
+    speed = share * finer.critical_speed
+    coarse, fine = (each.natural_frequencies(speed, beam.space.size, gyroscopic=False) for each in (beam, finer))
+    assert np.all(fine <= coarse * (1.0 + 1e-7) + 1e-9 * coarse[-1])
+    assert finer.critical_speed <= beam.critical_speed * (1.0 + 1e-7)
+
+
+@few
+@given(beam=blades(pretwist=st.just(0.0)), angle=st.floats(-180.0, 180.0))
+def test_presetting_changes_no_stretch_and_twist_stiffness_and_no_frequency_at_rest(beam, angle):
+    turned = replace(beam, presetting_deg=angle)
+    one, other = (each.walls_at(np.zeros(1)).stiffness()[0][np.ix_([0, 7], [0, 7])] for each in (beam, turned))
+    assert other == pytest.approx(one, rel=1e-9, abs=1e-9 * one[0, 0])
+    count = beam.space.size
+    assert turned.natural_frequencies(0.0, count) == pytest.approx(beam.natural_frequencies(0.0, count), rel=1e-6)
+
+
+@few
+@given(beam=blades(layup=st.builds(Layup.uniform, st.just(GRAPHITE_EPOXY), ANGLES)), share=SHARE_OF_CRITICAL_SPEED)
+def test_a_blade_and_its_mirror_image_whirl_alike(beam, share):
+    """Reflection in the plane of rotation: ply angles, pretwist and presetting change sign, the spin does not."""
+    mirror = replace(beam, layup=beam.layup.mirrored(), pretwist_deg=-beam.pretwist_deg, presetting_deg=-beam.presetting_deg)
+    speed = share * beam.critical_speed
+    assert mirror.critical_speed == pytest.approx(beam.critical_speed, rel=1e-8)
+    assert mirror.natural_frequencies(speed) == pytest.approx(beam.natural_frequencies(speed), rel=1e-6)
+
+
+@few
+@given(beam=blades(), factor=st.floats(0.2, 5.0))
+def test_frequencies_scale_with_the_root_of_modulus_over_density_and_inversely_with_size(beam, factor):
+    """A blade of the same shape, ``factor`` times as large: all frequencies and the critical speed divided by it."""
+    box = beam.section
+    larger = replace(
+        beam,
+        section=BoxSection(factor * box.width, factor * box.depth, factor * box.thickness),
+        length=factor * beam.length,
+        hub_radius=factor * beam.hub_radius,
+    )
+    speed = 0.5 * beam.critical_speed
+    assert factor * larger.critical_speed == pytest.approx(beam.critical_speed, rel=1e-8)
+    assert factor * larger.natural_frequencies(speed / factor) == pytest.approx(beam.natural_frequencies(speed), rel=1e-6)
