@@ -52,5 +52,3 @@ def check_reach(problem: PlacementProblem, positions: ArrayLike) -> None:
 def family(config: BladeConfig, mode: int) -> str:
     """lag, flap, extension or twist: where most of a mode's kinetic energy is."""
     return build_beam(config).modes(config.speed, config.modes, gyroscopic=False).families[mode]
-
-

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.placement import Recorder
-from baselines.placement.positions import Bounds
+from beamenv.patches.bounds import Bounds
 
 Array = NDArray[np.float64]
 Bits = NDArray[np.bool_]

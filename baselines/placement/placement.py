@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines.placement.positions import TOLERANCE
+from beamenv.patches.bounds import TOLERANCE
 from baselines.placement.problem import PlacementProblem
 
 Array = NDArray[np.float64]
@@ -87,4 +87,4 @@ class Recorder:
 
     def _keep(self, positions: Array, cost: float) -> None:
         if cost < self.cost:
-            self.cost, self.positions = cost, self.problem.bounds.repaired(positions)
+            self.cost, self.positions = cost, np.round(self.problem.bounds.repaired(positions), 12)  # 1e-18 m is 0

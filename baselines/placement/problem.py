@@ -20,7 +20,7 @@ from baselines.placement.equations import (
     trace_slopes,
 )
 from baselines.placement.layout_model import LayoutMatrices, MatrixSlopes, layout_matrices, matrix_slopes
-from baselines.placement.positions import Bounds
+from beamenv.patches.bounds import Bounds
 from baselines.placement.reduced_layouts import ReducedLayouts, Reduction, reduce_layouts
 from baselines.placement.reduced_slopes import ReducedSlopes, reduce_with_slopes
 from baselines.placement.riccati import solve_riccati
@@ -136,7 +136,9 @@ def check_noise(config: BladeConfig) -> None:
     """``ValueError`` for a blade on which every layout of sensors is as good as any other."""
     for name in ("white_load", "sensor_noise_fraction"):
         if getattr(config, name) == 0.0:
-            raise ValueError(f"{name} = {getattr(config, name)!r} must be positive to place sensors: without noise all serve alike.")
+            raise ValueError(
+                f"{name} = {getattr(config, name)!r} must be positive to place sensors: without noise all serve alike."
+            )
 
 
 def parts_of(config: BladeConfig) -> Contributions:

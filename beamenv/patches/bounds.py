@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.patches import PatchLayout
-from beamenv.patches.layout import OUTERMOST
+from beamenv.patches.layout import OUTERMOST, PatchLayout
 
 Array = NDArray[np.float64]
 
