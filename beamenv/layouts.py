@@ -51,7 +51,7 @@ def resolve(config: BladeConfig, side: Side, given: Any) -> Positions | Drawn:
         return named(config, side, given)
     if isinstance(given, Mapping):
         return _range(config, side, given, len(own))
-    return positions_of(replace(config, patches=replace(config.patches, **{side: given})), side)
+    return positions_of(with_positions(config, {side: given}), side)
 
 
 def positions_of(config: BladeConfig, side: Side) -> Positions:
@@ -60,9 +60,11 @@ def positions_of(config: BladeConfig, side: Side) -> Positions:
     return patches.actuator_positions(length) if side == "actuators" else patches.sensor_positions(length)
 
 
-def with_positions(config: BladeConfig, positions: Mapping[Side, Positions]) -> BladeConfig:
-    """A blade with patches at other positions."""
-    return replace(config, patches=replace(config.patches, **positions))
+def with_positions(config: BladeConfig, positions: Mapping[Side, int | Positions]) -> BladeConfig:
+    """A blade with its patches, or those of one side, at other positions (m), or equally spaced where a number is given."""
+    patches = config.patches
+    actuators, sensors = positions.get("actuators", patches.actuators), positions.get("sensors", patches.sensors)
+    return replace(config, patches=replace(patches, actuators=actuators, sensors=sensors))
 
 
 def named(config: BladeConfig, side: Side, name: str) -> Positions:

@@ -98,7 +98,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         super().__init__(env)
         if isinstance(bank, bool) or not isinstance(bank, (int, np.integer)) or bank < 1:
             raise ValueError(f"bank is {bank!r}, but must be a positive integer.")
-        self._home = _with_fixed_range(env.unwrapped.task)
+        self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
         self._bank = int(bank)
         given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
         self._layouts = self._resolved(given)
@@ -145,7 +145,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
     def _adopt(self, positions: list[dict[Side, Positions]]) -> None:
         tasks = [_moved(self._home, each) for each in positions]
         spread = tasks if len(tasks) == 1 else [tasks[k % len(tasks)] for k in range(self.num_envs)]
-        self.env.unwrapped.adopt(spread)
+        self.env.unwrapped.adopt(spread)  # type: ignore[attr-defined]
         self._positions = positions
 
     def _told(self, info: dict[str, Any]) -> dict[str, Any]:

@@ -3,12 +3,11 @@
 from baselines.placement.controllability import check_reach, reach
 from baselines.placement.optimal import optimal_layout, optimal_positions
 from baselines.placement.placement import Placement
-from baselines.placement.problem import SIDES, PlacementProblem, with_positions
+from baselines.placement.problem import PlacementProblem
 from baselines.placement.search import METHODS, place
 
 __all__ = [
     "METHODS",
-    "SIDES",
     "Placement",
     "PlacementProblem",
     "check_reach",
@@ -16,5 +15,4 @@ __all__ = [
     "optimal_positions",
     "place",
     "reach",
-    "with_positions",
 ]

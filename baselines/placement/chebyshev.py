@@ -44,7 +44,7 @@ class ChebyshevSpan:
             second[..., 1] = 1.0
         for k in range(2, self.count):
             second[..., k] = 2.0 * x * second[..., k - 1] - second[..., k - 2]
-        return np.arange(self.count) * second * (2.0 / self.end)
+        return np.asarray(np.arange(self.count) * second * (2.0 / self.end))
 
     def _reference(self, z: Array) -> Array:
         return np.clip(2.0 * np.asarray(z) / self.end - 1.0, -1.0, 1.0)

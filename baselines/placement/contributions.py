@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.chebyshev import ChebyshevSpan
+from baselines.placement.triangles import packed
 from beamenv.configuration import BladeConfig
 from beamenv.patches import force_per_span
 from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
@@ -49,13 +50,12 @@ class Contributions:
     line_load: Array
     """(N, 2): generalised force per N/m."""
     stiffness: Array
-    """(3 k, N²): of sections covered on top, below, on both, bare T₀ and −h included."""
+    """(7 k, T): upper triangles; 3 k of sections covered on top, below, on both, with bare T₀ and −h, then 4 k of Ω² ∫S for
+    every kind of section, to be multiplied by c."""
     mass: Array
-    """(3 k, N²)."""
+    """(3 k, T): upper triangles."""
     gyroscopic: Array
-    """(3 k, N²)."""
-    slope: Array
-    """(4 k, N²): Ω² ∫S, to be multiplied by c."""
+    """(3 k, T): upper triangles of skew matrices."""
     tension: Array
     """(k, 4): h(z) for each kind of section, kg m/m·m = N per (rad/s)²."""
     actuator_force: Array
@@ -86,10 +86,9 @@ def contributions(config: BladeConfig) -> Contributions:
         bare_frequencies=frequencies,
         bare_gyroscopic=config.speed * basis.T @ bare.matrices.gyroscopic @ basis,
         line_load=basis.T @ bare.line_load(),
-        stiffness=beyond_bare(span, stiffness),
+        stiffness=np.concatenate([beyond_bare(span, stiffness), stacked(span, slopes)]),
         mass=beyond_bare(span, [s.mass for s in sections]),
         gyroscopic=config.speed * beyond_bare(span, [s.gyroscopic for s in sections]),
-        slope=stacked(span, slopes),
         tension=tension,
         actuator_force=np.stack([top[:, TOP], top[:, BOTH] - top[:, TOP]]),
         sensor_force=layout.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
@@ -163,11 +162,10 @@ def force_samples(beam: RotatingBeam, config: BladeConfig, span: ChebyshevSpan, 
 
 
 def stacked(span: ChebyshevSpan, samples: list[Array]) -> Array:
-    """Integrals of several samples (nodes, N, N) under each other: (len · k, N²)."""
-    integrals = [span.integral(sample) for sample in samples]
-    return np.concatenate([integral.reshape(len(integral), -1) for integral in integrals])
+    """Integrals of several samples (nodes, N, N), as triangles under each other: (len · k, T)."""
+    return np.concatenate([packed(span.integral(sample)) for sample in samples])
 
 
 def beyond_bare(span: ChebyshevSpan, samples: list[Array]) -> Array:
-    """What the covered kinds of section have and the bare one has not: (3 k, N²)."""
+    """What the covered kinds of section have and the bare one has not: (3 k, T)."""
     return stacked(span, [sample - samples[BARE] for sample in samples[1:]])

@@ -11,7 +11,7 @@ from beamenv.configuration import BladeConfig, build_beam
 Array = NDArray[np.float64]
 
 NO_REACH = 1e-6
-"""Share of the best-reached mode below which a mode is beyond reach: round-off leaves 1e-12, the weakest real coupling seen is 2e-4."""
+"""Share of the best-reached mode below which a mode is beyond reach: round-off leaves 1e-12, the weakest coupling seen is 2e-4."""
 
 
 def reach(problem: PlacementProblem, positions: ArrayLike) -> Array:

@@ -49,7 +49,7 @@ def filter_slopes(blades: ReducedLayouts, slopes: ReducedSlopes, load_noise: Arr
 
 
 def trace_slopes(equation: Equation, slopes: Equation, solution: Array) -> Array:
-    """d tr(X) (p,) of one equation with solution X (n, n), by its adjoint.
+    """Derivatives of tr(X) (p,) of one equation with solution X (n, n), by its adjoint.
 
     With A_c = A − GX and A_c Λ + Λ A_cᵀ + I = 0: d tr(X) = tr(Λ (X dA + dAᵀX + dQ − X dG X)).
     """

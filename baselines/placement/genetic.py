@@ -17,7 +17,7 @@ Bits = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Genetic:
-    """Selection by tournament, crossover, mutation; the best of parents and children survive. Overlaps are repaired, not penalised."""
+    """Tournaments, crossover, mutation; the best of parents and children survive. Overlaps are repaired, not penalised."""
 
     population: int = 30
     crossover: float = 0.7

@@ -118,7 +118,7 @@ class Intervals:
         return np.asarray(weighted.transpose(0, 2, 1) @ steps).reshape(len(steps), -1)
 
     def _pull(self, tension: Array) -> Array:
-        """c (N, E): what patches further out pull, and h at the interval's own end."""
+        """The constants c (N, E): what patches further out pull, and h at the interval's own end."""
         h = self.values @ tension
         at_start = np.einsum("nek,nek->ne", self.covered, h[:, :-1])
         at_end = np.einsum("nek,nek->ne", self.covered, h[:, 1:])

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from baselines.placement.contributions import Contributions
 from baselines.placement.intervals import Intervals, PatchEdges
+from baselines.placement.triangles import skew_from, symmetric_from
 
 Array = NDArray[np.float64]
 
@@ -36,10 +37,11 @@ def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, leng
     stiffness, mass, gyroscopic = np.eye(n)[None], np.diag(parts.bare_frequencies**-2.0)[None], parts.bare_gyroscopic[None]
     if passive:
         cut = Intervals.of(patches)
-        share, pulled = cut.share(), cut.pulled_share(parts.tension)
-        stiffness = added(stiffness, share @ parts.stiffness, pulled @ parts.slope)
-        mass = added(mass, share @ parts.mass)
-        gyroscopic = added(gyroscopic, share @ parts.gyroscopic)
+        share = cut.share()
+        both = np.concatenate([share, cut.pulled_share(parts.tension)], axis=1)
+        stiffness = stiffness + symmetric_from(both @ parts.stiffness, n)
+        mass = mass + symmetric_from(share @ parts.mass, n)
+        gyroscopic = gyroscopic + skew_from(share @ parts.gyroscopic, n)
     top, below = patches.force_shares()
     return LayoutMatrices(
         stiffness=stiffness,
@@ -48,15 +50,6 @@ def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, leng
         forces=along(top, parts.actuator_force).swapaxes(1, 2),
         charges=along(below, parts.sensor_force),
     )
-
-
-def added(bare: Array, *flat: Array) -> Array:
-    """The bare matrix (1, n, n) plus what patches add, (N, n²) each: (N, n, n), in the memory of the first."""
-    total = flat[0].reshape(-1, *bare.shape[1:])
-    for more in flat[1:]:
-        total += more.reshape(total.shape)
-    total += bare
-    return total
 
 
 def along(shares: Array, series: Array) -> Array:
@@ -85,9 +78,10 @@ def matrix_slopes(parts: Contributions, actuators: Array, sensors: Array, length
     stiffness = mass = gyroscopic = np.zeros((len(actuators) + len(sensors), n, n))
     if passive:
         cut = Intervals.of(patches)
-        share, pulled = cut.share_slopes()[0], cut.pulled_share_slopes(parts.tension)[0]
-        stiffness = (share @ parts.stiffness + pulled @ parts.slope).reshape(-1, n, n)
-        mass, gyroscopic = (share @ parts.mass).reshape(-1, n, n), (share @ parts.gyroscopic).reshape(-1, n, n)
+        share = cut.share_slopes()[0]
+        both = np.concatenate([share, cut.pulled_share_slopes(parts.tension)[0]], axis=1)
+        stiffness = symmetric_from(both @ parts.stiffness, n)
+        mass, gyroscopic = symmetric_from(share @ parts.mass, n), skew_from(share @ parts.gyroscopic, n)
     top, below = patches.force_share_slopes()
     return MatrixSlopes(
         stiffness=stiffness,

@@ -6,48 +6,46 @@ import hashlib
 import json
 import os
 import tempfile
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from baselines.placement.problem import PlacementProblem, Side, with_positions
+from baselines.placement.problem import PlacementProblem
 from baselines.placement.search import place
 from beamenv.configuration import BladeConfig, to_dict
+from beamenv.layouts import SIDES, Positions, Side, positions_of, with_positions
 
 METHOD, SEED = "ga+sqp", 0
 VERSION = 1
 """Of the way in which layouts are worked out: another number forgets what was kept."""
 
 
-def optimal_positions(config: BladeConfig, side: Side) -> tuple[float, ...]:
+def optimal_positions(config: BladeConfig, side: Side) -> Positions:
     """Positions, m, of as many patches as the blade has: of the actuators, or of the sensors.
 
     They do not depend on where the patches are now: the actuators are placed with the sensors equally spaced, then the sensors
     with the actuators placed. The thesis' GA and SQP take a few seconds; the answer is kept in the process and in the user's
     cache (``$BEAMENV_CACHE``, or ``beamenv`` in ``$XDG_CACHE_HOME`` or ``~/.cache``).
     """
-    patches, length = config.patches, config.beam.length
-    counts = len(patches.actuator_positions(length)), len(patches.sensor_positions(length))
-    return optimal_layout(replace(config, patches=replace(patches, actuators=counts[0], sensors=counts[1])))[side]
+    return optimal_layout(with_positions(config, {each: len(positions_of(config, each)) for each in SIDES}))[side]
 
 
 @lru_cache(maxsize=256)
-def optimal_layout(config: BladeConfig) -> dict[str, tuple[float, ...]]:
+def optimal_layout(config: BladeConfig) -> dict[Side, Positions]:
     """Both sides' positions for a blade with equally spaced patches."""
     kept = _kept_in(config)
     try:
         read = json.loads(kept.read_text())
-        return {side: tuple(read[side]) for side in ("actuators", "sensors")}
+        return {side: tuple(read[side]) for side in SIDES}
     except (OSError, ValueError, KeyError):
         found = computed_layout(config)
     _keep(kept, json.dumps(found))
     return found
 
 
-def computed_layout(config: BladeConfig) -> dict[str, tuple[float, ...]]:
+def computed_layout(config: BladeConfig) -> dict[Side, Positions]:
     """Search for the actuators, then for the sensors."""
     actuators = place(PlacementProblem.of(config, "actuators"), METHOD, SEED).positions
-    sensors = place(PlacementProblem.of(with_positions(config, "actuators", actuators), "sensors"), METHOD, SEED).positions
+    sensors = place(PlacementProblem.of(with_positions(config, {"actuators": actuators}), "sensors"), METHOD, SEED).positions
     return {"actuators": actuators, "sensors": sensors}
 
 

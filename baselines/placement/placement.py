@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.patches.bounds import TOLERANCE
 from baselines.placement.problem import PlacementProblem
+from beamenv.patches.bounds import TOLERANCE
 
 Array = NDArray[np.float64]
 

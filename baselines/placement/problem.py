@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,16 +20,15 @@ from baselines.placement.equations import (
     trace_slopes,
 )
 from baselines.placement.layout_model import LayoutMatrices, MatrixSlopes, layout_matrices, matrix_slopes
-from beamenv.patches.bounds import Bounds
 from baselines.placement.reduced_layouts import ReducedLayouts, Reduction, reduce_layouts
 from baselines.placement.reduced_slopes import ReducedSlopes, reduce_with_slopes
 from baselines.placement.riccati import solve_riccati
 from beamenv.configuration import BladeConfig, build_plant
+from beamenv.layouts import SIDES, Side, with_positions
+from beamenv.patches.bounds import Bounds
 
 Array = NDArray[np.float64]
-Side = Literal["actuators", "sensors"]
 Matrices = TypeVar("Matrices", LayoutMatrices, MatrixSlopes)
-SIDES: tuple[Side, ...] = ("actuators", "sensors")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,14 +66,14 @@ class PlacementProblem:
         own = getattr(config.patches, side)
         number = (own if isinstance(own, int) else len(own)) if count is None else count
         room = Bounds.of(config.patches, config.beam.length, number, bounds, name=side)
-        uniform = with_positions(config, side, room.uniform())
+        uniform = with_positions(config, {side: tuple(room.uniform().tolist())})
         plant = build_plant(uniform)
         held = replace(uniform, sensor_full_scale=float(plant.sensor_full_scale[0]))
         return cls(held, side, room, plant.process_noise, float(plant.sensor_noise[0, 0]), parts_of(config))
 
     def configuration(self, positions: ArrayLike) -> BladeConfig:
         """The blade with its moving patches at ``positions`` (count,), m: what ``build_plant`` takes."""
-        return with_positions(self.config, self.side, self.bounds.checked(positions))
+        return with_positions(self.config, {self.side: tuple(self.bounds.checked(positions).tolist())})
 
     def cost(self, positions: Array) -> Array:
         """The trace (N,) of feasible layouts (N, count), m from the root."""
@@ -126,19 +125,11 @@ class PlacementProblem:
         return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True))
 
 
-def with_positions(config: BladeConfig, side: Side, positions: ArrayLike) -> BladeConfig:
-    """A configuration with the patches of one side at ``positions`` (m)."""
-    changes = {side: tuple(np.asarray(positions, dtype=float).tolist())}
-    return replace(config, patches=replace(config.patches, **changes))
-
-
 def check_noise(config: BladeConfig) -> None:
     """``ValueError`` for a blade on which every layout of sensors is as good as any other."""
     for name in ("white_load", "sensor_noise_fraction"):
         if getattr(config, name) == 0.0:
-            raise ValueError(
-                f"{name} = {getattr(config, name)!r} must be positive to place sensors: without noise all serve alike."
-            )
+            raise ValueError(f"{name} = {getattr(config, name)!r} must be positive: without noise all sensors serve alike.")
 
 
 def parts_of(config: BladeConfig) -> Contributions:

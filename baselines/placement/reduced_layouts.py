@@ -55,7 +55,7 @@ class Reduction:
 
 def reduce_layouts(parts: Contributions, matrices: LayoutMatrices, reduction: Reduction) -> ReducedLayouts:
     """Reduce layouts to their first modes."""
-    compliance = np.linalg.inv(matrices.stiffness)
+    compliance = np.asarray(np.linalg.inv(matrices.stiffness), dtype=np.float64)
     omega, shapes = lowest_modes(parts.bare_frequencies, matrices, compliance, reduction.modes)
     return in_modes(parts, matrices, compliance, omega, shapes, reduction)
 
@@ -86,8 +86,7 @@ def lowest_modes(bare_frequencies: Array, matrices: LayoutMatrices, compliance: 
     step = compliance @ matrices.mass
     basis = step[..., :size] * scale
     for _ in range(ITERATIONS):
-        basis = orthonormal(step @ basis * scale, matrices.stiffness)
-        scale = 1.0
+        basis = orthonormal(step @ basis, matrices.stiffness)
     inverse_squares, vectors = np.linalg.eigh(basis.swapaxes(-1, -2) @ matrices.mass @ basis)
     omega = np.ascontiguousarray(inverse_squares[..., : -modes - 1 : -1]) ** -0.5
     return omega, basis @ (vectors[..., : -modes - 1 : -1] * omega[..., None, :])

@@ -49,8 +49,8 @@ def doubling(A: Array, G: Array, Q: Array) -> Array:
 def start_of_doubling(A: Array, G: Array, Q: Array, shift: Array) -> tuple[Array, Array, Array]:
     """E₀, G₀, H₀: the Hamiltonian's Cayley transform with poles at ``shift`` (N, 1, 1), 1/s, in symplectic form."""
     eye = np.eye(A.shape[-1])
-    inverse = np.linalg.inv(A - shift * eye)
-    middle = np.linalg.inv(transposed(A) - shift * eye + Q @ inverse @ G)
+    inverse = np.asarray(np.linalg.inv(A - shift * eye), dtype=np.float64)
+    middle = np.asarray(np.linalg.inv(transposed(A) - shift * eye + Q @ inverse @ G), dtype=np.float64)
     E = eye + 2.0 * shift * transposed(middle)
     return E, symmetric(2.0 * shift * inverse @ G @ middle), symmetric(2.0 * shift * middle @ Q @ inverse)
 
