@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,16 @@ class SharedDisturbances:
         self._steps = np.zeros(math.prod(shape), dtype=np.int64)
         self._cases: LoadCases | None = None
 
+    def __getstate__(self) -> tuple[Any, ...]:
+        return self._factor, self._rows.shape[:-1], self._rows.copy(), self._amplitude.copy(), self._steps, self._cases
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        """Views must be views again of what they show, or a copied batch would come to a halt."""
+        factor, shape, rows, amplitude, steps, cases = state
+        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, shape)  # type: ignore[misc]
+        self._rows[...], self._amplitude[...] = rows, amplitude
+        self._steps, self._cases = steps, cases
+
     def begin(self, rows: Rows, cases: LoadCases, generator: Generator) -> Array:
         """Start ``rows`` at instant 0 of their load cases; their sensor noise (len(rows), p) there."""
         self._cases = merged(self._cases, rows, cases)
@@ -97,15 +108,25 @@ class SeededDisturbances:
 
     def __init__(self, factor: Array, shape: tuple[int, ...]) -> None:
         count = math.prod(shape)
-        self._factor = factor
+        self._factor, self._shape = factor, shape
         self._ring = np.zeros((BLOCK, count, len(factor)))
-        seen = self._ring.reshape(BLOCK, *shape, len(factor))
-        self._loads, self._noise = list(seen[..., :2]), list(seen[..., 2:])
+        self._see_ring()
         self._at = 0
         self._begun = np.zeros(count, dtype=np.int64)  # place in the ring where a blade's blocks begin
         self._due: dict[int, Rows] = {}
         self._drawn = np.zeros(count, dtype=np.int64)  # instants drawn so far, of each blade's episode
         self._cases: LoadCases | None = None
+
+    def _see_ring(self) -> None:
+        seen = self._ring.reshape(BLOCK, *self._shape, len(self._factor))
+        self._loads, self._noise = list(seen[..., :2]), list(seen[..., 2:])
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name not in ("_loads", "_noise")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._see_ring()
 
     def begin(self, rows: Rows, cases: LoadCases, generators: Sequence[Generator]) -> Array:
         """Start ``rows`` at instant 0 of their load cases; their sensor noise (len(rows), p) there."""

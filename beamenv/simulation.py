@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,6 +124,16 @@ class Blades:
         _, self._weighted = columns_first(self._shape, m)
         self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
         self._next_state = self._product[..., :n]
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        return self.plant, self.scenario, self.count, self._physical, self._joined.copy(), self._disturbances
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        """Views must be views again of what they show, or a copied batch would come to a halt."""
+        *arguments, joined, disturbances = state
+        self.__init__(*arguments)  # type: ignore[misc]
+        self._joined[...] = joined
+        self._disturbances = disturbances
 
     @property
     def state(self) -> Array:

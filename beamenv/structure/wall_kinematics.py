@@ -53,29 +53,27 @@ class ShearFlow:
 
     twist: Array
     """ψ (S, P), m: per unit φ'."""
-    stretch_bending: Array
-    """χ (S, P, 3): per unit w', θx', θy'."""
+    relaxation: Array
+    """χ (S, P, 4): per unit w', θx', θy', φ''."""
     warping: Array
     """F_w (S, P), m²: zero-mean sectorial area."""
 
 
 def shear_flow_of(points: WallPoints, laws: LawTable, shear_flow: str) -> ShearFlow:
-    """K15 ε0 + K55 γ constant around the cell (Berdichevsky, Armanios and Badir 1992), or the thesis' χ = 0, ψ = 2A/perimeter."""
-    twice_area = points.around(points.normal_distance)
-    if shear_flow == "thesis":
-        perimeter = points.ds.sum(axis=1)
-        twist = np.broadcast_to((twice_area / perimeter)[:, None], points.x.shape)
-        stretch_bending = np.zeros((*points.x.shape, 3))
-    else:
-        compliance = 1.0 / laws.stiffness[..., 3, 3]
-        around = points.around(compliance)
-        twist = (twice_area / around)[:, None] * compliance
-        coupling = laws.stiffness[..., 0, 3] * compliance
-        free = coupling[..., None] * np.stack([np.ones_like(points.x), points.y, -points.x], axis=-1)
-        stretch_bending = (points.around(free) / around[:, None])[:, None, :] * compliance[..., None] - free
+    """K15 ε0 + K55 γ constant around the cell (Berdichevsky, Armanios and Badir 1992), or the thesis' χ = 0, ψ = 2A/perimeter.
+
+    ε0 counts with all its four parts: without that of φ'' the frequencies would depend on the axis the section is described from.
+    """
+    consistent = shear_flow == "consistent"
+    compliance = 1.0 / laws.stiffness[..., 3, 3] if consistent else np.ones_like(points.x)
+    coupling = laws.stiffness[..., 0, 3] * compliance if consistent else np.zeros_like(points.x)
+    around = points.around(compliance)
+    twist = (points.around(points.normal_distance) / around)[:, None] * compliance
     sectorial = points.integral_from_start(points.normal_distance - twist)
-    mean = points.around(sectorial) / points.ds.sum(axis=1)
-    return ShearFlow(twist=twist, stretch_bending=stretch_bending, warping=sectorial - mean[:, None])
+    warping = sectorial - (points.around(sectorial) / points.ds.sum(axis=1))[:, None]
+    free = coupling[..., None] * np.stack([np.ones_like(points.x), points.y, -points.x, -warping], axis=-1)
+    relaxation = (points.around(free) / around[:, None])[:, None, :] * compliance[..., None] - free
+    return ShearFlow(twist=twist, relaxation=relaxation, warping=warping)
 
 
 def strain_rows(points: WallPoints, flow: ShearFlow, thickness: Array, shear: str) -> Array:
@@ -84,7 +82,7 @@ def strain_rows(points: WallPoints, flow: ShearFlow, thickness: Array, shear: st
     rows = np.zeros((*x.shape, 6, 9))
     rows[..., 0, W], rows[..., 0, TX], rows[..., 0, TY], rows[..., 0, PHI2] = 1.0, y, -x, -flow.warping
     rows[..., 1, TX], rows[..., 1, TY], rows[..., 1, PHI2] = m, -l, -points.tangential_distance
-    rows[..., 3, [W, TX, TY]] = flow.stretch_bending
+    rows[..., 3, [W, TX, TY, PHI2]] = flow.relaxation
     rows[..., 3, PHI] = flow.twist
     rows[..., 4, PHI] = 2.0
     if shear != "rigid":

@@ -1,5 +1,8 @@
 """The native batch beside Gymnasium's own vectorisation of the single environment."""
 
+import copy
+import pickle
+
 import gymnasium
 import numpy as np
 import pytest
@@ -192,3 +195,22 @@ def test_a_closed_batch_says_that_it_must_be_reset():
     assert envs.closed
     with pytest.raises(gymnasium.error.ResetNeeded):
         envs.step(np.zeros((2, 4)))
+
+
+@pytest.mark.parametrize("duplicate", [copy.deepcopy, lambda envs: pickle.loads(pickle.dumps(envs))])
+@pytest.mark.parametrize(
+    ("make", "seed"), [(RotatingBeamEnv, 1), (lambda: RotatingBeamVectorEnv(6), 1), (lambda: RotatingBeamVectorEnv(2), [1, 2])]
+)
+def test_a_copy_goes_its_own_way_from_where_the_original_was(duplicate, make, seed):
+    env, untouched = make(), make()
+    for each in (env, untouched):
+        each.reset(seed=seed)
+        each.step(np.full(each.action_space.shape, 0.5))
+    twin = duplicate(env)
+    for _ in range(70):
+        action = np.full(env.action_space.shape, 0.3)
+        expected = untouched.step(action)
+        assert np.array_equal(twin.step(action)[0], expected[0])
+        assert np.array_equal(twin.state, untouched.state)
+    assert np.array_equal(duplicate(untouched).state, twin.state)
+    assert not np.array_equal(env.state, twin.state)

@@ -1,10 +1,12 @@
 """One patch on an isotropic cantilever against hand formulas; reciprocity of actuation and sensing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from beamenv.patches import MFC, PZT, PatchLayout, actuation, patch_force, sensing
-from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Inlay, Lamina, Layup, RotatingBeam
 
 NU = 0.3
 ISOTROPIC = Layup.uniform(Lamina.isotropic(E=70e9, nu=NU, density=2700.0), angles_deg=[0])
@@ -70,13 +72,22 @@ def test_force_grows_with_width_and_adds_along_the_span(cantilever):
     assert twice[in_bending] == pytest.approx(2.0 * whole[in_bending], abs=1e-10 * scale)
 
 
-def test_bare_passive_beam_and_all_theories_agree_on_a_slender_cantilever():
+def test_all_shear_theories_agree_on_a_slender_cantilever():
     """Shear theories change the deflection per volt by less than 0.5 % (the patch's moment shears nothing)."""
     found = [
         static_tip(beam, patch_force(beam, MFC, "top", START, PATCH, WIDTH))[1]
         for beam in (RotatingBeam(SECTION, ISOTROPIC, LENGTH, shear=shear) for shear in ("rigid", "first_order", "higher_order"))
     ]
     assert found == pytest.approx([found[0]] * 3, rel=5e-3)
+
+
+@pytest.mark.parametrize("neighbour", [0.8, 1.3])
+def test_other_cuts_of_the_wall_do_not_widen_or_narrow_a_patch(cantilever, neighbour):
+    """An inlay of the host's own material elsewhere on the wall, 0.8 or 1.3 times as wide, changes nothing."""
+    host = ISOTROPIC.plies("top")[0]
+    inlay = Inlay("top", 1.5, 0.1, neighbour * WIDTH, host, MFC.thickness)
+    one, other = (patch_force(beam, MFC, "top", START, PATCH, WIDTH) for beam in (cantilever, replace(cantilever, inlays=(inlay,))))
+    assert other == pytest.approx(one, abs=1e-12 * np.abs(one).max())
 
 
 OBLIQUE_BLADE = RotatingBeam(

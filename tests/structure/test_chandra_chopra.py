@@ -30,23 +30,21 @@ def hertz(beam):
 
 
 def test_cas_beam_agrees_with_finite_elements_of_the_same_material(finite_elements, graphite_of_the_elements, deviation):
-    """Ten terms: 19.94, 37.34, 124.45 Hz at rest and 27.63, 38.50, 132.25 Hz at 1000 rev/min, within 0.75 %."""
+    """Ten terms: 19.93, 37.34, 124.40 Hz at rest and 27.63, 38.50, 132.20 Hz at 1000 rev/min, within 0.71 %."""
     off = deviation(hertz(blade(graphite_of_the_elements)), finite_elements)
-    assert np.abs(off).max() < 0.75
+    assert np.abs(off).max() < 0.71
 
 
-def test_cas_beam_of_the_thesis_material_agrees_when_converged(finite_elements, deviation):
-    """G12 = 6.135 GPa, 2.3 % stiffer in twist, to which CAS couples flap: 16 terms are within 1.25 %.
+def test_cas_beam_of_the_thesis_material_agrees_too(finite_elements, deviation):
+    """G12 = 6.135 GPa, 2.3 % stiffer in twist, to which CAS couples flap: ten terms are within 1.47 %, sixteen within 1.16 %.
 
-    Ten terms are at the limit, 1.507 % in the second flap mode: the clamp restrains warping (φ' = 0) in a boundary layer that
-    polynomials resolve slowly, and Ritz values come from above. The first five are within 1.5 % already.
+    What ten terms lack is the boundary layer in which the clamp restrains warping (φ' = 0): polynomials resolve it slowly,
+    and Ritz values come from above.
     """
-    sixteen = deviation(hertz(blade(AS4_3501_6, terms=16)), finite_elements)
-    ten = deviation(hertz(blade(AS4_3501_6)), finite_elements)
-    assert np.abs(sixteen).max() < 1.25
-    assert ten[0, 2] == pytest.approx(1.507, abs=0.005)
-    ten[0, 2] = 0.0
+    ten, sixteen = (deviation(hertz(blade(AS4_3501_6, terms=terms)), finite_elements) for terms in (10, 16))
     assert np.abs(ten).max() < 1.5
+    assert np.abs(sixteen).max() < 1.2
+    assert np.all(sixteen <= ten)
 
 
 def test_cas_beam_agrees_with_the_experiment_as_well_as_with_the_theory_of_its_authors(table, deviation):

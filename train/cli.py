@@ -1,0 +1,205 @@
+"""The command ``beamenv``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+app = typer.Typer(
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
+)
+
+PresetOption = Annotated[
+    str, typer.Option(help="Configuration to begin with: thesis, thesis-untwisted, thesis-pretwisted, chandra-chopra.")
+]
+SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
+BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
+ScenarioOption = Annotated[str, typer.Option(help="Load cases: default, step, pulse, deflection, harmonic, white, quiet.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
+
+
+@contextmanager
+def one_sentence() -> Iterator[None]:
+    """Bad input ends with its one sentence on standard error and status 2, not with a traceback."""
+    try:
+        yield
+    except (ValueError, FileNotFoundError) as error:
+        print(f"beamenv: {error}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        raise typer.Exit(2) from None
+
+
+def print_json(content: Any) -> None:
+    """To standard output, as JSON."""
+    print(json.dumps(content, indent=2, allow_nan=False))  # noqa: T201 - for machines
+
+
+def environment_arguments(preset: str, speed: float | None, blade: Path | None, scenario: str) -> dict[str, Any]:
+    """Keyword arguments of the environment that the options stand for."""
+    from beamenv.configuration import load_config, to_dict
+
+    arguments: dict[str, Any] = {"preset": preset, "scenario": scenario}
+    if speed is not None:
+        arguments["speed"] = speed
+    if blade is not None:
+        arguments["blade"] = to_dict(load_config(blade))
+    return arguments
+
+
+@app.command()
+def frequencies(
+    preset: PresetOption = "thesis",
+    speed: Annotated[
+        list[float] | None, typer.Option(help="Rotor speed in rad/s; repeat for more. 0 and the preset's if left out.")
+    ] = None,
+    count: Annotated[int, typer.Option(help="How many modes.")] = 6,
+    gyroscopic: Annotated[bool, typer.Option(help="With gyroscopic coupling.")] = True,
+    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
+    blade: BladeOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Natural frequencies of a blade, each with the family its motion belongs to."""
+    with one_sentence():
+        from beamenv.configuration import blade_config, build_beam, load_config
+
+        config = blade_config(preset, load_config(blade) if blade else None)
+        beam = build_beam(config) if patches else config.beam.build()
+        speeds = speed or sorted({0.0, config.speed})
+        found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
+    if as_json:
+        rows = [
+            {"speed": each, "natural_frequencies": modes.natural_frequencies.tolist(), "families": list(modes.families)}
+            for each, modes in zip(speeds, found, strict=True)
+        ]
+        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows})
+        return
+    table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
+    table.add_column("mode", justify="right")
+    for each in speeds:
+        table.add_column(f"at {each:g} rad/s", justify="right")
+    for mode in range(count):
+        table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
+    Console().print(table)
+
+
+def _frequency(modes: Any, mode: int) -> str:
+    frequency = modes.natural_frequencies[mode]
+    return f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f}) {modes.families[mode]}"
+
+
+@app.command()
+def evaluate(
+    controller: Annotated[
+        str, typer.Argument(help="none, velocity, lqg-thesis, lqg, lqg-load, lqr, lqr-load, or the folder of a trained agent.")
+    ],
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    scenario: ScenarioOption = "default",
+    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    as_json: JsonOption = False,
+) -> None:
+    """Run one controller through held-out episodes and compare it with no control on the same ones."""
+    with one_sentence():
+        import gymnasium as gym
+
+        import baselines
+        import beamenv
+        from train.compare import HELD_OUT
+        from train.contenders import CLASSICAL, classical
+
+        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **environment_arguments(preset, speed, blade, scenario))
+        if controller not in CLASSICAL and Path(controller).is_dir():
+            from train.agents import load_agent
+
+            law: Any = load_agent(Path(controller))
+        else:
+            law = classical(controller, envs.unwrapped.design_plant)
+        evaluation = baselines.evaluate(law, envs, range(HELD_OUT, HELD_OUT + seeds))
+    if as_json:
+        print_json(evaluation.to_dict())
+    else:
+        from train.report import screen_table
+
+        Console().print(screen_table([evaluation]))
+
+
+@app.command()
+def train(
+    agent: Annotated[str, typer.Argument(help="gradient (through the plant) or ppo (Stable-Baselines3).")],
+    folder: Annotated[Path, typer.Argument(help="Where the trained agent is written.")],
+    seconds: Annotated[float, typer.Option(help="Training time.")] = 120.0,
+    seed: Annotated[int, typer.Option(help="Of the training.")] = 0,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    scenario: ScenarioOption = "default",
+) -> None:
+    """Train an agent and save it; Ctrl-C keeps the best so far. `beamenv evaluate FOLDER` then tells how good it is."""
+    with one_sentence():
+        from train.agents import save_agent, train_agent
+
+        from train.progress import Progressbar
+
+        arguments = environment_arguments(preset, speed, blade, scenario)
+        with Progressbar({agent: seconds}) as bar:
+            trained = train_agent(agent, arguments, seconds, seed, lambda progress: bar.training(agent, seconds, progress))
+        save_agent(trained, folder)
+    Console().print(f"{agent} saved in {folder}")
+
+
+@app.command()
+def compare(
+    folder: Annotated[Path, typer.Argument(help="Where tables, figures and agents are written.")] = Path("results/compare"),
+    minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 5.5,
+    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    scenario: ScenarioOption = "default",
+    as_json: JsonOption = False,
+) -> None:
+    """Train two agents and compare every controller on the same held-out episodes: tables, figures, models.
+
+    An interrupted run goes on from what its folder holds.
+    """
+    with one_sentence():
+        from train.compare import Comparison
+        from train.compare import compare as run
+        from train.progress import Progressbar
+        from train.report import screen_table
+
+        default = Comparison().budget
+        share = 60.0 * minutes / sum(default.values())
+        budget = {name: share * length for name, length in default.items()} if minutes else {}
+        comparison = Comparison(environment_arguments(preset, speed, blade, scenario), budget, seeds)
+        with Progressbar(budget) as bar:
+            evaluations = run(comparison, folder, bar)
+    if as_json:
+        print_json([evaluation.row() for evaluation in evaluations])
+    else:
+        Console().print(screen_table(evaluations))
+        Console().print(f"written to {folder}")
+
+
+@app.command()
+def benchmark(as_json: JsonOption = False) -> None:
+    """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
+    from train.benchmark import benchmark as run
+    from train.benchmark import show
+
+    results = run()
+    if as_json:
+        print_json(results)
+    else:
+        show(results)

@@ -1,0 +1,137 @@
+"""The main job: train the agents, run every controller through the same held-out episodes, write what came of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+from train.agents import AGENTS, Progress, load_agent, save_agent, train_agent
+
+import beamenv
+from baselines import Controller, Evaluation, LinearController, evaluate
+from beamenv.configuration import to_dict
+from train.contenders import CLASSICAL, classical
+from train.figures import write_figures
+from train.report import write_tables
+from train.storage import write_csv, write_json
+
+Array = NDArray[np.float64]
+
+HELD_OUT = 1_000_000
+"""First seed of the evaluation: training draws from generators of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What is compared, and for how long agents are trained."""
+
+    environment: Mapping[str, Any] = field(default_factory=dict)
+    """Keyword arguments of the environment, as JSON can hold them."""
+    budget: Mapping[str, float] = field(default_factory=lambda: {"gradient": 75.0, "ppo": 255.0})
+    """Seconds of training of each agent; none are trained where it is empty."""
+    seeds: int = 64
+    """Held-out episodes."""
+    training_seed: int = 0
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.budget if name not in AGENTS]
+        if unknown:
+            raise ValueError(f"budget has the agent {unknown[0]!r}, but must name only {', '.join(AGENTS)}.")
+        for name, seconds in self.budget.items():
+            if not (np.isfinite(seconds) and seconds > 0.0):
+                raise ValueError(f"budget of {name} = {seconds!r} must be a positive number of seconds.")
+        if not (isinstance(self.seeds, int) and self.seeds >= 2):
+            raise ValueError(f"seeds = {self.seeds!r} must be at least 2: intervals need more than one episode.")
+
+
+class Listener:
+    """What a comparison tells while it runs; by default nothing."""
+
+    def training(self, name: str, budget: float, progress: Progress) -> None:
+        """Called as the training of an agent goes on."""
+
+    def evaluated(self, evaluation: Evaluation) -> None:
+        """Called for each controller."""
+
+
+def compare(comparison: Comparison, folder: Path, listener: Listener | None = None) -> list[Evaluation]:
+    """Train, evaluate, write tables, models, configuration and figures to ``folder``, and return the evaluations.
+
+    Each piece is written as soon as it is there. A folder that holds trained agents of the same comparison is gone on from;
+    ``ValueError`` if it holds another comparison.
+    """
+    listener = listener or Listener()
+    envs = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
+    try:
+        plant, design = envs.unwrapped.plant, envs.unwrapped.design_plant
+        claim(folder, comparison, envs.unwrapped.task)
+        agents = {name: trained(comparison, name, folder, listener) for name in comparison.budget}
+        laws = {name: classical(name, design) for name in CLASSICAL}
+        evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
+    finally:
+        envs.close()
+    write_tables(folder, evaluations)
+    by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
+    levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
+    drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "lqg-thesis", "lqg")]
+    write_figures(folder, plant, evaluations, drawn, {name: read_curve(folder, name) for name in agents}, levels)
+    return evaluations
+
+
+def claim(folder: Path, comparison: Comparison, task: Any) -> None:
+    """Write the configuration, or see that the folder already holds this very one."""
+    path = folder / "configuration.json"
+    content = {
+        "comparison": {**asdict(comparison), "held_out_seeds": [HELD_OUT, HELD_OUT + comparison.seeds - 1]},
+        "blade": to_dict(task.config),
+        "design": to_dict(task.design_config),
+        "scenario": task.scenario.to_dict(),
+        "agents": {name: asdict(AGENTS[name]()) for name in comparison.budget},
+    }
+    content = json.loads(json.dumps(content))
+    if path.exists() and json.loads(path.read_text()) != content:
+        raise ValueError(f"folder = {str(folder)!r} holds another comparison: name another folder, or empty this one.")
+    write_json(path, content)
+
+
+def trained(comparison: Comparison, name: str, folder: Path, listener: Listener) -> Controller:
+    """The agent of an earlier run, or a freshly trained one, saved with its learning curve."""
+    home = folder / "agents" / name
+    if (home / "agent.json").exists():
+        return load_agent(home)
+    curve: list[Progress] = []
+
+    def report(progress: Progress) -> None:
+        curve.append(progress)
+        listener.training(name, comparison.budget[name], progress)
+
+    agent = train_agent(name, comparison.environment, comparison.budget[name], comparison.training_seed, report)
+    write_csv(folder / f"learning_{name}.csv", [asdict(progress) for progress in curve])
+    save_agent(agent, home)
+    return agent
+
+
+def read_curve(folder: Path, name: str) -> Array:
+    """(k, 3): seconds, steps, running cost relative to no control."""
+    return np.loadtxt(folder / f"learning_{name}.csv", delimiter=",", skiprows=1, ndmin=2)
+
+
+def evaluate_all(
+    controllers: Mapping[str, Controller], envs: Any, comparison: Comparison, folder: Path, listener: Listener
+) -> list[Evaluation]:
+    """Every controller on the same held-out seeds, each written as it is finished."""
+    seeds = range(HELD_OUT, HELD_OUT + comparison.seeds)
+    evaluations: list[Evaluation] = []
+    for name, controller in controllers.items():
+        reference = evaluations[0].reference if evaluations else None
+        evaluation = evaluate(controller, envs, seeds, reference=reference)
+        write_json(folder / "evaluations" / f"{name}.json", evaluation.to_dict())
+        evaluations.append(evaluation)
+        listener.evaluated(evaluation)
+    return evaluations
