@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize
 
 from baselines.controller import Array, LinearController, static_law
 from baselines.stationary import stationary_cost
 from beamenv.plant import Plant
 
 _DECADES = np.linspace(-6.0, 1.0, 36)
+"""Exponents of the common gains tried, in units of the gain that damps at about the first mode's own rate."""
 
 
-def velocity_feedback(plant: Plant, gain: float | None = None) -> LinearController:
-    """u_j = −g y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
+def velocity_feedback(plant: Plant, gain: ArrayLike | None = None) -> LinearController:
+    """u_j = −g_j y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
 
-    ``gain`` g is in V/A. By default it is the one with the least stationary cost under the plant's white loads and sensor noise,
-    found from the plant alone; only gains that keep the sampled loop stable qualify. The thesis' sensors lie across the section
-    from their actuators and so feel bending alike but extension with the opposite sign: its modes bound the gain. Raises
-    ValueError when sensors and actuators cannot be paired.
+    ``gain`` in V/A is one number or one for each actuator. By default the gains are those with the least stationary cost under the
+    plant's white loads and sensor noise, found from the plant alone among those that keep the sampled loop stable. The thesis'
+    sensors lie across the section from their actuators and so feel bending alike but extension with the opposite sign: with one
+    gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between them. Raises
+    ValueError when sensors and actuators cannot be paired, or for a gain of another shape.
     """
     pairing = _pairing(plant)
-    if gain is None:
-        gain = _least_cost_gain(plant, pairing)
-    return static_law(plant, "velocity feedback", -gain * pairing)
+    gains = _least_cost_gains(plant, pairing) if gain is None else np.asarray(gain, dtype=np.float64)
+    if gains.shape not in ((), (len(pairing),)) or not np.isfinite(gains).all():
+        raise ValueError(f"gain = {gain!r} must be a finite number, or {len(pairing)} of them, one for each actuator")
+    return _law(plant, "velocity feedback", pairing, gains)
+
+
+def _law(plant: Plant, name: str, pairing: Array, gains: Array) -> LinearController:
+    return static_law(plant, name, -np.broadcast_to(gains, len(pairing))[:, None] * pairing)
 
 
 def _pairing(plant: Plant) -> Array:
@@ -38,15 +46,18 @@ def _pairing(plant: Plant) -> Array:
     return pairing * np.sign(np.diag(pairing @ plant.C @ plant.B))[:, None]
 
 
-def _least_cost_gain(plant: Plant, pairing: Array) -> float:
+def _least_cost_gains(plant: Plant, pairing: Array) -> Array:
+    """(m,): first the best common gain, by decades, then each for itself from there (Nelder and Mead's simplex)."""
     collocated = np.abs(np.diag(pairing @ plant.C @ plant.B)).max()
     unit = float(plant.natural_frequencies[0] / collocated)  # damps at about the first mode's own rate
 
-    def cost(decade: float) -> float:
-        return stationary_cost(plant, static_law(plant, "trial", -unit * 10.0**decade * pairing))
+    def cost(gains: Array) -> float:
+        return stationary_cost(plant, _law(plant, "trial", pairing, unit * gains))
 
-    costs = [cost(decade) for decade in _DECADES]
-    best = int(np.argmin(costs))
-    bracket = _DECADES[max(best - 1, 0)], _DECADES[min(best + 1, len(_DECADES) - 1)]
-    found = minimize_scalar(cost, bounds=bracket, method="bounded", options={"xatol": 1e-4})
-    return unit * 10.0 ** float(found.x if found.fun <= costs[best] else _DECADES[best])
+    common = min((10.0**decade for decade in _DECADES), key=lambda gain: cost(np.asarray(gain)))
+    start = np.full(len(pairing), common)
+    simplex = np.vstack([start, start + common * np.eye(len(start))])
+    found = minimize(
+        cost, start, method="Nelder-Mead", options={"initial_simplex": simplex, "fatol": 1e-6 * cost(start), "maxiter": 800}
+    )
+    return np.asarray(unit * found.x)

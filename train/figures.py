@@ -132,8 +132,9 @@ def pole_figure(plant: Plant, controllers: Sequence[LinearController]) -> Any:
             )
         axis.axvline(0.0, color="0.7", linewidth=0.8)
         axis.set_xscale("symlog", linthresh=10.0)
+        axis.set_xlim(right=5.0)
         axis.set(xlabel="real part, rad/s", ylabel="imaginary part, rad/s", ylim=(0.0, 1.08 * plant.natural_frequencies[-1]))
-        axis.legend(loc="outside upper center", ncols=3)
+        figure.legend(loc="outside upper center", ncols=4)
     return figure
 
 
