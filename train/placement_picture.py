@@ -76,8 +76,8 @@ def _draw_cost(axis: Any, side: PlacedSide) -> None:
         where, cost = cost_along_span(side, number)
         axis.plot(where, cost, color=colour, linestyle=dashes, label=f"patch {number + 1} moved")
         axis.plot(layout[number], side.placement.cost, marker="o", color=colour, markersize=4)
-    axis.axhline(side.uniform_cost, color="0.5", linestyle=":", label="equally spaced")
-    axis.set(xlabel="root-side edge, m from the root", ylabel=NAMES[side.placement.side])
+    axis.axhline(side.uniform_cost, color="black", linestyle=(0, (8, 3, 1, 3)), linewidth=0.7, label="equally spaced")
+    axis.set(xlabel="root-side edge, m from the root", ylabel=NAMES[side.placement.side], yscale="log")
     axis.legend(ncols=2)
 
 
