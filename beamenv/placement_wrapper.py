@@ -83,8 +83,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
     - `bank`: how many layouts are drawn from a range at each `reset`, default 16; blade k has layout k modulo `bank`. (A plant
       takes some hundredths of a second to build.) An autoreset keeps the layout.
 
-    `reset(options={"layout": …})` takes a name or a mapping for all blades, or a sequence of one for each. `info["layout"]` has
-    arrays (N, actuators) and (N, sensors). `unwrapped.plant` is the first blade's.
+    `reset(options={"layout": …})` takes a name or a mapping for all blades, or a sequence of one for each; a side that is left
+    out goes back to where `env` had it. `info["layout"]` has arrays (N, actuators) and (N, sensors). `unwrapped.plant` is the first blade's.
     """
 
     def __init__(
@@ -100,6 +100,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
             raise ValueError(f"bank is {bank!r}, but must be a positive integer.")
         self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
         self._bank = int(bank)
+        self._own: np.random.Generator | None = None
+        """What layouts are drawn with when every blade has a seed of its own; the batch's generator otherwise."""
         given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
         self._layouts = self._resolved(given)
         self._positions = [{side: _first(layout[side]) for side in SIDES} for layout in self._layouts]
@@ -113,6 +115,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
         if drawn:
             self.env.reset(seed=seed)
+            if seed is not None:
+                self._own = None if isinstance(seed, (int, np.integer)) else np.random.default_rng(list(seed))
             seed = None
         positions = self._draw(layouts) if drawn else [{side: _first(layout[side]) for side in SIDES} for layout in layouts]
         self._layouts = layouts
@@ -139,7 +143,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         return layouts
 
     def _draw(self, layouts: Sequence[Layout]) -> list[dict[Side, Positions]]:
-        generator, number = self.np_random, len(layouts) if len(layouts) > 1 else min(self._bank, self.num_envs)
+        generator = self.np_random if self._own is None else self._own
+        number = len(layouts) if len(layouts) > 1 else min(self._bank, self.num_envs)
         return [{side: _drawn(layouts[k % len(layouts)][side], generator) for side in SIDES} for k in range(number)]
 
     def _adopt(self, positions: list[dict[Side, Positions]]) -> None:

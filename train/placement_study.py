@@ -73,7 +73,7 @@ def together_against_alone(rows: Sequence[TableRow]) -> list[tuple[float, float]
 
 
 def starts_that_fail(problem: PlacementProblem, starts: int = 20, seed: int = 0, tolerance: float = 1e-4) -> float:
-    """Share of random starts from which SQP ends dearer than the best known by more than ``tolerance``: it "depends on the start"."""
+    """Share of random starts from which SQP ends dearer than the best known by more than ``tolerance``: it depends on the start."""
     layouts = problem.bounds.random(np.random.default_rng(seed), starts)
     found = np.array([place(problem, SequentialQuadratic(), start=layout).cost for layout in layouts])
     best = min(float(found.min()), place(problem, "multistart", seed).cost)

@@ -228,3 +228,24 @@ def test_layouts_of_one_batch_have_equally_many_patches():
 def test_a_bank_is_a_positive_number():
     with pytest.raises(ValueError, match="bank is 0"):
         batch(2, bank=0)
+
+
+@pytest.mark.parametrize("seed", [3, [3, 4, 5]])
+def test_the_same_seeds_draw_the_same_layouts_for_a_batch(seed):
+    def drawn():
+        envs = batch(3, sensors={"low": 0.0, "high": 1.0})
+        return [envs.reset(seed=seed)[1]["layout"]["sensors"], envs.reset()[1]["layout"]["sensors"]]
+
+    first, second = drawn(), drawn()
+    assert np.array_equal(first, second)
+    assert not np.array_equal(first[0], first[1])
+
+
+def test_a_copied_mixed_batch_goes_on_from_where_it_was():
+    envs = batch(3, layouts=[ELSEWHERE, "uniform", "uniform"])
+    envs.reset(seed=1)
+    envs.step(np.full((3, 4), 0.3))
+    copied = copy.deepcopy(envs)
+    for _ in range(5):
+        here, there = envs.step(np.full((3, 4), -0.2)), copied.step(np.full((3, 4), -0.2))
+        assert np.array_equal(here[0], there[0])
