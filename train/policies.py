@@ -1,0 +1,139 @@
+"""Trained policies as arrays and formulae: NumPy alone runs them, and loading one executes no code."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from train.storage import write_json, write_whole
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Policy:
+    """An agent with Stable-Baselines3's ``predict`` that reads the sensors and its own voltages, both normalised.
+
+    Its memory (N, k) ends in the voltages it asked for last, as the drive limits let them through.
+    """
+
+    kind: ClassVar[str]
+    name: str
+    """What tables and figures call it."""
+    weights: Mapping[str, Array]
+    settings: Mapping[str, Any]
+    """Whatever ``weights`` do not tell; JSON can hold it."""
+    lowest: Array
+    highest: Array
+    """(m,) drive limits in units of the larger one."""
+
+    def predict(
+        self,
+        observation: ArrayLike,
+        state: Array | None = None,
+        episode_start: ArrayLike | None = None,
+        deterministic: bool = True,
+    ) -> tuple[Array, Array]:
+        """Action (m,) or (N, m) and the next memory; ``observation`` (p,) or (N, p) as the environment gives it."""
+        readings = np.asarray(observation, dtype=np.float32)
+        single = readings.ndim == 1
+        rows = np.atleast_2d(readings)
+        memory = np.zeros((len(rows), self.memory_size), np.float32) if state is None else state
+        if state is not None and episode_start is not None:
+            memory = np.where(np.reshape(episode_start, (-1, 1)), np.float32(0.0), memory)
+        action, following = self.act(rows, memory)
+        action = np.clip(action, self.lowest, self.highest)
+        following[:, -action.shape[1] :] = action
+        return (action[0] if single else action), following
+
+    @property
+    def memory_size(self) -> int:
+        """k."""
+        raise NotImplementedError
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """Action (N, m) before saturation, and the next memory, whose voltages the caller fills in."""
+        raise NotImplementedError
+
+
+class HistoryPolicy(Policy):
+    """A tanh network on the last instants, laid out as ``beamenv.wrappers.RollingHistory`` does."""
+
+    __slots__ = ()
+    kind = "history"
+
+    @property
+    def memory_size(self) -> int:
+        """The window, and the last voltages."""
+        return int(self.weights["weight0"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """Shift the window, then layer by layer."""
+        instant = readings.shape[1] + len(self.lowest)
+        window = np.hstack([memory[:, instant : -len(self.lowest)], readings, memory[:, -len(self.lowest) :]])
+        hidden, depth = window * np.float32(self.settings["input_gain"]), len(self.weights) // 2
+        for layer in range(depth):
+            hidden = hidden @ self.weights[f"weight{layer}"].T + self.weights[f"bias{layer}"]
+            hidden = np.tanh(hidden) if layer < depth - 1 else hidden
+        return hidden, np.hstack([window, np.zeros((len(window), len(self.lowest)), np.float32)])
+
+
+class RecurrentPolicy(Policy):
+    """A gated recurrent unit with a tanh output (Cho et al. 2014, as torch's ``GRUCell`` has it)."""
+
+    __slots__ = ()
+    kind = "recurrent"
+
+    @property
+    def memory_size(self) -> int:
+        """Hidden units, and the last voltages."""
+        return int(self.weights["weight_hh"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """One step of the unit, then the output layer."""
+        units = self.weights["weight_hh"].shape[1]
+        hidden, voltages = memory[:, :units], memory[:, units:]
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages])
+        from_input = np.split(inputs @ self.weights["weight_ih"].T + self.weights["bias_ih"], 3, axis=1)
+        from_hidden = np.split(hidden @ self.weights["weight_hh"].T + self.weights["bias_hh"], 3, axis=1)
+        reset, update = (_sigmoid(a + b) for a, b in zip(from_input[:2], from_hidden[:2], strict=True))
+        candidate = np.tanh(from_input[2] + reset * from_hidden[2])
+        hidden = (1.0 - update) * candidate + update * hidden
+        action = np.tanh(hidden @ self.weights["weight_out"].T + self.weights["bias_out"])
+        return action, np.hstack([hidden, np.zeros_like(action)])
+
+
+def _sigmoid(values: Array) -> Array:
+    return np.asarray(0.5 * (1.0 + np.tanh(0.5 * values)))
+
+
+KINDS: Mapping[str, type[Policy]] = {"history": HistoryPolicy, "recurrent": RecurrentPolicy}
+
+
+def save_policy(policy: Policy, folder: Path) -> None:
+    """``weights.npz`` and, last, ``agent.json``: a folder with the latter is whole."""
+    arrays = io.BytesIO()
+    np.savez(arrays, **policy.weights)
+    write_whole(folder / "weights.npz", arrays.getvalue())
+    about = {"kind": policy.kind, "name": policy.name, "settings": dict(policy.settings)}
+    write_json(folder / "agent.json", {**about, "lowest": policy.lowest.tolist(), "highest": policy.highest.tolist()})
+
+
+def load_policy(folder: Path) -> Policy:
+    """The policy saved in a folder; ``ValueError`` if there is none, or one of an unknown kind."""
+    if not (folder / "agent.json").is_file():
+        raise ValueError(f"folder = {str(folder)!r} must hold a trained agent: agent.json is not there.")
+    about = json.loads((folder / "agent.json").read_text())
+    if about["kind"] not in KINDS:
+        raise ValueError(f"kind = {about['kind']!r} of the agent in {str(folder)!r} must be one of {', '.join(KINDS)}.")
+    with np.load(folder / "weights.npz", allow_pickle=False) as arrays:
+        weights = {name: arrays[name] for name in arrays.files}
+    lowest, highest = (np.array(about[name], dtype=np.float32) for name in ("lowest", "highest"))
+    return KINDS[about["kind"]](about["name"], weights, about["settings"], lowest, highest)

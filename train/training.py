@@ -1,0 +1,35 @@
+"""What the trainers share: how they report, and the cost they are measured by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamenv.plant import Plant
+from beamenv.scenarios import Scenario
+from beamenv.simulation import Blades
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a training is."""
+
+    elapsed: float
+    """s."""
+    steps: int
+    """Environment steps so far."""
+    cost: float
+    """J relative to no control, from recent training episodes."""
+
+
+Report = Callable[[Progress], None]
+
+
+def uncontrolled_cost(plant: Plant, scenario: Scenario, steps: int, episodes: int = 512) -> float:
+    """Mean J (J s) of episodes without control: what running costs are relative to."""
+    blades, generator = Blades(plant, scenario, episodes), np.random.default_rng(0)
+    blades.begin(generator)
+    idle = np.zeros((episodes, plant.B.shape[1]))
+    return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(steps)))
