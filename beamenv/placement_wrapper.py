@@ -84,7 +84,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
       takes some hundredths of a second to build.) An autoreset keeps the layout.
 
     `reset(options={"layout": …})` takes a name or a mapping for all blades, or a sequence of one for each; a side that is left
-    out goes back to where `env` had it. `info["layout"]` has arrays (N, actuators) and (N, sensors). `unwrapped.plant` is the first blade's.
+    out goes back to where `env` had it. `info["layout"]` has arrays (N, actuators) and (N, sensors). `unwrapped.plant` is the
+    first blade's.
     """
 
     def __init__(

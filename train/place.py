@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -113,7 +113,8 @@ def place(
         from beamenv.configuration import blade_config, load_config
         from beamenv.layouts import SIDES, positions_of
 
-        config = blade_config(preset, load_config(blade) if blade else {"patches": {"passive": passive}}, speed)
+        config = blade_config(preset, load_config(blade) if blade else None, speed)
+        config = config if passive else replace(config, patches=replace(config.patches, passive=False))
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
         with bars(counts) as told:
