@@ -99,8 +99,8 @@ def place(
     blade: BladeOption = None,
     passive: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
     method: Annotated[
-        str, typer.Option(help="ga+sqp (the thesis'), ga, sqp, multistart, cma-es, or grid for one or two.")
-    ] = "ga+sqp",
+        str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
+    ] = "multistart",
     seed: Annotated[int, typer.Option(help="Of the search.")] = 0,
     picture: Annotated[Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span.")] = None,
     as_json: JsonOption = False,

@@ -14,7 +14,8 @@ from baselines.placement.search import place
 from beamenv.configuration import BladeConfig, to_dict
 from beamenv.layouts import SIDES, Positions, Side, positions_of, with_positions
 
-METHOD, SEED = "ga+sqp", 0
+METHOD, SEED = "multistart", 0
+"""It met the best layout known with every seed tried; the thesis' GA and SQP miss it by 1 to 2 % now and then."""
 VERSION = 1
 """Of the way in which layouts are worked out: another number forgets what was kept."""
 
@@ -23,7 +24,7 @@ def optimal_positions(config: BladeConfig, side: Side) -> Positions:
     """Positions, m, of as many patches as the blade has: of the actuators, or of the sensors.
 
     They do not depend on where the patches are now: the actuators are placed with the sensors equally spaced, then the sensors
-    with the actuators placed. The thesis' GA and SQP take a few seconds; the answer is kept in the process and in the user's
+    with the actuators placed. SQP from many starts takes a few seconds; the answer is kept in the process and in the user's
     cache (``$BEAMENV_CACHE``, or ``beamenv`` in ``$XDG_CACHE_HOME`` or ``~/.cache``).
     """
     return optimal_layout(with_positions(config, {each: len(positions_of(config, each)) for each in SIDES}))[side]

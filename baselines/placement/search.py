@@ -46,20 +46,20 @@ class InTurn:
 
 METHODS: Mapping[str, Method] = MappingProxyType(
     {
+        "multistart": MultiStart(),
         "ga+sqp": InTurn((Genetic(), SequentialQuadratic())),
         "ga": Genetic(),
         "sqp": SequentialQuadratic(),
-        "multistart": MultiStart(),
         "cma-es": Evolution(),
         "grid": Grid(),
     }
 )
-"""The thesis' way and its two halves, SQP from many starts, CMA-ES, and for one or two patches every layout."""
+"""SQP from many starts, the thesis' way and its two halves, CMA-ES, and for one or two patches every layout."""
 
 
 def place(
     problem: PlacementProblem,
-    method: str | Method = "ga+sqp",
+    method: str | Method = "multistart",
     seed: int = 0,
     start: ArrayLike | None = None,
     progress: Progress | None = None,

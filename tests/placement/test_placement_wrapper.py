@@ -80,7 +80,7 @@ def test_thesis_layout_follows_speed_and_number():
 
 
 def test_optimal_layout_is_found_once_and_kept(monkeypatch, tmp_path):
-    """The thesis' search in small; the second environment reads what the first wrote."""
+    """A search in small; the second environment reads what the first wrote."""
     import baselines.placement.optimal as optimal
 
     monkeypatch.setattr(optimal, "METHOD", Genetic(population=6, generations=2))
@@ -98,7 +98,7 @@ def test_optimal_layout_does_not_depend_on_where_the_patches_are():
     config = blade_config(overrides={"patches": ELSEWHERE})
     found = optimal.optimal_positions(config, "actuators")
     assert found == optimal.optimal_positions(blade_config(), "actuators")
-    assert found == place(PlacementProblem.of(blade_config(), "actuators"), "ga+sqp").positions
+    assert found == place(PlacementProblem.of(blade_config(), "actuators")).positions
 
 
 def test_a_range_is_drawn_from_at_each_reset():
