@@ -136,12 +136,15 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     ) -> tuple[Array, dict[str, Any]]:
         """Begin an episode of every blade. ``seed``: one for the batch, or a sequence of one for each blade.
 
-        ``options`` are those of ``RotatingBeamEnv``; its "initial_state" may be (N, n), one for each blade.
+        ``options`` are those of ``RotatingBeamEnv``; its "initial_state" may be (N, n), one for each blade. "elapsed" (N,) takes
+        so many control intervals off each first episode: episodes that begin together otherwise stay in step for ever.
         """
+        options = dict(options or {})
+        elapsed = _elapsed(options.pop("elapsed", 0), self._steps, self.num_envs)
         scenario, initial_state = reset_options(self.task, options, self.num_envs)
         self._seed(seed)
         assert self._generators is not None
-        self._elapsed[:] = 0
+        self._elapsed[:] = elapsed
         self._over = np.arange(0)
         motion = self._blades.begin(self._generators, scenario=scenario, initial_state=initial_state)
         return motion.observation, _masked(information(motion))
@@ -217,6 +220,14 @@ def _positive(name: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
         raise ValueError(f"{name} is {value!r}, but must be a positive integer.")
     return int(value)
+
+
+def _elapsed(value: Any, steps: int, count: int) -> Rows:
+    """Control intervals already over, one for each blade."""
+    elapsed = np.asarray(value)
+    if elapsed.shape not in ((), (count,)) or elapsed.dtype.kind not in "iu" or not np.all((elapsed >= 0) & (elapsed < steps)):
+        raise ValueError(f"options['elapsed'] is {value!r}, but must be integers from 0 to {steps - 1}, one or {count} of them.")
+    return elapsed.astype(np.int64)
 
 
 def _seeds(seed: Sequence[int], count: int) -> list[int]:

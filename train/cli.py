@@ -97,9 +97,9 @@ def evaluate(
 
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **environment_arguments(preset, speed, blade, scenario))
         if controller not in CLASSICAL and Path(controller).is_dir():
-            from train.agents import load_agent
+            from train.policies import load_policy
 
-            law: Any = load_agent(Path(controller))
+            law: Any = load_policy(Path(controller))
         else:
             law = classical(controller, envs.unwrapped.design_plant)
         evaluation = baselines.evaluate(law, envs, range(HELD_OUT, HELD_OUT + seeds))
@@ -124,14 +124,13 @@ def train(
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps the best so far. `beamenv evaluate FOLDER` then tells how good it is."""
     with one_sentence():
-        from train.agents import save_agent, train_agent
-
+        from train.agents import train_agent
         from train.progress import Progressbar
 
         arguments = environment_arguments(preset, speed, blade, scenario)
         with Progressbar({agent: seconds}) as bar:
             trained = train_agent(agent, arguments, seconds, seed, lambda progress: bar.training(agent, seconds, progress))
-        save_agent(trained, folder)
+        save_policy(trained, folder)
     Console().print(f"{agent} saved in {folder}")
 
 

@@ -11,15 +11,17 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
-from train.agents import AGENTS, Progress, load_agent, save_agent, train_agent
 
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.configuration import to_dict
+from train.agents import AGENTS, train_agent
 from train.contenders import CLASSICAL, classical
 from train.figures import write_figures
+from train.policies import load_policy, save_policy
 from train.report import write_tables
 from train.storage import write_csv, write_json
+from train.training import Progress
 
 Array = NDArray[np.float64]
 
@@ -104,7 +106,7 @@ def trained(comparison: Comparison, name: str, folder: Path, listener: Listener)
     """The agent of an earlier run, or a freshly trained one, saved with its learning curve."""
     home = folder / "agents" / name
     if (home / "agent.json").exists():
-        return load_agent(home)
+        return load_policy(home)
     curve: list[Progress] = []
 
     def report(progress: Progress) -> None:
@@ -113,7 +115,7 @@ def trained(comparison: Comparison, name: str, folder: Path, listener: Listener)
 
     agent = train_agent(name, comparison.environment, comparison.budget[name], comparison.training_seed, report)
     write_csv(folder / f"learning_{name}.csv", [asdict(progress) for progress in curve])
-    save_agent(agent, home)
+    save_policy(agent, home)
     return agent
 
 

@@ -55,7 +55,7 @@ class Policy:
 
     @property
     def memory_size(self) -> int:
-        """k."""
+        """Numbers in a blade's memory, k."""
         raise NotImplementedError
 
     def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:

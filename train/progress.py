@@ -7,9 +7,9 @@ from types import TracebackType
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
-from train.agents import Progress as TrainingProgress
 
 from baselines import Evaluation
+from train.agents import Progress as TrainingProgress
 from train.compare import Listener
 
 

@@ -1,0 +1,135 @@
+"""Stable-Baselines3's ``VecEnv`` straight over the batched environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+from scipy.linalg import solve_discrete_lyapunov
+from stable_baselines3.common.vec_env import VecEnv
+
+import beamenv
+from beamenv.plant import Plant, sample
+from beamenv.simulation import reward_scale
+
+Array = NDArray[Any]
+
+
+class BladeVecEnv(VecEnv):
+    """Blades whose agent sees the last ``history`` readings and own voltages; SAME_STEP, infos for finished episodes only.
+
+    With ``energy_horizon`` τ > 0 the reward is r + τ (E − E⁺)/scale, E being the vibration energy: what a voltage takes out of the
+    blade is told at once. To an agent that discounts, it stands for the cost beyond its horizon; an undiscounted return changes
+    only by τ times the first energy less the last (Ng, Harada and Russell 1999).
+
+    With ``shows_state`` the true state follows the history in each observation, in units of what is typical: for a critic.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        environment: Mapping[str, Any],
+        seed: int,
+        *,
+        history: int = 12,
+        energy_horizon: float = 0.0,
+        shows_state: bool = False,
+    ) -> None:
+        batch = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **environment)
+        self.blades: Any = batch.unwrapped
+        self.envs = beamenv.VectorSensorHistory(batch, length=history)
+        actions = self.blades.single_action_space
+        self.seen = int(np.prod(self.envs.single_observation_space.shape))
+        """How many numbers of an observation sensors show; what follows is the state."""
+        self._state_gain = 1.0 / typical_state(self.blades.plant) if shows_state else None
+        width = self.seen + (0 if self._state_gain is None else len(self._state_gain))
+        super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), Box(-1.0, 1.0, actions.shape, np.float32))
+        self._seed: int | None = seed
+        self._scale = reward_scale(self.blades.plant)
+        self._potential = energy_horizon / self._scale
+        self._states: Array = np.zeros((count, 0), np.float32)
+        self._energy = np.zeros(count)
+        self.last_cost = 0.0
+        """J s: mean increment of J over the batch in the last step, unshaped."""
+        self._actions: Array = np.zeros(self.action_space.shape)
+        self._unfinished: list[dict[str, Any]] = [{} for _ in range(count)]
+
+    def reset(self) -> Array:
+        """Begin episodes, out of step with one another."""
+        steps = self.blades.task.steps
+        elapsed = np.arange(self.num_envs) * steps // self.num_envs
+        observations, info = self.envs.reset(seed=self._seed, options={"elapsed": elapsed})
+        self._seed = None
+        self._energy = info["energy"]
+        return self._with_state(observations)
+
+    def _with_state(self, windows: Array) -> Array:
+        if self._state_gain is None:
+            return windows
+        self._states = (self.blades.state * self._state_gain).astype(np.float32)
+        return np.concatenate([windows, self._states], axis=1)
+
+    def step_async(self, actions: Array) -> None:
+        """Keep the actions for ``step_wait``."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
+        """Observations, rewards, ends and infos; where an episode ended the observation is the next one's first."""
+        observations, rewards, terminated, truncated, info = self.envs.step(self._actions)
+        energy, ended = info["energy"], terminated | truncated
+        infos = self._unfinished
+        if ended.any():
+            final = info["final_info"]["energy"]
+            reached = np.where(ended, final, energy)
+            infos = self._infos(np.flatnonzero(ended), info["final_obs"], terminated)
+        else:
+            reached = energy
+        self.last_cost = -float(rewards.mean()) * self._scale
+        rewards = rewards + self._potential * (self._energy - reached)
+        self._energy = energy
+        return self._with_state(observations), rewards.astype(np.float32), ended, infos
+
+    def _infos(self, rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
+        infos = list(self._unfinished)
+        for row in rows.tolist():
+            last = np.append(final[row], self._states[row])  # the state one interval before the end stands for that at the end
+            infos[row] = {"terminal_observation": last, "TimeLimit.truncated": not terminated[row]}
+        return infos
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """The seed of the next ``reset``, one for the whole batch."""
+        self._seed = seed
+        return [seed] * self.num_envs
+
+    def close(self) -> None:
+        """Close the batch."""
+        self.envs.close()
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """The batch's one attribute, for each of the indices."""
+        return [getattr(self.blades, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Not offered: the blades of a batch are one environment."""
+        raise NotImplementedError(f"attr_name = {attr_name!r} cannot be set: the blades of a batch are one environment.")
+
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+        """Not offered: the blades of a batch are one environment."""
+        raise NotImplementedError(f"method_name = {method_name!r} cannot be called: the blades of a batch are one environment.")
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """No blade has wrappers of its own."""
+        return [False] * len(list(self._get_indices(indices)))
+
+
+def typical_state(plant: Plant) -> Array:
+    """(n,) standard deviations, √J, under the white load and white voltages of a fifth of the drive limit."""
+    held = sample(plant)
+    drive = held.B * (0.2 * np.abs(plant.voltage_limits).max(axis=0))
+    excitation = drive @ drive.T + held.disturbance_input @ held.process_noise @ held.disturbance_input.T
+    return np.sqrt(np.diag(solve_discrete_lyapunov(held.A, excitation)))
