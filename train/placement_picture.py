@@ -77,7 +77,10 @@ def _draw_cost(axis: Any, side: PlacedSide) -> None:
         axis.plot(where, cost, color=colour, linestyle=dashes, label=f"patch {number + 1} moved")
         axis.plot(layout[number], side.placement.cost, marker="o", color=colour, markersize=4)
     axis.axhline(side.uniform_cost, color="black", linestyle=(0, (8, 3, 1, 3)), linewidth=0.7, label="equally spaced")
-    axis.set(xlabel="root-side edge, m from the root", ylabel=NAMES[side.placement.side], yscale="log")
+    axis.set(xlabel="root-side edge, m from the root", ylabel=NAMES[side.placement.side])
+    low, high = axis.get_ylim()
+    if high > 3.0 * low:  # the valleys of weak patches would not be seen beside the cliffs of a strong one
+        axis.set_yscale("log")
     axis.legend(ncols=2)
 
 
