@@ -13,6 +13,7 @@ import gymnasium
 if TYPE_CHECKING:
     from beamenv.configuration import PRESETS, BladeConfig, blade_config, build_plant
     from beamenv.env import RotatingBeamEnv
+    from beamenv.placement_wrapper import PlacementWrapper, VectorPlacementWrapper
     from beamenv.plant import Plant, SampledPlant, sample
     from beamenv.scenarios import SCENARIOS, Scenario, scenario
     from beamenv.vector_env import RotatingBeamVectorEnv
@@ -26,6 +27,8 @@ _HOMES = {
     "blade_config": "configuration",
     "build_plant": "configuration",
     "RotatingBeamEnv": "env",
+    "PlacementWrapper": "placement_wrapper",
+    "VectorPlacementWrapper": "placement_wrapper",
     "Plant": "plant",
     "SampledPlant": "plant",
     "sample": "plant",
@@ -42,12 +45,14 @@ __all__ = [
     "PRESETS",
     "SCENARIOS",
     "BladeConfig",
+    "PlacementWrapper",
     "Plant",
     "RotatingBeamEnv",
     "RotatingBeamVectorEnv",
     "SampledPlant",
     "Scenario",
     "SensorHistory",
+    "VectorPlacementWrapper",
     "VectorSensorHistory",
     "blade_config",
     "build_plant",

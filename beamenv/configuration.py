@@ -115,6 +115,9 @@ class BladeConfig:
     """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""
     sensor_noise_fraction: float = 0.02
     """Standard deviation of one sample over the sensors' full scale."""
+    sensor_full_scale: float | None = None
+    """A: the range of the data acquisition, and with it its noise, where patches move but the instrument stays; None fits it to
+    the blade's largest current after a sudden reference load."""
     voltage_limits: tuple[float, float] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
     control_interval: float = 0.5e-3
@@ -132,6 +135,8 @@ class BladeConfig:
             valid=lambda value: value >= 0.0,
         )
         check(self, "damping_ratio", allowed="at least 0 and below 1", valid=lambda value: 0.0 <= value < 1.0)
+        if self.sensor_full_scale is not None:
+            check(self, "sensor_full_scale", allowed="None or a positive number", valid=lambda value: value > 0.0)
         low, high = self.voltage_limits
         if not (np.isfinite(low) and np.isfinite(high) and low < 0.0 < high):
             raise ValueError(f"voltage_limits = {self.voltage_limits!r} must be a negative and a positive number of volts.")
@@ -251,6 +256,7 @@ def build_plant(config: BladeConfig) -> Plant:
         effort_weight=config.effort_weight,
         white_load=config.white_load,
         sensor_noise_fraction=config.sensor_noise_fraction,
+        sensor_full_scale=config.sensor_full_scale,
         voltage_limits=config.voltage_limits,
         control_interval=config.control_interval,
     )

@@ -13,7 +13,7 @@ from beamenv.configuration import BladeConfig
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario
 from beamenv.simulation import Blades
-from beamenv.task import checked_action, information, reset_options, resolve_task
+from beamenv.task import Task, checked_action, information, reset_options, resolve_task
 
 if TYPE_CHECKING:
     from beamenv.rendering import BladeRenderer
@@ -160,16 +160,20 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
-        self.task = resolve_task(preset, speed, blade, design, scenario, duration, physical_units)
         self.render_mode = render_mode
-        self.action_space = self.task.action_space()
-        self.observation_space = self.task.observation_space()
-        self._blade = Blades(self.plant, self.task.scenario, None, self.task.physical_units)
+        self.adopt(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
+
+    def adopt(self, task: Task) -> None:
+        """Take on a task, and with it a blade, in place of the one before; what comes next must be ``reset``."""
+        self.task = task
+        self.action_space = task.action_space()
+        self.observation_space = task.observation_space()
+        self._blade = Blades(self.plant, task.scenario, None, task.physical_units)
         self._action_shape = (self.plant.B.shape[1],)
-        self._steps = self.task.steps
+        self._steps = task.steps
         self._elapsed = 0
         self._generators: list[np.random.Generator] | None = None
-        self._renderer = None if render_mode is None else self._make_renderer()
+        self._renderer = None if self.render_mode is None else self._make_renderer()
 
     @property
     def plant(self) -> Plant:

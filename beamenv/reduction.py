@@ -75,6 +75,7 @@ def reduced_plant(
     effort_weight: float,
     white_load: float,
     sensor_noise_fraction: float,
+    sensor_full_scale: float | None,
     voltage_limits: tuple[float, float],
     control_interval: float,
 ) -> Plant:
@@ -88,7 +89,9 @@ def reduced_plant(
     tip = beam.displacements(np.array([beam.length]))
     currents = on_velocities(sensing(beam, layout) @ shapes)
     disturbance = acting_on_velocities(shapes.T @ beam.line_load())
-    full_scale = largest_current(dynamics, disturbance, currents, omega[0], control_interval) * np.ones(len(currents))
+    if sensor_full_scale is None:
+        sensor_full_scale = largest_current(dynamics, disturbance, currents, omega[0], control_interval)
+    full_scale = np.full(len(currents), sensor_full_scale)
     return Plant(
         A=dynamics,
         B=acting_on_velocities(shapes.T @ forces),

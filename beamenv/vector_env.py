@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,10 +16,11 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from beamenv.configuration import BladeConfig
+from beamenv.mixed_blades import MixedBlades
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario
 from beamenv.simulation import Blades, Motion
-from beamenv.task import INFO, checked_action, information, reset_options, resolve_task
+from beamenv.task import INFO, Task, checked_action, information, reset_options, resolve_task
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -74,21 +76,32 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if render_mode is not None:
             raise ValueError(f"render_mode is {render_mode!r}, but a batch draws nothing: make a single environment for pictures.")
         self.num_envs = _positive("num_envs", num_envs)
-        self.task = resolve_task(preset, speed, blade, design, scenario, duration, physical_units)
-        self._steps = self.task.steps
-        if max_episode_steps is not None:
-            self._steps = min(self._steps, _positive("max_episode_steps", max_episode_steps))
+        self._time_limit = math.inf if max_episode_steps is None else _positive("max_episode_steps", max_episode_steps)
         self._mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
+        self._generators: np.random.Generator | list[np.random.Generator] | None = None
+        self.adopt([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
+
+    def adopt(self, tasks: Sequence[Task]) -> None:
+        """Take on one task for all blades, or one for each, in place of those before; what comes next must be ``reset``.
+
+        The tasks may differ in their blades alone, and these not in how many patches they have. ``task``, ``plant`` and
+        ``design_plant`` are then the first blade's.
+        """
+        self.task = tasks[0]
         self.single_action_space = self.task.action_space()
         self.single_observation_space = self.task.observation_space()
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self._blades = Blades(self.plant, self.task.scenario, self.num_envs, self.task.physical_units)
+        self._blades: Blades | MixedBlades
+        if len(tasks) == 1:
+            self._blades = Blades(self.plant, self.task.scenario, self.num_envs, self.task.physical_units)
+        else:
+            self._blades = MixedBlades([task.plant for task in tasks], self.task.scenario, self.task.physical_units)
         self._actions_shape = (self.num_envs, *self.single_action_space.shape)
+        self._steps = min(self.task.steps, self._time_limit)
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
         self._over: Rows = np.arange(0)  # rows whose episode ended at the last step, with NEXT_STEP
-        self._generators: np.random.Generator | list[np.random.Generator] | None = None
 
     @property
     def plant(self) -> Plant:

@@ -81,7 +81,9 @@ def test_command_without_the_train_extra_says_how_to_install_it():
 # Imports run one way: structure → patches → plant → environment; baselines know plants, never environments; training
 # knows everything and nobody knows training. Lazy and type-only imports count: they are arrows too.
 
-ENVIRONMENT = {"beamenv.env", "beamenv.vector_env", "beamenv.wrappers", "beamenv.rendering", "beamenv.render"}
+ENVIRONMENT = {
+    f"beamenv.{module}" for module in ("env", "vector_env", "mixed_blades", "placement_wrapper", "wrappers", "rendering", "render")
+}
 STRUCTURE, PATCHES, PLANT = "beamenv.structure", "beamenv.patches", "beamenv.plant"
 
 

@@ -14,20 +14,32 @@ from beamenv.structure.trial_functions import Stations
 Array = NDArray[np.float64]
 
 
-def patch_force(beam: RotatingBeam, patch: PatchMaterial, wall: str, start: float, length: float, width: float) -> Array:
-    """Generalised force (N,) per volt of one patch: its condensed piezoelectric resultants times every strain row of the wall.
+def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float, z: Array) -> Array:
+    """Generalised force (S, N) per volt and per metre of a patch at stations z (m) that it covers.
 
-    ``ValueError`` for a patch that leaves the blade or does not fit its wall.
+    The condensed piezoelectric resultants times every strain row of the wall (thesis Eq. 4.18, from the energy).
     """
-    check_fit(beam, patch.inlay(wall, start, length, width))
-    stations = Stations.between(np.array([start, start + length]), beam.terms + EXTRA_STATIONS)
-    walls = beam.walls_at(stations.z, cuts=((wall, width),))
+    walls = beam.walls_at(z, cuts=((wall, width),))
     under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in walls.points.edges]
     covered = np.repeat(under, 2)
     resultants = patch.wall_resultants(beam.section.thickness, walls.laws.hoop_coupling[:, covered])
     per_strain = np.einsum("sp,spk,spkg->sg", walls.points.ds[:, covered], resultants, walls.strain_rows()[:, covered])
-    strains = generalised_strains(beam.space.evaluate(stations.z))
-    return np.asarray(np.einsum("s,sg,sgn->n", stations.weight, per_strain, strains))
+    strains = generalised_strains(beam.space.evaluate(z))
+    return np.asarray(np.einsum("sg,sgn->sn", per_strain, strains))
+
+
+def patch_force(beam: RotatingBeam, patch: PatchMaterial, wall: str, start: float, length: float, width: float) -> Array:
+    """Generalised force (N,) per volt of one patch.
+
+    ``ValueError`` for a patch that leaves the blade or does not fit its wall.
+    """
+    check_fit(beam, patch.inlay(wall, start, length, width))
+    end = start + length
+    edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length) if start < edge < end]
+    breakpoints = np.unique([start, *edges, end])  # a patch on the opposite wall changes the shear flow where it ends
+    apart = np.append(True, np.diff(breakpoints) > 1e-9 * beam.length)
+    stations = Stations.between(breakpoints[apart], beam.terms + EXTRA_STATIONS)
+    return np.asarray(stations.weight @ force_per_span(beam, patch, wall, width, stations.z))
 
 
 def actuation(beam: RotatingBeam, layout: PatchLayout) -> Array:

@@ -1,0 +1,80 @@
+"""A batch of blades of several plants: as many ``Blades`` as there are plants, seen as one batch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant import Plant
+from beamenv.scenarios import Scenario
+from beamenv.simulation import Blades, Generators, Motion, Rows
+
+Array = NDArray[np.float64]
+
+
+class MixedBlades:
+    """N blades, blade k of ``plants[k]``, with the interface of ``Blades``; the plants have equally many states and patches.
+
+    Blades of the same plant object are advanced together.
+    """
+
+    def __init__(self, plants: Sequence[Plant], scenario: Scenario, physical_units: bool = False) -> None:
+        self.count = len(plants)
+        distinct = {id(plant): plant for plant in plants}
+        kind = np.array([list(distinct).index(id(plant)) for plant in plants])
+        self._rows: list[Rows] = [np.flatnonzero(kind == k) for k in range(len(distinct))]
+        self._groups = [
+            Blades(plant, scenario, len(rows), physical_units) for plant, rows in zip(distinct.values(), self._rows, strict=True)
+        ]
+
+    @property
+    def state(self) -> Array:
+        """(N, n) true states in energy coordinates."""
+        return _together([blades.state for blades in self._groups], self._rows)
+
+    def begin(
+        self,
+        generators: Generators,
+        rows: Rows | None = None,
+        scenario: Scenario | None = None,
+        initial_state: Array | None = None,
+    ) -> Motion:
+        """As ``Blades.begin``."""
+        wanted = np.arange(self.count) if rows is None else rows
+        motions, places = [], []
+        for blades, members in zip(self._groups, self._rows, strict=True):
+            place = np.flatnonzero(np.isin(wanted, members))
+            if len(place) == 0:
+                continue
+            own = None if rows is None else np.searchsorted(members, wanted[place])
+            state = initial_state[place] if initial_state is not None and initial_state.ndim == 2 else initial_state
+            motions.append(blades.begin(_of(generators, members), own, scenario, state))
+            places.append(place)
+        return _one_motion(motions, places)
+
+    def step(self, actions: Array, generators: Generators, resting: Rows | None = None) -> Motion:
+        """As ``Blades.step``."""
+        motions = []
+        for blades, members in zip(self._groups, self._rows, strict=True):
+            own = None if resting is None else np.searchsorted(members, np.intersect1d(resting, members))
+            motions.append(blades.step(actions[members], _of(generators, members), own if own is not None and len(own) else None))
+        return _one_motion(motions, self._rows)
+
+
+def _of(generators: Generators, members: Rows) -> Generators:
+    """The members' own generators, or the one that serves all."""
+    return generators if isinstance(generators, np.random.Generator) else [generators[row] for row in members]
+
+
+def _one_motion(motions: Sequence[Motion], places: Sequence[Rows]) -> Motion:
+    return Motion(*(_together(parts, places) for parts in zip(*motions, strict=True)))
+
+
+def _together(parts: Sequence[NDArray], places: Sequence[Rows]) -> NDArray:  # type: ignore[type-arg]
+    """Rows of several arrays, each at its places, in one."""
+    whole = np.empty((sum(map(len, places)), *parts[0].shape[1:]), dtype=parts[0].dtype)
+    for part, place in zip(parts, places, strict=True):
+        whole[place] = part
+    return whole

@@ -1,0 +1,103 @@
+"""Where patches may lie: bounds of their root-side edges, no overlap, and the nearest layout that keeps to both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beamenv.patches.layout import OUTERMOST, PatchLayout
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-9
+"""m: what round-off may take from a distance."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """``count`` patches of one side, each ``length`` m long, with root-side edges from ``low`` to ``high`` m."""
+
+    name: str
+    """actuators or sensors."""
+    low: float
+    high: float
+    length: float
+    count: int
+
+    @classmethod
+    def of(cls, layout: PatchLayout, beam_length: float, count: int, bounds: Sequence[float] | None, name: str) -> Bounds:
+        """Bounds (m) of the root-side edges, 0 … 0.7 L less a patch unless given.
+
+        Raises ``ValueError`` for bounds outside of that or without room, and for more patches than fit.
+        """
+        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
+            raise ValueError(f"{name} = {count!r} must be a number of patches, at least one.")
+        last = OUTERMOST * beam_length - layout.length
+        low, high = checked_bounds(bounds, last)
+        fitting = int(np.floor((high - low + TOLERANCE) / layout.length)) + 1
+        if count > fitting:
+            raise ValueError(
+                f"{name} = {count} patches of {layout.length:g} m do not fit with root-side edges from {low:g} to {high:.6g} m, "
+                f"where there is room for {fitting}."
+            )
+        return cls(name, low, high, layout.length, int(count))
+
+    @property
+    def slack(self) -> float:
+        """m: how far the patches can move when they are pushed together."""
+        return max(self.high - self.low - (self.count - 1) * self.length, 0.0)
+
+    def uniform(self) -> Array:
+        """Equally spaced from bound to bound (count,)."""
+        return np.linspace(self.low, self.high, self.count)
+
+    def random(self, generator: np.random.Generator, number: int) -> Array:
+        """(number, count) layouts, every feasible one equally likely."""
+        gaps = np.sort(generator.random((number, self.count)), axis=1) * self.slack
+        return self.low + gaps + self.length * np.arange(self.count)
+
+    def repaired(self, positions: ArrayLike) -> Array:
+        """The nearest feasible layouts, ascending, to any positions (…, count): overlaps are moved apart.
+
+        The least sum of squared displacements of the sorted patches: with y_i = x_i − i · length isotonic regression (by its
+        max-min formula), then the bounds.
+        """
+        steps = self.length * np.arange(self.count)
+        wanted = np.sort(np.asarray(positions, dtype=float), axis=-1) - steps
+        sums = np.concatenate([np.zeros((*wanted.shape[:-1], 1)), np.cumsum(wanted, axis=-1)], axis=-1)
+        start, end = np.meshgrid(np.arange(self.count), np.arange(self.count), indexing="ij")
+        means = (sums[..., end + 1] - sums[..., start]) / np.maximum(end - start + 1, 1)
+        means = np.where(end >= start, means, np.inf)
+        least_beyond = np.minimum.accumulate(means[..., ::-1], axis=-1)[..., ::-1]
+        level = np.where(start <= end, least_beyond, -np.inf).max(axis=-2)
+        return np.clip(level, self.low, self.low + self.slack) + steps
+
+    def checked(self, positions: ArrayLike) -> Array:
+        """Positions (count,) in ascending order; ``ValueError`` unless they are finite, within the bounds and apart."""
+        given = np.asarray(positions, dtype=float)
+        if given.shape != (self.count,) or not np.all(np.isfinite(given)):
+            raise ValueError(f"{self.name} = {given.tolist()!r} must be {self.count} finite positions in metres.")
+        ordered = np.sort(given)
+        if ordered[0] < self.low - TOLERANCE or ordered[-1] > self.high + TOLERANCE:
+            raise ValueError(f"{self.name} = {given.tolist()!r} must lie between {self.low:g} and {self.high:.6g} m.")
+        if self.count > 1 and np.diff(ordered).min() < self.length - TOLERANCE:
+            raise ValueError(f"{self.name} = {given.tolist()!r} must be at least a patch, {self.length:g} m, apart.")
+        return ordered
+
+
+def checked_bounds(bounds: Sequence[float] | None, last: float) -> tuple[float, float]:
+    """(low, high) in m; ``ValueError`` for anything but two numbers in order within 0 … ``last``."""
+    if last < 0.0:
+        raise ValueError(f"a patch is too long: it must fit within 0 and {OUTERMOST} of the span, by {-last:.6g} m more.")
+    if bounds is None:
+        return 0.0, last
+    try:
+        low, high = (float(bound) for bound in bounds)
+    except (TypeError, ValueError):
+        raise ValueError(f"bounds = {bounds!r} must be two numbers of metres.") from None
+    if not (np.isfinite(low) and np.isfinite(high) and -TOLERANCE <= low <= high <= last + TOLERANCE):
+        raise ValueError(f"bounds = {bounds!r} must be ascending root-side edges between 0 and {last:.6g} m.")
+    return max(low, 0.0), min(high, last)

@@ -1,0 +1,102 @@
+"""tr(P) and tr(S) from many layouts together, against the plant built of each; and their exact slopes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from baselines.placement import PlacementProblem
+from baselines.riccati import kalman_filter, regulator
+from beamenv.configuration import blade_config, build_plant
+
+CASES = [("thesis", {}), ("thesis", {"patches": {"ganged": True}}), ("thesis", {"gyroscopic": False}), ("chandra-chopra", {})]
+
+
+def trace_of_the_plant(problem, positions):
+    plant = build_plant(problem.configuration(positions))
+    if problem.side == "actuators":
+        return np.trace(regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)[0])
+    loads = plant.disturbance_input @ plant.process_noise @ plant.disturbance_input.T
+    return np.trace(kalman_filter(plant.A, plant.C, loads, plant.sensor_noise)[0])
+
+
+@pytest.mark.parametrize("side", ["actuators", "sensors"])
+@pytest.mark.parametrize(("preset", "changes"), CASES)
+def test_cost_is_the_trace_that_the_environments_plant_has(preset, changes, side):
+    problem = PlacementProblem.of(blade_config(preset, changes), side)
+    layouts = problem.bounds.random(np.random.default_rng(1), 4)
+    expected = [trace_of_the_plant(problem, layout) for layout in layouts]
+    assert problem.cost(layouts) == pytest.approx(expected, rel=2e-8)
+
+
+@pytest.mark.parametrize("side", ["actuators", "sensors"])
+@pytest.mark.parametrize(("preset", "changes"), [*CASES, ("thesis", {"patches": {"passive": False}})])
+def test_slopes_are_central_differences(preset, changes, side):
+    problem = PlacementProblem.of(blade_config(preset, changes), side)
+    layout = problem.bounds.random(np.random.default_rng(2), 1)[0]
+    cost, slopes = problem.cost_and_slopes(layout)
+    step = 1e-4
+    numeric = []
+    for direction in np.eye(4):
+        at = [problem.cost_and_slopes(layout + k * step * direction)[0] for k in (-2, -1, 1, 2)]
+        numeric.append((at[0] - 8.0 * at[1] + 8.0 * at[2] - at[3]) / (12.0 * step))
+    assert cost == pytest.approx(problem.cost(layout[None])[0], rel=2e-8)
+    assert np.abs(slopes - numeric).max() <= 1e-6 * np.abs(slopes).max()
+
+
+@settings(max_examples=20)
+@given(st.permutations(range(4)), st.integers(0, 1000), st.sampled_from(["actuators", "sensors"]))
+def test_permuting_patches_changes_nothing(order, seed, side):
+    problem = PlacementProblem.of(blade_config(), side)
+    layout = problem.bounds.random(np.random.default_rng(seed), 1)
+    assert problem.cost(layout[:, list(order)]) == pytest.approx(problem.cost(layout), rel=1e-9)
+
+
+def test_trace_does_not_depend_on_the_basis_of_the_modes():
+    """x = [ωη; η̇] makes ½xᵀx the energy, so only an orthogonal change of coordinates is left, which no trace sees."""
+    problem = PlacementProblem.of(blade_config(), "actuators")
+    plant = build_plant(problem.configuration(problem.bounds.uniform()))
+    turn = np.linalg.qr(np.random.default_rng(0).standard_normal((22, 22)))[0]
+    P, _ = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
+    turned, _ = regulator(turn @ plant.A @ turn.T, turn @ plant.B, plant.state_weight, plant.input_weight)
+    assert np.trace(turned) == pytest.approx(np.trace(P), rel=1e-9)
+
+
+def test_trace_over_modes_is_the_mean_cost_of_a_joule():
+    """Free response under the regulator from random states of 1 J, cost by x₀ᵀPx₀: the mean over all directions is tr(P)/r."""
+    problem = PlacementProblem.of(blade_config(), "actuators")
+    plant = build_plant(problem.configuration(problem.bounds.uniform()))
+    P, _ = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
+    directions = np.random.default_rng(0).standard_normal((200_000, 22))
+    states = np.sqrt(2.0) * directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    costs = np.einsum("ki,ij,kj->k", states, P, states)
+    assert costs.mean() == pytest.approx(np.trace(P) / 11, rel=0.01)
+
+
+def test_more_actuators_among_the_same_cost_no_more():
+    config = blade_config(overrides={"patches": {"passive": False, "sensors": 1}})
+    four = PlacementProblem.of(config, "actuators", 4)
+    layout = four.bounds.uniform()
+    costs = [PlacementProblem.of(config, "actuators", k).cost(layout[None, :k])[0] for k in (1, 2, 3, 4)]
+    assert np.all(np.diff(costs) < 0.0)
+
+
+def test_passive_effect_can_be_switched_off():
+    layout = np.array([[0.0, 0.3, 0.6, 0.9]])
+    with_mass, without = (
+        PlacementProblem.of(blade_config(overrides={"patches": {"passive": passive}}), "actuators").cost(layout)[0]
+        for passive in (True, False)
+    )
+    assert with_mass != without
+    assert with_mass == pytest.approx(without, rel=1e-2)
+
+
+def test_the_instrument_stays_when_sensors_move():
+    config = blade_config()
+    problem = PlacementProblem.of(config, "sensors")
+    uniform, moved = (build_plant(problem.configuration(layout)) for layout in (problem.bounds.uniform(), [0.3, 0.5, 0.7, 0.9]))
+    assert np.array_equal(uniform.sensor_noise, moved.sensor_noise)
+    assert np.array_equal(uniform.sensor_noise, build_plant(config).sensor_noise)
+    assert replace(problem.config, sensor_full_scale=None, patches=config.patches) == config

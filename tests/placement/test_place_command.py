@@ -1,0 +1,86 @@
+"""``beamenv place``: what it prints, draws and refuses."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from baselines.placement import METHODS, PlacementProblem, place
+from beamenv.configuration import blade_config
+from train.cli import app
+from train.place import place_sides
+from train.placement_picture import cost_along_span
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["place", *arguments])
+
+
+@pytest.fixture(scope="module")
+def sides():
+    return place_sides(blade_config(), {"actuators": 2, "sensors": 2}, "sqp", 0)
+
+
+def test_json_tells_positions_traces_and_damping():
+    result = run("--actuators", "2", "--method", "sqp", "--json")
+    assert result.exit_code == 0
+    (told,) = json.loads(result.stdout)
+    found = place(PlacementProblem.of(blade_config(), "actuators", 2), "sqp")
+    assert told["positions"] == list(found.positions) and told["cost"] == found.cost
+    assert (told["side"], told["trace"], told["unit"]) == ("actuators", "tr(P)", "s")
+    assert told["gap_to_uniform"] == pytest.approx(1.0 - found.cost / told["uniform"]["cost"])
+    assert np.min(told["damping_ratios"]["placed"]) > np.max(told["damping_ratios"]["without_control"])
+
+
+def test_speed_blade_and_passive_effect_are_options(tmp_path):
+    blade = tmp_path / "blade.json"
+    blade.write_text(json.dumps({"patches": {"sensors": 1}, "speed": 50.0}))
+    (told,) = json.loads(run("--sensors", "1", "--method", "sqp", "--blade", str(blade), "--speed", "100", "--json").stdout)
+    problem = PlacementProblem.of(blade_config(overrides={"patches": {"sensors": 1}}, speed=100.0), "sensors")
+    assert told["cost"] == pytest.approx(place(problem, "sqp").cost)
+    (other,) = json.loads(run("--sensors", "1", "--method", "sqp", "--no-passive", "--json").stdout)
+    assert other["cost"] != told["cost"]
+
+
+def test_the_screen_shows_both_sides_and_a_picture_is_drawn(tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "blade.png"
+    result = run("--method", "sqp", "--picture", str(picture))
+    assert result.exit_code == 0
+    for word in ("tr(P), s", "tr(S), J", "of uniform", "damping ratios of the regulator", "damping ratios of the filter"):
+        assert word in result.stdout
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_sensors_are_placed_on_the_blade_with_its_actuators_placed(sides):
+    actuators, sensors = sides
+    assert sensors.problem.config.patches.actuators == actuators.placement.positions
+
+
+def test_no_patch_can_be_moved_alone_to_anything_better(sides):
+    """What the picture shows: each curve's minimum is where the patch lies."""
+    for side in sides:
+        for number in range(2):
+            where, cost = cost_along_span(side, number)
+            near = np.abs(where - side.placement.positions[number]) < 0.1
+            assert np.nanmin(cost[near]) >= side.placement.cost * (1.0 - 1e-7)
+            assert np.isnan(cost).any()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--actuators", "40"], "actuators = 40"),
+        (["--actuators", "0"], "actuators = 0"),
+        (["--method", "magic"], "method = 'magic' must be one of " + ", ".join(METHODS)),
+        (["--method", "grid"], "method = 'grid' serves one or two patches, not 4"),
+        (["--speed", "nan"], "speed"),
+        (["--preset", "rotor"], "preset = 'rotor' must be one of"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments, sentence):
+    result = run(*arguments, "--json")
+    assert result.exit_code == 2
+    assert sentence in result.stderr and result.stderr.strip().count("\n") == 0
+    assert result.stdout == ""

@@ -1,0 +1,81 @@
+"""What chapter 6 of the thesis concludes, as our blade has it."""
+
+import numpy as np
+import pytest
+
+from baselines.placement import PlacementProblem
+from beamenv.configuration import blade_config
+from train.placement_responses import pulse_response
+from train.placement_study import (
+    UNTWISTED,
+    convergence,
+    dependence,
+    depth,
+    gathering_at_the_root,
+    initial_and_optimal,
+    poles,
+    shift_with_speed,
+    starts_that_fail,
+    table_row,
+    together_against_alone,
+)
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return {(side, speed): table_row(side, 2, speed) for side in ("actuators", "sensors") for speed in (0.0, 200.0)}
+
+
+@pytest.fixture(scope="module")
+def layouts():
+    return initial_and_optimal(UNTWISTED)
+
+
+def test_actuators_shift_towards_the_root_with_speed(rows):
+    at_rest, rotating = shift_with_speed([rows["actuators", 0.0], rows["actuators", 200.0]])[2]
+    assert rotating < at_rest
+
+
+def test_sensors_lie_nearer_the_root_than_actuators_at_rest(rows):
+    ((_, _, sensors, actuators),) = gathering_at_the_root([rows["sensors", 0.0]], [rows["actuators", 0.0]])
+    assert sensors < actuators
+    assert rows["sensors", 0.0].both.positions == pytest.approx((0.0, 0.085), abs=1e-6)  # as close to the root as they can be
+
+
+def test_genetic_algorithm_then_sqp_is_never_dearer_than_either(rows):
+    for ga, sqp in together_against_alone(list(rows.values())):
+        assert ga >= 0.0 and sqp >= -1e-9
+    assert max(sqp for _, sqp in together_against_alone(list(rows.values()))) > 0.2  # two actuators, 200 rad/s
+
+
+def test_sqp_depends_on_its_start():
+    assert starts_that_fail(PlacementProblem.of(blade_config(UNTWISTED), "actuators", 2), starts=8) > 0.0
+
+
+def test_fitness_falls_from_generation_to_generation():
+    curves = convergence((6, 12), generations=5)
+    assert [len(curve) for curve in curves.values()] == [5, 5]
+    assert all(np.all(np.diff(curve) <= 0.0) for curve in curves.values())
+
+
+def test_placed_patches_push_the_slowest_poles_deeper(layouts):
+    shown = poles(layouts)
+    for side in ("actuators", "sensors"):
+        assert depth(shown[side, "optimal"])[0] > depth(shown[side, "initial"])[0]
+
+
+def test_placed_patches_settle_a_pulse_sooner_at_less_effort_but_not_with_less_voltage(layouts):
+    """Thesis Fig. 6.5: settling and effort fall. That every voltage falls too is not so: those near the root reach their limit."""
+    initial, optimal = (pulse_response(config) for config in (layouts.initial, layouts.optimal))
+    band = 0.05 * np.abs(initial.tip).max()
+    assert optimal.settling_time(band) < initial.settling_time(band)
+    assert np.abs(optimal.tip).max() < np.abs(initial.tip).max()
+    assert optimal.effort < initial.effort and optimal.cost < initial.cost
+    assert optimal.peak_volts.max() == 1500.0
+
+
+@pytest.mark.slow
+def test_optimal_locations_depend_on_speed_twist_presetting_and_number():
+    found = dependence()
+    asis = np.array(found.pop("as it is"))
+    assert all(np.abs(np.array(other[:2]) - asis).max() > 1e-3 for other in found.values())

@@ -1,0 +1,251 @@
+"""Patches put elsewhere in an environment, single and batched."""
+
+import copy
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.utils.env_checker import check_env
+
+from baselines import lqg
+from baselines.placement import PlacementProblem, optimal_layout, place
+from baselines.placement.genetic import Genetic
+from beamenv import ENV_ID, PlacementWrapper, SensorHistory, VectorPlacementWrapper, blade_config, build_plant
+from beamenv.patches.bounds import Bounds
+
+ELSEWHERE = {"actuators": [0.0, 0.2, 0.4, 0.6], "sensors": [0.1, 0.2, 0.3, 0.4]}
+
+
+def wrapped(**arguments):
+    return PlacementWrapper(gymnasium.make(ENV_ID, duration=0.02), **arguments)
+
+
+def batch(count, **arguments):
+    return VectorPlacementWrapper(gymnasium.make_vec(ENV_ID, num_envs=count, duration=0.02), **arguments)
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("BEAMENV_CACHE", str(tmp_path))
+    optimal_layout.cache_clear()
+
+
+def test_the_plant_is_the_one_with_patches_there():
+    env = wrapped(**ELSEWHERE)
+    positions = {side: tuple(values) for side, values in ELSEWHERE.items()}
+    expected = build_plant(blade_config(overrides={"patches": positions}))
+    assert env.reset(seed=0)[1]["layout"] == positions
+    assert np.array_equal(env.unwrapped.plant.B, expected.B)
+    assert np.array_equal(env.unwrapped.design_plant.C, expected.C)
+
+
+def test_as_they_were_means_as_without_the_wrapper():
+    plain, same = gymnasium.make(ENV_ID, duration=0.02), wrapped()
+    assert np.array_equal(plain.reset(seed=3)[0], same.reset(seed=3)[0])
+    for k in range(10):
+        action = np.full(4, 0.1 * k)
+        assert np.array_equal(plain.step(action)[0], same.step(action)[0])
+
+
+def test_spaces_follow_the_number_of_patches():
+    env = wrapped(actuators=[0.0, 0.3], sensors=5)
+    assert env.action_space.shape == (2,) and env.observation_space.shape == (5,)
+    with pytest.warns(UserWarning, match="different from the unwrapped version"):
+        check_env(env, skip_render_check=True)
+
+
+def test_data_acquisition_stays_when_sensors_move():
+    before = gymnasium.make(ENV_ID).unwrapped.plant
+    env = wrapped(sensors=[0.6, 0.8, 1.0, 1.2])
+    assert np.array_equal(env.unwrapped.plant.sensor_full_scale, before.sensor_full_scale)
+    assert np.array_equal(env.unwrapped.plant.sensor_noise, before.sensor_noise)
+
+
+@pytest.mark.parametrize(
+    ("name", "side", "expected"),
+    [
+        ("uniform", "actuators", [0.0, 0.4437, 0.88740, 1.3311]),
+        ("thesis-table-6.3", "actuators", [0.0, 0.085, 0.27287, 0.42733]),  # printed 0.00624 and 0.07821: 72 mm apart
+        ("thesis-table-6.4", "sensors", [0.0, 0.085, 0.17, 0.255]),
+    ],
+)
+def test_layouts_have_names(name, side, expected):
+    assert wrapped(**{side: name}).reset()[1]["layout"][side] == pytest.approx(expected, abs=1e-4)
+
+
+def test_thesis_layout_follows_speed_and_number():
+    env = PlacementWrapper(gymnasium.make(ENV_ID, speed=0.0, blade={"patches": {"actuators": 2}}), actuators="thesis-table-6.3")
+    assert env.reset()[1]["layout"]["actuators"] == pytest.approx((0.00948, 0.70742))
+
+
+def test_optimal_layout_is_found_once_and_kept(monkeypatch, tmp_path):
+    """A search in small; the second environment reads what the first wrote."""
+    import baselines.placement.optimal as optimal
+
+    monkeypatch.setattr(optimal, "METHOD", Genetic(population=6, generations=2))
+    monkeypatch.setattr(optimal, "_kept_in", lambda config: tmp_path / "layout.json")
+    first = wrapped(actuators="optimal", sensors="optimal").reset()[1]["layout"]
+    optimal_layout.cache_clear()
+    monkeypatch.setattr(optimal, "computed_layout", lambda config: pytest.fail("worked out again"))
+    assert wrapped(actuators="optimal", sensors="optimal").reset()[1]["layout"] == first
+    assert PlacementProblem.of(blade_config(), "actuators").bounds.checked(first["actuators"]).tolist() == list(first["actuators"])
+
+
+def test_optimal_layout_does_not_depend_on_where_the_patches_are():
+    import baselines.placement.optimal as optimal
+
+    config = blade_config(overrides={"patches": ELSEWHERE})
+    found = optimal.optimal_positions(config, "actuators")
+    assert found == optimal.optimal_positions(blade_config(), "actuators")
+    assert found == place(PlacementProblem.of(blade_config(), "actuators")).positions
+
+
+def test_a_range_is_drawn_from_at_each_reset():
+    env = wrapped(actuators={"low": 0.1, "high": 0.8}, sensors={"count": 2})
+    bounds = Bounds.of(blade_config().patches, 2.023, 4, (0.1, 0.8), "actuators")
+    layouts = [env.reset(seed=7)[1]["layout"], *(env.reset()[1]["layout"] for _ in range(3))]
+    assert len({layout["actuators"] for layout in layouts}) == 4
+    for layout in layouts:
+        bounds.checked(layout["actuators"])
+        assert len(layout["sensors"]) == 2
+    again = wrapped(actuators={"low": 0.1, "high": 0.8}, sensors={"count": 2})
+    assert again.reset(seed=7)[1]["layout"] == layouts[0] and again.reset()[1]["layout"] == layouts[1]
+    assert env.action_space.shape == (4,) and env.observation_space.shape == (2,)
+
+
+def test_reset_changes_the_layout_from_then_on():
+    env = wrapped()
+    _, info = env.reset(seed=0, options={"layout": ELSEWHERE})
+    assert info["layout"]["sensors"] == tuple(ELSEWHERE["sensors"])
+    assert env.reset()[1]["layout"] == info["layout"] == env.step(np.zeros(4))[4]["layout"]
+    env.reset(options={"layout": "uniform", "load": {"case": "step"}})
+    assert np.array_equal(env.unwrapped.plant.B, gymnasium.make(ENV_ID).unwrapped.plant.B)
+
+
+def test_controllers_are_made_from_the_plant_of_the_layout():
+    env = wrapped(**ELSEWHERE)
+    observation, _ = env.reset(seed=1)
+    controller, state = lqg(env.unwrapped.design_plant), None
+    for _ in range(10):
+        action, state = controller.predict(observation, state)
+        observation, _, terminated, _, _ = env.step(action)
+        assert not terminated
+
+
+@pytest.mark.parametrize(
+    ("layout", "sentence"),
+    [
+        ("nowhere", "actuators = 'nowhere' must be one of uniform, thesis-table-6.3, optimal"),
+        ({"actuators": "thesis-table-6.4"}, "actuators = 'thesis-table-6.4' must be one of uniform, thesis-table-6.3, optimal"),
+        ({"actuators": [0.0, 0.01, 0.3, 0.6]}, "must be at least one patch length, 0.085 m, apart"),
+        ({"actuators": [0.0, 0.2, 0.3, 2.0]}, "between 0 and 1.3311 m"),
+        ({"sensors": [0.0, 0.2, 0.3, float("nan")]}, "must be one or more finite positions"),
+        ({"sensors": [0.0, 0.2]}, r"options\['layout'\] has 2 sensors, but the spaces are made for 4"),
+        ({"sensors": {"low": 1.3}}, "sensors = 4 patches of 0.085 m do not fit"),
+        ({"sensors": {"from": 1.3}}, "sensors has the key 'from', but a range may hold only"),
+        ({"top": [0.0]}, "layout is a mapping with the key 'top'"),
+        (4, "layout is 4, but must be a name or a mapping"),
+    ],
+)
+def test_a_bad_layout_is_refused_and_nothing_has_changed(layout, sentence):
+    env = wrapped()
+    env.reset(seed=0)
+    before = env.unwrapped.plant
+    with pytest.raises(ValueError, match=sentence):
+        env.reset(options={"layout": layout})
+    assert env.unwrapped.plant is before
+    env.step(np.zeros(4))
+
+
+def test_other_bad_options_leave_the_layout_alone():
+    env = wrapped()
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match="'lode'"):
+        env.reset(options={"layout": ELSEWHERE, "lode": {}})
+    assert env.step(np.zeros(4))[4]["layout"]["sensors"] != tuple(ELSEWHERE["sensors"])
+
+
+def test_works_as_an_additional_wrapper_and_round_trips_through_json():
+    spec = copy.deepcopy(gymnasium.spec(ENV_ID))
+    spec.additional_wrappers = (
+        PlacementWrapper.wrapper_spec(actuators=[0.0, 0.3], sensors="uniform"),
+        SensorHistory.wrapper_spec(),
+    )
+    env = gymnasium.make(spec)
+    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
+    assert env.observation_space.shape == (12 * (4 + 2),)
+    assert np.array_equal(env.reset(seed=2)[0], again.reset(seed=2)[0])
+
+
+def test_a_batch_takes_one_layout_for_each_blade():
+    envs = batch(3, layouts=[ELSEWHERE, "uniform", {"actuators": ELSEWHERE["actuators"]}])
+    singles = [wrapped(**ELSEWHERE), wrapped(), wrapped(actuators=ELSEWHERE["actuators"])]
+    observations, info = envs.reset(seed=[4, 5, 6])
+    assert info["layout"]["actuators"].shape == (3, 4)
+    assert info["layout"]["sensors"][0] == pytest.approx(ELSEWHERE["sensors"])
+    alone = [single.reset(seed=seed)[0] for single, seed in zip(singles, (4, 5, 6), strict=True)]
+    assert observations == pytest.approx(np.stack(alone), abs=1e-12)
+    for k in range(39):
+        actions = np.random.default_rng(k).uniform(-1.0, 1.0, (3, 4))
+        observations, rewards, *_ = envs.step(actions)
+        steps = [single.step(action) for single, action in zip(singles, actions, strict=True)]
+        assert observations == pytest.approx(np.stack([step[0] for step in steps]), abs=1e-12)
+        assert rewards == pytest.approx([step[1] for step in steps], rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+def test_a_mixed_batch_goes_on_from_episode_to_episode(mode):
+    envs = VectorPlacementWrapper(
+        gymnasium.make_vec(ENV_ID, num_envs=5, duration=0.01, autoreset_mode=mode),
+        actuators={"low": 0.0, "high": 0.6},
+        bank=3,
+    )
+    _, info = envs.reset(seed=0)
+    assert len(np.unique(info["layout"]["actuators"], axis=0)) == 3
+    ends = 0
+    for _ in range(50):
+        observations, _, _, truncated, info = envs.step(np.zeros((5, 4)))
+        assert np.all(np.isfinite(observations)) and info["layout"]["actuators"].shape == (5, 4)
+        ends += truncated.sum()
+    assert ends == 10
+
+
+def test_a_batch_changes_its_layout_at_reset():
+    envs = batch(2)
+    envs.reset(seed=0, options={"layout": [ELSEWHERE, "uniform"]})
+    with pytest.raises(ValueError, match="must be one layout, or a sequence of 2"):
+        envs.reset(options={"layout": [ELSEWHERE]})
+    _, info = envs.reset(options={"layout": ELSEWHERE})
+    assert info["layout"]["sensors"] == pytest.approx(np.array([ELSEWHERE["sensors"]] * 2))
+
+
+def test_layouts_of_one_batch_have_equally_many_patches():
+    with pytest.raises(ValueError, match="those of one batch must have equally many"):
+        batch(2, layouts=["uniform", {"actuators": [0.0]}])
+
+
+def test_a_bank_is_a_positive_number():
+    with pytest.raises(ValueError, match="bank is 0"):
+        batch(2, bank=0)
+
+
+@pytest.mark.parametrize("seed", [3, [3, 4, 5]])
+def test_the_same_seeds_draw_the_same_layouts_for_a_batch(seed):
+    def drawn():
+        envs = batch(3, sensors={"low": 0.0, "high": 1.0})
+        return [envs.reset(seed=seed)[1]["layout"]["sensors"], envs.reset()[1]["layout"]["sensors"]]
+
+    first, second = drawn(), drawn()
+    assert np.array_equal(first, second)
+    assert not np.array_equal(first[0], first[1])
+
+
+def test_a_copied_mixed_batch_goes_on_from_where_it_was():
+    envs = batch(3, layouts=[ELSEWHERE, "uniform", "uniform"])
+    envs.reset(seed=1)
+    envs.step(np.full((3, 4), 0.3))
+    copied = copy.deepcopy(envs)
+    for _ in range(5):
+        here, there = envs.step(np.full((3, 4), -0.2)), copied.step(np.full((3, 4), -0.2))
+        assert np.array_equal(here[0], there[0])
