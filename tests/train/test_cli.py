@@ -1,0 +1,83 @@
+"""The command ``beamenv`` as a shell meets it."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from train.cli import app
+
+COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark")
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, list(arguments))
+
+
+def test_help_says_what_each_command_does():
+    general = run("--help")
+    assert general.exit_code == 0
+    for command in COMMANDS:
+        assert command in general.stdout
+        assert len(run(command, "--help").stdout.splitlines()) > 4
+
+
+def test_frequencies_come_with_their_families():
+    result = run("frequencies", "--speed", "0", "--speed", "200", "--count", "3", "--json")
+    assert result.exit_code == 0
+    still, turning = json.loads(result.stdout)["speeds"]
+    assert still["speed"] == 0.0
+    assert len(turning["natural_frequencies"]) == len(turning["families"]) == 3
+    assert turning["natural_frequencies"] == sorted(turning["natural_frequencies"])
+    assert set(turning["families"]) <= {"lag", "flap", "extension", "twist"}
+    assert "rad/s" in run("frequencies", "--count", "2").stdout
+
+
+@pytest.mark.parametrize("controller", ["none", "lqg"])
+def test_a_classical_law_is_evaluated_by_name(controller):
+    result = run("evaluate", controller, "--seeds", "2", "--json")
+    assert result.exit_code == 0
+    content = json.loads(result.stdout)
+    assert len(content["per_seed"]["cost"]) == 2
+    assert (content["estimates"]["relative_cost"]["value"] < 1.0) is (controller == "lqg")
+
+
+def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
+    assert run("train", "gradient", str(tmp_path / "agent"), "--seconds", "0.3").exit_code == 0
+    result = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--json")
+    assert result.exit_code == 0
+    assert json.loads(result.stdout)["controller"].startswith("gradient")
+
+
+def test_a_comparison_prints_json_alone(tmp_path):
+    result = run("compare", str(tmp_path), "--minutes", "0", "--seeds", "2", "--scenario", "deflection", "--json")
+    assert result.exit_code == 0
+    rows = json.loads(result.stdout)
+    assert {"controller", "relative_cost", "settling_time"} <= set(rows[0])
+    assert (tmp_path / "table.md").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("frequencies", "--preset", "wind-turbine"), "wind-turbine"),
+        (("frequencies", "--speed", "1e5"), "100000"),
+        (("frequencies", "--count", "0"), "count"),
+        (("frequencies", "--blade", "absent.json"), "absent.json"),
+        (("evaluate", "pid"), "pid"),
+        (("evaluate", "lqg", "--speed", "-3"), "-3"),
+        (("evaluate", "lqg", "--scenario", "storm"), "storm"),
+        (("train", "sac", "folder"), "sac"),
+        (("train", "ppo", "folder", "--seconds", "0"), "seconds"),
+        (("compare", "folder", "--minutes", "-1"), "-"),
+        (("compare", "--seeds", "1"), "seeds"),
+    ],
+)
+def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    assert named in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == []

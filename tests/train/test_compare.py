@@ -1,0 +1,132 @@
+"""The comparison in small: what it writes, what it goes on from, what it refuses."""
+
+import csv
+import json
+
+import pytest
+
+import train.compare
+from train.agents import train_agent
+from train.compare import Comparison, Listener, compare, read_curve
+from train.contenders import CLASSICAL, classical
+from train.policies import load_policy
+
+SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
+
+
+class Notes(Listener):
+    """Remembers what it was told."""
+
+    def __init__(self):
+        self.trained, self.evaluated_names = [], []
+
+    def training(self, name, budget, progress):
+        self.trained.append((name, progress))
+
+    def evaluated(self, evaluation):
+        self.evaluated_names.append(evaluation.name)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    folder, notes = tmp_path_factory.mktemp("compare") / "small", Notes()
+    return folder, compare(SMALL, folder, notes), notes
+
+
+def test_every_piece_is_written(finished):
+    folder, _, _ = finished
+    written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    expected = {"configuration.json", "table.csv", "table.md", "episode.png", "learning.png", "poles.png"}
+    expected |= {f"evaluations/{name}.json" for name in (*CLASSICAL, "gradient", "ppo")}
+    for agent in ("gradient", "ppo"):
+        expected |= {f"learning_{agent}.csv", f"agents/{agent}/weights.npz", f"agents/{agent}/agent.json"}
+    assert expected == written
+
+
+def test_the_table_has_every_controller_on_the_same_seeds(finished):
+    folder, evaluations, notes = finished
+    with (folder / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert sorted(row["controller"] for row in rows) == sorted(notes.evaluated_names)
+    costs = [float(row["relative_cost"]) for row in rows]
+    assert costs == sorted(costs)
+    assert len({evaluation.episodes.seeds for evaluation in evaluations}) == 1
+    markdown = (folder / "table.md").read_text()
+    assert all(row["controller"] in markdown for row in rows)
+
+
+def test_training_reports_its_cost_and_steps(finished):
+    folder, _, notes = finished
+    for agent in SMALL.budget:
+        told = [progress for name, progress in notes.trained if name == agent]
+        curve = read_curve(folder, agent)
+        assert len(curve) == len(told) > 0
+        assert (curve[:, 2] > 0.0).all()
+        assert (curve[1:, 1] > curve[:-1, 1]).all()
+
+
+def test_a_second_run_goes_on_from_the_trained_agents(finished, monkeypatch):
+    folder, evaluations, _ = finished
+
+    def refuse(*arguments):
+        raise AssertionError("trained again")
+
+    monkeypatch.setattr(train.compare, "train_agent", refuse)
+    again = compare(SMALL, folder)
+    assert [evaluation.relative_cost for evaluation in again] == [evaluation.relative_cost for evaluation in evaluations]
+
+
+def test_an_interrupted_run_keeps_the_agents_it_has(tmp_path):
+    class Impatient(Notes):
+        def training(self, name, budget, progress):
+            super().training(name, budget, progress)
+            if name == "ppo":
+                raise ValueError("the machine went down")
+
+    with pytest.raises(ValueError, match="went down"):
+        compare(SMALL, tmp_path, Impatient())
+    assert load_policy(tmp_path / "agents" / "gradient").name
+    assert not (tmp_path / "agents" / "ppo").exists()
+    assert json.loads((tmp_path / "configuration.json").read_text())["comparison"]["seeds"] == 4
+
+
+def test_ctrl_c_ends_a_training_and_goes_on_to_the_evaluation(tmp_path):
+    class Hasty(Notes):
+        def training(self, name, budget, progress):
+            super().training(name, budget, progress)
+            raise KeyboardInterrupt
+
+    notes = Hasty()
+    compare(Comparison({"duration": 0.05}, {"gradient": 60.0}, seeds=2), tmp_path, notes)
+    assert len(notes.trained) == 1
+    assert len(notes.evaluated_names) == len(CLASSICAL) + 1
+
+
+def test_another_comparison_does_not_overwrite_a_folder(finished):
+    folder, _, _ = finished
+    before = (folder / "configuration.json").read_text()
+    with pytest.raises(ValueError, match="holds another comparison"):
+        compare(Comparison(SMALL.environment, SMALL.budget, seeds=5), folder)
+    assert (folder / "configuration.json").read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"budget": {"sac": 1.0}}, "agent 'sac', but must name only gradient, ppo"),
+        ({"budget": {"ppo": -1.0}}, "budget of ppo = -1.0 must be a positive number"),
+        ({"seeds": 1}, "seeds = 1 must be at least 2"),
+    ],
+)
+def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        Comparison(**arguments)
+
+
+def test_unknown_names_are_refused():
+    with pytest.raises(ValueError, match="agent = 'sac' must be one of gradient, ppo"):
+        train_agent("sac", {}, 1.0, 0, lambda progress: None)
+    with pytest.raises(ValueError, match="seconds = 0.0 must be a positive number"):
+        train_agent("ppo", {}, 0.0, 0, lambda progress: None)
+    with pytest.raises(ValueError, match="controller = 'pid' must be one of none, velocity"):
+        classical("pid", None)

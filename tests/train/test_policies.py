@@ -1,0 +1,120 @@
+"""Trained policies run by NumPy alone: the same numbers as in training, saved as weights only."""
+
+import json
+
+import numpy as np
+import pytest
+import torch
+
+from beamenv.configuration import blade_config, build_plant
+from train.gradient import Actor, GradientSettings
+from train.policies import HistoryPolicy, load_policy, save_policy
+
+
+@pytest.fixture(scope="module")
+def actor():
+    torch.manual_seed(3)
+    actor = Actor(build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)})), GradientSettings(output_gain=3.0))
+    with torch.no_grad():
+        actor.head.bias.copy_(torch.tensor([0.3, -0.4, 0.0, 0.1]))
+    return actor
+
+
+@pytest.fixture(scope="module")
+def recurrent(actor):
+    return actor.policy(GradientSettings(output_gain=3.0))
+
+
+@pytest.fixture(scope="module")
+def windowed():
+    generator, weights = np.random.default_rng(4), {}
+    for layer, shape in enumerate(((16, 24), (16, 16), (4, 16))):
+        weights[f"weight{layer}"] = generator.normal(0.0, 0.3, shape).astype(np.float32)
+        weights[f"bias{layer}"] = generator.normal(0.0, 0.1, shape[0]).astype(np.float32)
+    one = np.ones(4, np.float32)
+    return HistoryPolicy("windowed", weights, {"input_gain": 2.0}, -one, one)
+
+
+@pytest.fixture(params=["recurrent", "windowed"])
+def policy(request):
+    return request.getfixturevalue(request.param)
+
+
+def readings(steps=12, count=3):
+    return np.random.default_rng(1).uniform(-0.3, 0.3, (steps, count, 4))
+
+
+def test_numpy_repeats_the_training_time_network(actor, recurrent):
+    hidden, voltages, memory = torch.zeros(3, 48), torch.zeros(3, 4), None
+    for observed in readings():
+        with torch.no_grad():
+            voltages, hidden = actor(torch.as_tensor(observed, dtype=torch.float32), hidden, voltages)
+        action, memory = recurrent.predict(observed, memory)
+        np.testing.assert_allclose(action, voltages.numpy(), atol=2e-6)
+    assert np.abs(action).max() > 0.05
+
+
+def test_actions_keep_the_drive_limits(actor, recurrent):
+    memory, lowest = None, 0.0
+    for observed in readings(40):
+        action, memory = recurrent.predict(np.sign(observed), memory)
+        lowest = min(lowest, action.min())
+    assert lowest == pytest.approx(-1.0 / 3.0)
+    np.testing.assert_array_equal(memory[:, -4:], action)
+
+
+def test_a_window_holds_readings_and_the_voltages_before_them(windowed):
+    first, second = readings(2, 1).astype(np.float32)
+    action, memory = windowed.predict(first)
+    np.testing.assert_array_equal(memory[0, :24], [*np.zeros(16), *first[0], *np.zeros(4)])
+    _, memory = windowed.predict(second, memory)
+    np.testing.assert_array_equal(memory[0, :24], [*np.zeros(8), *first[0], *np.zeros(4), *second[0], *action[0]])
+
+
+def test_a_blade_alone_is_a_batch_of_one(policy):
+    memory = alone = None
+    for observed in readings():
+        action, memory = policy.predict(observed, memory)
+        one, alone = policy.predict(observed[0], alone)
+        assert one.shape == (4,)
+        np.testing.assert_allclose(one, action[0], atol=1e-6)
+
+
+def test_an_episode_s_start_forgets(policy):
+    memory = None
+    for observed in readings():
+        _, memory = policy.predict(observed, memory)
+    observed = readings()[0]
+    action, following = policy.predict(observed, memory, episode_start=np.array([True, False, True]))
+    afresh, _ = policy.predict(observed)
+    went_on, _ = policy.predict(observed, memory)
+    np.testing.assert_array_equal(action[[0, 2]], afresh[[0, 2]])
+    np.testing.assert_array_equal(action[1], went_on[1])
+    np.testing.assert_array_equal(following[:, -4:], action)
+
+
+def test_a_saved_policy_comes_back_and_acts_alike(policy, tmp_path):
+    save_policy(policy, tmp_path / "agent")
+    loaded = load_policy(tmp_path / "agent")
+    assert (loaded.name, loaded.kind, dict(loaded.settings)) == (policy.name, policy.kind, dict(policy.settings))
+    for observed in readings():
+        np.testing.assert_array_equal(loaded.predict(observed)[0], policy.predict(observed)[0])
+
+
+def test_loading_executes_no_code(recurrent, tmp_path):
+    save_policy(recurrent, tmp_path)
+    with np.load(tmp_path / "weights.npz", allow_pickle=False) as arrays:
+        assert all(arrays[name].dtype == np.float32 for name in arrays.files)
+    np.savez(tmp_path / "weights.npz", weight_hh=np.array([print], dtype=object))
+    with pytest.raises(ValueError, match="allow_pickle"):
+        load_policy(tmp_path)
+
+
+def test_a_folder_without_an_agent_is_refused(recurrent, tmp_path):
+    with pytest.raises(ValueError, match=r"agent\.json is not there"):
+        load_policy(tmp_path)
+    save_policy(recurrent, tmp_path)
+    about = json.loads((tmp_path / "agent.json").read_text())
+    (tmp_path / "agent.json").write_text(json.dumps(about | {"kind": "oracle"}))
+    with pytest.raises(ValueError, match="'oracle'.*must be one of history, recurrent"):
+        load_policy(tmp_path)

@@ -1,0 +1,111 @@
+"""The batch of blades as Stable-Baselines3 sees it."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+from stable_baselines3.common.vec_env import VecEnv
+
+import beamenv
+from train.vec_env import BladeVecEnv
+
+SHORT = {"duration": 0.01}  # 20 control intervals
+COUNT = 4
+FIRST_TO_END = COUNT - 1  # blades begin spread over the episode, the last one furthest on
+
+
+def batch():
+    return BladeVecEnv(COUNT, SHORT, seed=5, history=3)
+
+
+def plain_batch():
+    """The wrapped Gymnasium batch in the same episodes."""
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=COUNT, autoreset_mode=AutoresetMode.SAME_STEP, **SHORT)
+    envs = beamenv.VectorSensorHistory(envs, length=3)
+    return envs, envs.reset(seed=5, options={"elapsed": np.arange(COUNT) * 20 // COUNT})[0]
+
+
+def actions(step):
+    return np.sin(step + np.arange(4.0 * COUNT)).reshape(COUNT, 4)
+
+
+def test_it_is_a_vec_env_with_spaces_that_hold_what_it_gives():
+    envs = batch()
+    assert isinstance(envs, VecEnv)
+    observations = envs.reset()
+    assert observations.shape == (COUNT, *envs.observation_space.shape)
+    observations, rewards, ends, infos = envs.step(np.zeros((COUNT, 4), np.float32))
+    assert all(envs.observation_space.contains(row) for row in observations)
+    assert rewards.shape == ends.shape == (COUNT,)
+    assert (rewards.dtype, ends.dtype, len(infos)) == (np.float32, np.bool_, COUNT)
+
+
+def test_its_episodes_are_those_of_the_gymnasium_batch():
+    envs, (plain, expected) = batch(), plain_batch()
+    np.testing.assert_array_equal(envs.reset(), expected)
+    for step in range(45):
+        observations, rewards, ends, infos = envs.step(actions(step))
+        expected, reward, terminated, truncated, info = plain.step(actions(step))
+        np.testing.assert_array_equal(observations, expected)
+        np.testing.assert_array_equal(rewards, reward.astype(np.float32))
+        np.testing.assert_array_equal(ends, terminated | truncated)
+        for row in np.flatnonzero(ends):
+            np.testing.assert_array_equal(infos[row]["terminal_observation"], info["final_obs"][row])
+            assert infos[row]["TimeLimit.truncated"]
+
+
+def test_a_terminal_observation_ends_in_the_voltages_of_the_last_action():
+    envs = batch()
+    envs.reset()
+    for step in range(5):
+        observations, _, ends, infos = envs.step(actions(step))
+    assert ends.tolist() == [False, False, False, True]
+    last = infos[FIRST_TO_END]["terminal_observation"].reshape(3, 8)
+    np.testing.assert_allclose(last[-1, 4:], actions(4)[FIRST_TO_END], rtol=1e-6)
+    np.testing.assert_array_equal(observations[FIRST_TO_END].reshape(3, 8)[-1, 4:], 0.0)
+
+
+def test_only_finished_episodes_have_an_info():
+    envs = batch()
+    envs.reset()
+    seen = [envs.step(actions(step))[2:] for step in range(5)]
+    assert all(infos is seen[0][1] for _, infos in seen[:4])
+    assert seen[0][1] == [{}] * COUNT
+    assert [bool(info) for info in seen[4][1]] == seen[4][0].tolist()
+
+
+def test_a_failed_blade_is_not_truncated():
+    weak = {"white_load": 1e9, "sensor_noise_fraction": 0.02}
+    envs = BladeVecEnv(2, {"blade": weak, **SHORT}, seed=0)
+    envs.reset()
+    _, _, ends, infos = envs.step(np.zeros((2, 4)))
+    assert ends.all()
+    assert not infos[0]["TimeLimit.truncated"]
+
+
+def test_stored_energy_counts_as_cost_to_come():
+    plain, shaped = batch(), BladeVecEnv(COUNT, SHORT, seed=5, history=3, energy_horizon=0.1)
+    plain.reset()
+    shaped.reset()
+    before = 0.5 * (shaped.blades.state**2).sum(axis=1)
+    reward = plain.step(actions(0))[1]
+    reward_shaped = shaped.step(actions(0))[1]
+    after = 0.5 * (shaped.blades.state**2).sum(axis=1)
+    gain = reward_shaped - reward
+    assert np.all(np.sign(gain) == np.sign(before - after))
+    assert np.corrcoef(gain, before - after)[0, 1] > 0.999
+
+
+def test_a_critic_may_be_shown_the_state_after_what_the_actor_sees():
+    plain, full = batch(), BladeVecEnv(COUNT, SHORT, seed=5, history=3, shows_state=True)
+    windows, observations = plain.reset(), full.reset()
+    np.testing.assert_array_equal(observations[:, : full.seen], windows)
+    assert observations.shape[1] == full.seen + full.blades.state.shape[1]
+
+
+def test_attributes_are_the_batch_s_and_cannot_be_set():
+    envs = batch()
+    assert envs.get_attr("plant", [0, 1]) == [envs.blades.plant] * 2
+    assert envs.env_is_wrapped(gymnasium.Wrapper) == [False] * COUNT
+    with pytest.raises(NotImplementedError, match="one environment"):
+        envs.set_attr("duration", 1.0)
