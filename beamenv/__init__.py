@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from beamenv.vector_env import RotatingBeamVectorEnv
     from beamenv.wrappers import SensorHistory, VectorSensorHistory
 
+__version__ = "0.1.0"
+
 ENV_ID = "beamenv/RotatingBeam-v0"
 
 _HOMES = {

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import operator
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -76,7 +76,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if render_mode is not None:
             raise ValueError(f"render_mode is {render_mode!r}, but a batch draws nothing: make a single environment for pictures.")
         self.num_envs = _positive("num_envs", num_envs)
-        self._time_limit = math.inf if max_episode_steps is None else _positive("max_episode_steps", max_episode_steps)
+        self._time_limit = sys.maxsize if max_episode_steps is None else _positive("max_episode_steps", max_episode_steps)
         self._mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
         self._generators: np.random.Generator | list[np.random.Generator] | None = None

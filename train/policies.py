@@ -64,25 +64,34 @@ class Policy:
 
 
 class HistoryPolicy(Policy):
-    """A tanh network on the last instants, laid out as ``beamenv.wrappers.RollingHistory`` does."""
+    """A tanh network on the last instants, laid out as ``beamenv.wrappers.RollingHistory`` does, asked every few instants.
+
+    Its memory is [window | intervals the voltages have been held | voltages].
+    """
 
     __slots__ = ()
     kind = "history"
 
     @property
     def memory_size(self) -> int:
-        """The window, and the last voltages."""
-        return int(self.weights["weight0"].shape[1]) + len(self.lowest)
+        """The window, a count and the last voltages."""
+        return int(self.weights["weight0"].shape[1]) + 1 + len(self.lowest)
 
     def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
-        """Shift the window, then layer by layer."""
-        instant = readings.shape[1] + len(self.lowest)
-        window = np.hstack([memory[:, instant : -len(self.lowest)], readings, memory[:, -len(self.lowest) :]])
+        """Shift the window; where it is time, layer by layer to new voltages."""
+        m = len(self.lowest)
+        instant = readings.shape[1] + m
+        age, voltages = memory[:, -m - 1 : -m], memory[:, -m:]
+        window = np.hstack([memory[:, instant : -m - 1], readings, voltages])
+        action = np.where(age == 0.0, self._network(window), voltages)
+        return action, np.hstack([window, (age + 1.0) % self.settings["held"], voltages]).astype(np.float32)
+
+    def _network(self, window: Array) -> Array:
         hidden, depth = window * np.float32(self.settings["input_gain"]), len(self.weights) // 2
         for layer in range(depth):
             hidden = hidden @ self.weights[f"weight{layer}"].T + self.weights[f"bias{layer}"]
             hidden = np.tanh(hidden) if layer < depth - 1 else hidden
-        return hidden, np.hstack([window, np.zeros((len(window), len(self.lowest)), np.float32)])
+        return hidden
 
 
 class RecurrentPolicy(Policy):

@@ -20,12 +20,18 @@ from beamenv.simulation import reward_scale
 Array = NDArray[Any]
 
 
+REWARD_UNIT = 0.01
+"""What the environment's reward is multiplied by: its values, hundreds, would take a critic long to reach."""
+
+
 class BladeVecEnv(VecEnv):
     """Blades whose agent sees the last ``history`` readings and own voltages; SAME_STEP, infos for finished episodes only.
 
-    With ``energy_horizon`` τ > 0 the reward is r + τ (E − E⁺)/scale, E being the vibration energy: what a voltage takes out of the
-    blade is told at once. To an agent that discounts, it stands for the cost beyond its horizon; an undiscounted return changes
-    only by τ times the first energy less the last (Ng, Harada and Russell 1999).
+    With ``energy_horizon`` τ > 0 the reward is shaped by the vibration energy E as a potential: r + τ (E − γ E⁺)/scale. For an
+    agent that learns with the ``discount`` γ this changes no policy's rank (Ng, Harada and Russell 1999), but what a voltage takes
+    out of the blade is told at once.
+
+    An action is ``held`` for so many control intervals: a step of this environment is as many of the blades'.
 
     With ``shows_state`` the true state follows the history in each observation, in units of what is typical: for a critic.
     """
@@ -38,7 +44,9 @@ class BladeVecEnv(VecEnv):
         *,
         history: int = 12,
         energy_horizon: float = 0.0,
+        discount: float = 1.0,
         shows_state: bool = False,
+        held: int = 1,
     ) -> None:
         batch = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **environment)
         self.blades: Any = batch.unwrapped
@@ -51,6 +59,8 @@ class BladeVecEnv(VecEnv):
         super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), Box(-1.0, 1.0, actions.shape, np.float32))
         self._seed: int | None = seed
         self._scale = reward_scale(self.blades.plant)
+        self.held = held
+        self._discount = discount ** (1.0 / held)
         self._potential = energy_horizon / self._scale
         self._states: Array = np.zeros((count, 0), np.float32)
         self._energy = np.zeros(count)
@@ -62,7 +72,7 @@ class BladeVecEnv(VecEnv):
     def reset(self) -> Array:
         """Begin episodes, out of step with one another."""
         steps = self.blades.task.steps
-        elapsed = np.arange(self.num_envs) * steps // self.num_envs
+        elapsed = np.arange(self.num_envs) * steps // self.num_envs // self.held * self.held
         observations, info = self.envs.reset(seed=self._seed, options={"elapsed": elapsed})
         self._seed = None
         self._energy = info["energy"]
@@ -80,24 +90,25 @@ class BladeVecEnv(VecEnv):
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Observations, rewards, ends and infos; where an episode ended the observation is the next one's first."""
-        observations, rewards, terminated, truncated, info = self.envs.step(self._actions)
-        energy, ended = info["energy"], terminated | truncated
-        infos = self._unfinished
-        if ended.any():
-            final = info["final_info"]["energy"]
-            reached = np.where(ended, final, energy)
-            infos = self._infos(np.flatnonzero(ended), info["final_obs"], terminated)
-        else:
-            reached = energy
-        self.last_cost = -float(rewards.mean()) * self._scale
-        rewards = rewards + self._potential * (self._energy - reached)
-        self._energy = energy
-        return self._with_state(observations), rewards.astype(np.float32), ended, infos
+        total, ended = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=np.bool_)
+        infos, self.last_cost = self._unfinished, 0.0
+        for _ in range(self.held):
+            windows, rewards, terminated, truncated, info = self.envs.step(self._actions)
+            ends, reached = terminated | truncated, info["energy"]
+            if ends.any():
+                reached = np.where(ends, info["final_info"]["energy"], reached)
+                infos = self._infos(infos, np.flatnonzero(ends), info["final_obs"], terminated)
+            gained = rewards + self._potential * (self._energy - self._discount * reached)
+            total += np.where(ended, 0.0, gained)  # what follows a finished episode is not its action's doing
+            ended |= ends
+            self._energy = info["energy"]
+            self.last_cost -= float(rewards.mean()) * self._scale / self.held
+        return self._with_state(windows), (REWARD_UNIT * total).astype(np.float32), ended, infos
 
-    def _infos(self, rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
-        infos = list(self._unfinished)
+    def _infos(self, before: list[dict[str, Any]], rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
+        infos = list(before)
         for row in rows.tolist():
-            last = np.append(final[row], self._states[row])  # the state one interval before the end stands for that at the end
+            last = np.append(final[row], self._states[row])  # the last state shown stands for that at the end
             infos[row] = {"terminal_observation": last, "TimeLimit.truncated": not terminated[row]}
         return infos
 

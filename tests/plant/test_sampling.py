@@ -35,8 +35,8 @@ def test_held_step_and_its_cost_equal_an_ode_solver_with_the_cost_as_a_state(pla
 
 def test_two_half_intervals_make_a_whole_one(plant):
     half, whole = sample(plant, 0.5 * plant.control_interval), sample(plant)
-    assert half.A @ half.A == pytest.approx(whole.A, abs=1e-12)
-    assert half.A @ half.B + half.B == pytest.approx(whole.B, abs=1e-12 * np.abs(whole.B).max())
+    assert pytest.approx(whole.A, abs=1e-12) == half.A @ half.A
+    assert pytest.approx(whole.B, abs=1e-12 * np.abs(whole.B).max()) == half.A @ half.B + half.B
 
 
 def test_held_white_load_keeps_the_intensity_of_the_continuous_one(plant):
@@ -54,6 +54,6 @@ def test_python_control_simulates_the_same_step_response(plant):
     control = pytest.importorskip("control")
     system = control.sample_system(plant.to_control(), plant.control_interval, method="zoh")
     held = sample(plant)
-    assert system.A == pytest.approx(held.A, abs=1e-10)
+    assert pytest.approx(held.A, abs=1e-10) == system.A
     assert system.B[:, : plant.B.shape[1]] == pytest.approx(held.B, abs=1e-12)
     assert system.input_labels[-2:] == ["load_lag", "load_flap"]
