@@ -110,7 +110,7 @@ def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) ->
         top = max([1.05, *(float(np.nanmedian(curve[:3, 2])) for curve in curves.values())])
         axis.set(
             xlabel="training time, s",
-            ylabel="J / J without control, training episodes",
+            ylabel="J / J without control, exploration included",
             ylim=(0.3, min(top, 2.0)),
             xlim=(0.0, None),
         )
