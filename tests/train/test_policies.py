@@ -1,6 +1,7 @@
 """Trained policies run by NumPy alone: the same numbers as in training, saved as weights only."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ def windowed():
         weights[f"weight{layer}"] = generator.normal(0.0, 0.3, shape).astype(np.float32)
         weights[f"bias{layer}"] = generator.normal(0.0, 0.1, shape[0]).astype(np.float32)
     one = np.ones(4, np.float32)
-    return HistoryPolicy("windowed", weights, {"input_gain": 2.0}, -one, one)
+    return HistoryPolicy("windowed", weights, {"input_gain": 2.0, "held": 1}, -one, one)
 
 
 @pytest.fixture(params=["recurrent", "windowed"])
@@ -69,6 +70,19 @@ def test_a_window_holds_readings_and_the_voltages_before_them(windowed):
     np.testing.assert_array_equal(memory[0, :24], [*np.zeros(16), *first[0], *np.zeros(4)])
     _, memory = windowed.predict(second, memory)
     np.testing.assert_array_equal(memory[0, :24], [*np.zeros(8), *first[0], *np.zeros(4), *second[0], *action[0]])
+
+
+def test_voltages_are_held_between_decisions_while_the_window_moves_on(windowed):
+    holding = replace(windowed, settings={**windowed.settings, "held": 3})
+    memory, asked = None, []
+    for observed in readings(7):
+        action, memory = holding.predict(observed, memory)
+        asked.append(action)
+    for first in (0, 3):
+        np.testing.assert_array_equal(asked[first], asked[first + 1])
+        np.testing.assert_array_equal(asked[first], asked[first + 2])
+    assert np.all(asked[3] != asked[2])
+    assert np.all(asked[6] != asked[5])
 
 
 def test_a_blade_alone_is_a_batch_of_one(policy):
