@@ -12,7 +12,7 @@ import beamenv
 from train.gradient import GradientSettings, train_gradient
 from train.policies import Policy
 from train.ppo import PPOSettings, train_ppo
-from train.training import Report
+from train.training import Report, one_torch_thread
 
 AGENTS: Mapping[str, Callable[[], Any]] = {"gradient": GradientSettings, "ppo": PPOSettings}
 """The settings of each agent, by its short name."""
@@ -28,9 +28,10 @@ def train_agent(name: str, environment: Mapping[str, Any], budget: float, seed: 
         raise ValueError(f"agent = {name!r} must be one of {', '.join(AGENTS)}.")
     if not (np.isfinite(budget) and budget > 0.0):
         raise ValueError(f"seconds = {budget!r} must be a positive number.")
-    if name == "ppo":
-        return train_ppo(environment, budget, seed, report)
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=1, **environment)
-    task = envs.unwrapped.task
-    envs.close()
-    return train_gradient(task.design_plant, task.scenario, task.steps, budget, seed, report)
+    with one_torch_thread():
+        if name == "ppo":
+            return train_ppo(environment, budget, seed, report)
+        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=1, **environment)
+        task = envs.unwrapped.task
+        envs.close()
+        return train_gradient(task.design_plant, task.scenario, task.steps, budget, seed, report)

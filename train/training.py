@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
+import torch
 
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario
@@ -33,3 +35,14 @@ def uncontrolled_cost(plant: Plant, scenario: Scenario, steps: int, episodes: in
     blades.begin(generator)
     idle = np.zeros((episodes, plant.B.shape[1]))
     return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(steps)))
+
+
+@contextmanager
+def one_torch_thread() -> Iterator[None]:
+    """These networks are so small that threads cost more than they gain, and on a busy machine a hundred times more."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(threads)
