@@ -30,7 +30,7 @@ def lqg(
 
     whose last term, zero unless the drive saturates, keeps it from winding up. It is integrated exactly from sample to sample with
     the newest reading held over the interval that it ends, so that y_k acts on u_k. (With y_k held over the interval that it
-    begins, as is more usual, the loop through the blade's upper modes, two samples a radian, is unstable.) It still needs a
+    begins, as is more usual, the loop through the blade's upper modes, up to 1.4 rad a sample, is unstable.) It still needs a
     filter slower than the sampling: with sensors of next to no noise it is unstable too.
 
     ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.

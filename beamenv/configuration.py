@@ -121,7 +121,7 @@ class BladeConfig:
     voltage_limits: tuple[float, float] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
     control_interval: float = 0.5e-3
-    """s: two samples a radian, about, of the eleventh mode (2.7 krad/s)."""
+    """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "voltage_limits", tuple(float(limit) for limit in self.voltage_limits))

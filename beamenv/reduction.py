@@ -16,7 +16,7 @@ from beamenv.structure.modes import normal_modes
 Array = NDArray[np.float64]
 
 REFERENCE_LOAD = 30.0
-"""N/m of uniform line load: the step that ±1500 V on four patches can damp to a few per cent in the default blade."""
+"""N/m of uniform line load: with it LQG saturates now and then, and damps what follows within half an episode."""
 
 FULL_SCALE_MARGIN = 2.0
 """Sensor full scale over the undriven blade's largest current after a sudden reference load: resonance exceeds a step."""
