@@ -24,7 +24,8 @@ class Scenario:
     """What may happen to a blade in an episode. Every range is [low, high], drawn uniformly; equal ends fix the value.
 
     The default is made for the default blade. Under ±1500 V its patches hold a static line load of about 7 N/m in flap, so at
-    30 N/m they are neither idle nor helpless: LQG saturates now and then, and halves the time to settle. For a blade of another size choose other magnitudes.
+    30 N/m they are neither idle nor helpless: LQG saturates now and then, and halves the time to settle. For a blade of
+    another size choose other magnitudes.
     """
 
     step: float = 0.25
