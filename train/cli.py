@@ -127,7 +127,9 @@ def train(
         from train.agents import train_agent
         from train.policies import save_policy
         from train.progress import Progressbar
+        from train.storage import check_folder
 
+        check_folder(folder)
         arguments = environment_arguments(preset, speed, blade, scenario)
         with Progressbar({agent: seconds}) as bar:
             trained = train_agent(agent, arguments, seconds, seed, lambda progress: bar.training(agent, seconds, progress))

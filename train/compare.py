@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from train.contenders import CLASSICAL, classical
 from train.figures import write_figures
 from train.policies import load_policy, save_policy
 from train.report import write_tables
-from train.storage import write_csv, write_json
+from train.storage import check_folder, write_csv, write_json
 from train.training import Progress
 
 Array = NDArray[np.float64]
@@ -88,6 +88,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
 
 def claim(folder: Path, comparison: Comparison, task: Any) -> None:
     """Write the configuration, or see that the folder already holds this very one."""
+    check_folder(folder)
     path = folder / "configuration.json"
     content = {
         "comparison": {**asdict(comparison), "held_out_seeds": [HELD_OUT, HELD_OUT + comparison.seeds - 1]},
@@ -114,14 +115,16 @@ def trained(comparison: Comparison, name: str, folder: Path, listener: Listener)
         listener.training(name, comparison.budget[name], progress)
 
     agent = train_agent(name, comparison.environment, comparison.budget[name], comparison.training_seed, report)
-    write_csv(folder / f"learning_{name}.csv", [asdict(progress) for progress in curve])
+    columns = [each.name for each in fields(Progress)]  # training may end before its first report
+    write_csv(folder / f"learning_{name}.csv", [asdict(progress) for progress in curve], columns)
     save_policy(agent, home)
     return agent
 
 
 def read_curve(folder: Path, name: str) -> Array:
     """(k, 3): seconds, steps, running cost relative to no control."""
-    return np.loadtxt(folder / f"learning_{name}.csv", delimiter=",", skiprows=1, ndmin=2)
+    rows = (folder / f"learning_{name}.csv").read_text().splitlines()[1:]
+    return np.array([row.split(",") for row in rows], dtype=np.float64).reshape(-1, 3)
 
 
 def evaluate_all(

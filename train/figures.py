@@ -146,11 +146,12 @@ def write_figures(
     curves: Mapping[str, Array],
     levels: Mapping[str, float],
 ) -> None:
-    """``episode.png``, ``poles.png`` and, when agents were trained, ``learning.png``."""
+    """``episode.png``, ``poles.png`` and, when training has told of its progress, ``learning.png``."""
     save(episode_figure(evaluations, clearest_episode(evaluations[0])), folder / "episode.png")
     save(pole_figure(plant, controllers), folder / "poles.png")
-    if curves:
-        save(learning_figure(curves, levels), folder / "learning.png")
+    told = {name: curve for name, curve in curves.items() if len(curve)}
+    if told:
+        save(learning_figure(told, levels), folder / "learning.png")
 
 
 def clearest_episode(evaluation: Evaluation) -> int:

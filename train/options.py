@@ -25,7 +25,7 @@ def one_sentence() -> Iterator[None]:
     """Bad input ends with its one sentence on standard error and status 2, not with a traceback."""
     try:
         yield
-    except (ValueError, FileNotFoundError) as error:
+    except (ValueError, OSError) as error:
         print(f"beamenv: {error}", file=sys.stderr)  # noqa: T201 - the command's own voice
         raise typer.Exit(2) from None
 

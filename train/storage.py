@@ -12,6 +12,12 @@ from pathlib import Path
 from typing import Any
 
 
+def check_folder(folder: Path) -> None:
+    """``ValueError`` if files cannot go to a folder of this name, for a file has it: better told before a training than after."""
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"folder = {str(folder)!r} must be a folder, or not be there yet, but is a file.")
+
+
 def write_whole(path: Path, content: bytes | str) -> None:
     """Write a file beside its place and move it there: a reader, or an interruption, never meets half of it."""
     data = content.encode() if isinstance(content, str) else content
@@ -31,10 +37,10 @@ def write_json(path: Path, content: Any) -> None:
     write_whole(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
 
 
-def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Rows of one set of columns."""
+def write_csv(path: Path, rows: Sequence[Mapping[str, Any]], columns: Sequence[str] | None = None) -> None:
+    """Rows of one set of columns: those of the first row, unless they are named."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
+    writer = csv.DictWriter(text, fieldnames=list(rows[0] if columns is None else columns), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     write_whole(path, text.getvalue())

@@ -2,9 +2,11 @@
 
 import json
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from beamenv.configuration import blade_config, build_beam
 from train.cli import app
 
 COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark")
@@ -31,6 +33,23 @@ def test_frequencies_come_with_their_families():
     assert turning["natural_frequencies"] == sorted(turning["natural_frequencies"])
     assert set(turning["families"]) <= {"lag", "flap", "extension", "twist"}
     assert "rad/s" in run("frequencies", "--count", "2").stdout
+
+
+def test_frequencies_printed_are_the_beam_s():
+    speeds = json.loads(run("frequencies", "--speed", "0", "--speed", "200", "--count", "4", "--json").stdout)["speeds"]
+    beam = build_beam(blade_config())
+    for each in speeds:
+        np.testing.assert_allclose(each["natural_frequencies"], beam.natural_frequencies(each["speed"], 4), rtol=1e-12)
+    assert speeds[0]["natural_frequencies"] != speeds[1]["natural_frequencies"]
+
+
+@pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--seeds", "2"), ("train", "gradient", "--seconds", "60")])
+def test_a_file_in_the_folder_s_place_is_told_at_once(command, tmp_path):
+    (tmp_path / "note").write_text("kept")
+    result = run(command[0], *command[1:], str(tmp_path / "note"))
+    assert result.exit_code == 2
+    assert "must be a folder" in result.stderr
+    assert (tmp_path / "note").read_text() == "kept"
 
 
 @pytest.mark.parametrize("controller", ["none", "lqg"])

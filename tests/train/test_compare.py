@@ -3,15 +3,21 @@
 import csv
 import json
 
+import numpy as np
 import pytest
 
 import train.compare
 from train.agents import train_agent
 from train.compare import Comparison, Listener, compare, read_curve
 from train.contenders import CLASSICAL, classical
-from train.policies import load_policy
+from train.policies import HistoryPolicy, load_policy
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
+
+LIMITS = (-np.ones(4, np.float32), np.ones(4, np.float32))
+IDLE = HistoryPolicy(
+    "idle", {"weight0": np.zeros((4, 24), np.float32), "bias0": np.zeros(4, np.float32)}, {"input_gain": 1.0, "held": 1}, *LIMITS
+)
 
 
 class Notes(Listener):
@@ -28,9 +34,10 @@ class Notes(Listener):
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory):
+def finished(tmp_path_factory, ticking):
     folder, notes = tmp_path_factory.mktemp("compare") / "small", Notes()
-    return folder, compare(SMALL, folder, notes), notes
+    with ticking(0.02):
+        return folder, compare(SMALL, folder, notes), notes
 
 
 def test_every_piece_is_written(finished):
@@ -76,14 +83,14 @@ def test_a_second_run_goes_on_from_the_trained_agents(finished, monkeypatch):
     assert [evaluation.relative_cost for evaluation in again] == [evaluation.relative_cost for evaluation in evaluations]
 
 
-def test_an_interrupted_run_keeps_the_agents_it_has(tmp_path):
+def test_an_interrupted_run_keeps_the_agents_it_has(tmp_path, ticking):
     class Impatient(Notes):
         def training(self, name, budget, progress):
             super().training(name, budget, progress)
             if name == "ppo":
                 raise ValueError("the machine went down")
 
-    with pytest.raises(ValueError, match="went down"):
+    with pytest.raises(ValueError, match="went down"), ticking(0.02):
         compare(SMALL, tmp_path, Impatient())
     assert load_policy(tmp_path / "agents" / "gradient").name
     assert not (tmp_path / "agents" / "ppo").exists()
@@ -100,6 +107,15 @@ def test_ctrl_c_ends_a_training_and_goes_on_to_the_evaluation(tmp_path):
     compare(Comparison({"duration": 0.05}, {"gradient": 60.0}, seeds=2), tmp_path, notes)
     assert len(notes.trained) == 1
     assert len(notes.evaluated_names) == len(CLASSICAL) + 1
+
+
+@pytest.mark.parametrize("agent", ["gradient", "ppo"])
+def test_a_training_that_ends_before_its_first_report_is_evaluated_all_the_same(agent, tmp_path, monkeypatch):
+    monkeypatch.setattr(train.compare, "train_agent", lambda *arguments: IDLE)
+    evaluations = compare(Comparison({"duration": 0.05}, {agent: 1.0}, seeds=2), tmp_path)
+    assert len(evaluations) == len(CLASSICAL) + 1
+    assert read_curve(tmp_path, agent).shape == (0, 3)
+    assert not (tmp_path / "learning.png").exists()
 
 
 def test_another_comparison_does_not_overwrite_a_folder(finished):
