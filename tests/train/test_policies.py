@@ -47,7 +47,7 @@ def readings(steps=12, count=3):
 
 def test_numpy_repeats_the_training_time_network(actor, recurrent):
     hidden, voltages, memory = torch.zeros(3, 48), torch.zeros(3, 4), None
-    for observed in readings():
+    for observed in readings(50):
         with torch.no_grad():
             voltages, hidden = actor(torch.as_tensor(observed, dtype=torch.float32), hidden, voltages)
         action, memory = recurrent.predict(observed, memory)

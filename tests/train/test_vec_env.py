@@ -4,10 +4,11 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
-from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
 
 import beamenv
-from train.vec_env import BladeVecEnv
+from beamenv.simulation import reward_scale
+from train.vec_env import REWARD_UNIT, BladeVecEnv
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 COUNT = 4
@@ -65,6 +66,86 @@ def test_a_terminal_observation_ends_in_the_voltages_of_the_last_action():
     np.testing.assert_array_equal(observations[FIRST_TO_END].reshape(3, 8)[-1, 4:], 0.0)
 
 
+def test_a_terminal_observation_is_the_last_window_that_next_step_shows():
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=COUNT, autoreset_mode=AutoresetMode.NEXT_STEP, **SHORT)
+    waiting, at_once = beamenv.VectorSensorHistory(envs, length=3), batch()
+    waiting.reset(seed=5, options={"elapsed": np.arange(COUNT) * 20 // COUNT})
+    at_once.reset()
+    for step in range(5):  # later on the two draw from the generator in another order
+        windows, _, _, truncated, _ = waiting.step(actions(step))
+        _, _, ends, infos = at_once.step(actions(step))
+        np.testing.assert_array_equal(ends, truncated)
+    assert truncated[FIRST_TO_END]
+    np.testing.assert_array_equal(infos[FIRST_TO_END]["terminal_observation"], windows[FIRST_TO_END])
+
+
+def test_episodes_end_at_different_steps():
+    envs = batch()
+    envs.reset()
+    ended = {step: np.flatnonzero(envs.step(actions(step))[2]).tolist() for step in range(25)}
+    assert {step: rows for step, rows in ended.items() if rows} == {4: [3], 9: [2], 14: [1], 19: [0], 24: [3]}
+
+
+def test_one_seed_gives_identical_bits_and_another_does_not():
+    def run(seed):
+        envs = BladeVecEnv(COUNT, SHORT, seed, history=3, energy_horizon=0.1, shows_state=True)
+        return [envs.reset(), *(part for step in range(30) for part in envs.step(actions(step))[:3])]
+
+    first, second, other = run(1), run(1), run(2)
+    assert all(one.tobytes() == two.tobytes() for one, two in zip(first, second, strict=True))
+    assert first[0].tobytes() != other[0].tobytes()
+
+
+def test_held_actions_are_steps_of_the_blades_with_their_rewards_added():
+    slow, fast = BladeVecEnv(COUNT, SHORT, 5, history=3, held=2), BladeVecEnv(COUNT, SHORT, 5, history=3)
+    slow.reset()
+    elapsed = np.arange(COUNT) * 20 // COUNT // 2 * 2
+    fast.envs.reset(seed=5, options={"elapsed": elapsed})
+    for step in range(12):
+        observations, rewards, ends, infos = slow.step(actions(step))
+        halves = [fast.step(actions(step)) for _ in range(2)]
+        np.testing.assert_array_equal(observations, halves[1][0])
+        np.testing.assert_allclose(rewards, halves[0][1] + halves[1][1], rtol=1e-5)
+        np.testing.assert_array_equal(ends, halves[1][2])
+        assert not halves[0][2].any()
+        for row in np.flatnonzero(ends):
+            np.testing.assert_array_equal(infos[row]["terminal_observation"], halves[1][3][row]["terminal_observation"])
+
+
+def test_wrappers_of_stable_baselines_work_on_top():
+    envs = VecMonitor(VecNormalize(batch(), norm_obs=False, norm_reward=False))
+    plain = batch()
+    np.testing.assert_array_equal(envs.reset(), plain.reset())
+    total = np.zeros(COUNT)
+    for step in range(5):
+        infos = envs.step(actions(step))[3]
+        total += plain.step(actions(step))[1]
+    assert infos[FIRST_TO_END]["episode"]["l"] == 5
+    assert infos[FIRST_TO_END]["episode"]["r"] == pytest.approx(total[FIRST_TO_END], rel=1e-5)
+    assert [("episode" in info) for info in infos] == [False, False, False, True]
+
+
+@pytest.mark.parametrize("elapsed", [20, -1, 1.0, True, "soon", [1, 2], [[0, 0, 0, 0]], None, [0, 0, 0, 20]])
+def test_time_elapsed_beyond_the_episode_is_refused_and_nothing_changed(elapsed):
+    envs, untouched = (gymnasium.make_vec(beamenv.ENV_ID, num_envs=COUNT, **SHORT) for _ in range(2))
+    envs.reset(seed=1)
+    untouched.reset(seed=1)
+    with pytest.raises(ValueError, match=r"options\['elapsed'\] is .*, but must be integers from 0 to 19, one or 4 of them"):
+        envs.reset(seed=2, options={"elapsed": elapsed})
+    for step in range(22):
+        for one, two in zip(envs.step(actions(step))[:4], untouched.step(actions(step))[:4], strict=True):
+            np.testing.assert_array_equal(one, two)
+
+
+def test_time_elapsed_shortens_the_first_episode_alone():
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=COUNT, autoreset_mode=AutoresetMode.SAME_STEP, **SHORT)
+    options = {"elapsed": 17}
+    envs.reset(seed=0, options=options)
+    assert options == {"elapsed": 17}
+    ends = [envs.step(actions(step))[3].all() for step in range(43)]
+    assert np.flatnonzero(ends).tolist() == [2, 22, 42]
+
+
 def test_only_finished_episodes_have_an_info():
     envs = batch()
     envs.reset()
@@ -94,6 +175,20 @@ def test_stored_energy_counts_as_cost_to_come():
     gain = reward_shaped - reward
     assert np.all(np.sign(gain) == np.sign(before - after))
     assert np.corrcoef(gain, before - after)[0, 1] > 0.999
+
+
+def test_what_shaping_adds_over_an_episode_is_the_fall_of_the_potential():
+    plain, shaped = batch(), BladeVecEnv(COUNT, SHORT, seed=5, history=3, energy_horizon=0.1)
+    gymnasium_batch, _ = plain_batch()
+    plain.reset()
+    shaped.reset()
+    first, added = 0.5 * (plain.blades.state**2).sum(axis=1), np.zeros(COUNT)
+    for step in range(5):
+        added += shaped.step(actions(step))[1].astype(np.float64) - plain.step(actions(step))[1]
+        info = gymnasium_batch.step(actions(step))[4]
+    last = np.where(info["_final_info"], info["final_info"]["energy"], info["energy"])
+    fall = REWARD_UNIT * 0.1 / reward_scale(plain.blades.plant) * (first - last)
+    np.testing.assert_allclose(added, fall, atol=1e-5 * np.abs(fall).max())
 
 
 def test_a_critic_may_be_shown_the_state_after_what_the_actor_sees():
