@@ -5,13 +5,18 @@ from __future__ import annotations
 import csv
 from importlib.resources import files
 
-PRINTED = ("table-2.1", "table-2.2", "table-3.1", "table-3.2", "table-3.3", "table-3.4")
+PRINTED = (
+    *(f"table-2.{number}" for number in (1, 2)),
+    *(f"table-3.{number}" for number in (1, 2, 3, 4)),
+    *(f"table-6.{number}" for number in (1, 2, 3, 4)),
+)
 
 
 def printed_table(name: str) -> list[dict[str, str]]:
     """The rows of a printed table, each a mapping of column names to what is printed; ``ValueError`` for an unknown name.
 
-    Frequencies are in rad/s, in Table 3.2 in Hz. An empty cell is one on which the thesis contradicts itself.
+    Frequencies are in rad/s, in Table 3.2 in Hz; positions in m; the traces of chapter 6 have no unit printed.
+    An empty cell is one on which the thesis contradicts itself.
     """
     if name not in PRINTED:
         raise ValueError(f"name = {name!r} must be one of {', '.join(PRINTED)}.")

@@ -3,7 +3,7 @@ import pytest
 
 from train.reproduce.catalogue import NAMES, STUDIES, chosen
 from train.reproduce.ledger import ROWS
-from train.reproduce.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Small, Verdict
+from train.reproduce.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Small, Substantial, Verdict
 
 BY_NAME = {study.name: study for study in STUDIES}
 DECIDED = [row for row in ROWS if row.decided_by]
@@ -21,6 +21,8 @@ def supporting(rule):
             return (2.0 * rule.limit,)
         case Marginal():
             return (0.5 * rule.direction * rule.limit,)
+        case Substantial():
+            return (2.0 * rule.direction * rule.limit,)
         case Holds():
             return (1.0,)
         case Below():
@@ -38,7 +40,7 @@ def contradicting(rule):
             return (10.0 * rule.trend,)
         case Large() | Holds():
             return (0.0,)
-        case Marginal():
+        case Marginal() | Substantial():
             return (-0.5 * rule.direction * rule.limit,)
         case Below():
             return (2.0 * rule.limit,)
@@ -77,20 +79,23 @@ def test_conclusion_without_a_result_cannot_be_tested_and_one_that_was_not_run_h
     assert DECIDED[0].verdict({}) is None
 
 
-def test_every_section_of_conclusions_is_there_but_the_placement():
-    assert {row.section for row in ROWS} == {"3.7", "5.6", "7.1"}
+def test_every_section_of_conclusions_is_there():
+    assert {row.section for row in ROWS} == {"3.7", "5.6", "6.6", "7.1"}
     assert sum(row.section == "3.7" for row in ROWS) == 10
+    assert sum(row.section == "6.6" for row in ROWS) == 6
 
 
-def test_keys_are_unique_and_every_table_and_figure_of_chapters_2_3_and_5_is_there():
+def test_keys_are_unique_and_every_table_and_figure_of_chapters_2_3_5_and_6_is_there():
     for study in STUDIES:
         keys = [found.key for found in study.statements]
         assert len(set(keys)) == len(keys)
-    wanted = [f"table-{n}" for n in ("2.1", "2.2", "3.1", "3.2", "3.3", "3.4")]
-    wanted += [f"figure-3.{n}" for n in range(2, 25)] + [f"figure-5.{n}" for n in range(1, 18)]
+    wanted = [f"table-{n}" for n in ("2.1", "2.2", "3.1", "3.2", "3.3", "3.4", "6.1", "6.2", "6.3", "6.4")]
+    wanted += (
+        [f"figure-3.{n}" for n in range(2, 25)] + [f"figure-5.{n}" for n in range(1, 18)] + [f"figure-6.{n}" for n in range(4, 8)]
+    )
     assert sorted(NAMES) == sorted(wanted)
 
 
 def test_an_unknown_name_lists_the_known_ones():
-    with pytest.raises(ValueError, match=r"figure-9\.9.*table-2\.1.*figure-5\.17"):
+    with pytest.raises(ValueError, match=r"figure-9\.9.*table-2\.1.*figure-6\.7"):
         chosen(["figure-9.9"])

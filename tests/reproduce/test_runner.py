@@ -101,7 +101,7 @@ def test_command_writes_the_page_and_the_documentation(tmp_path):
     assert result.exit_code == 0, result.output
     page = (tmp_path / "docs" / "thesis.md").read_text()
     assert "![figure-3.3](figures/figure-3.3.png)" in page and (tmp_path / "docs" / "figures" / "figure-3.3.png").exists()
-    assert "not run" in page and "hapter 6" not in page
+    assert "not run" in page and "Chapter 6" not in page
     assert (tmp_path / "out" / "report.html").exists() and (tmp_path / "out" / "report.md").exists()
 
 

@@ -1,7 +1,20 @@
 import numpy as np
 import pytest
 
-from train.reproduce.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Rule, Small, Verdict, weakest
+from train.reproduce.verdicts import (
+    Below,
+    Changes,
+    Holds,
+    Large,
+    Marginal,
+    Matches,
+    Rule,
+    Small,
+    Substantial,
+    Verdict,
+    WhateverIsOpen,
+    weakest,
+)
 
 GOOD, TREND, BAD, OPEN = Verdict.REPRODUCED, Verdict.TREND, Verdict.NOT_REPRODUCED, Verdict.UNTESTABLE
 
@@ -27,6 +40,14 @@ GOOD, TREND, BAD, OPEN = Verdict.REPRODUCED, Verdict.TREND, Verdict.NOT_REPRODUC
         (Marginal(-1), [-0.05, -0.01], GOOD),
         (Marginal(-1), [-0.05, -0.5], TREND),
         (Marginal(-1), [-0.05, 0.01], BAD),
+        (Substantial(-1), [-0.05, -0.5], GOOD),
+        (Substantial(-1), [-0.01, -0.5], TREND),
+        (Substantial(-1), [0.01, -0.5], BAD),
+        (Substantial(-1), [0.0, -0.5], BAD),
+        (Substantial(+1, 0.1), [0.2], GOOD),
+        (WhateverIsOpen(), [1, 1], GOOD),
+        (WhateverIsOpen(), [1, 0], OPEN),
+        (WhateverIsOpen(), [0, 0], BAD),
         (Holds(), [True, True], GOOD),
         (Holds(), [1, 1, 1, 0], TREND),
         (Holds(), [1, 0], BAD),
@@ -42,7 +63,18 @@ def test_rule_turns_numbers_into_a_verdict(rule, evidence, verdict):
 
 
 @pytest.mark.parametrize(
-    "rule", [Matches((1.0,), 0.1, 0.2), Changes(1), Small(0.1, 0.2), Large(), Marginal(1), Holds(), Below(1.0, "V")]
+    "rule",
+    [
+        Matches((1.0,), 0.1, 0.2),
+        Changes(1),
+        Small(0.1, 0.2),
+        Large(),
+        Marginal(1),
+        Substantial(1),
+        Holds(),
+        WhateverIsOpen(),
+        Below(1.0, "V"),
+    ],
 )
 def test_every_rule_states_itself_and_refuses_numbers_that_are_none(rule: Rule):
     assert "reproduced" in rule.words

@@ -16,6 +16,8 @@ from train.reproduce import (
     chapter5_modes,
     chapter5_one_voltage,
     chapter5_passive,
+    chapter6_layouts,
+    chapter6_tables,
 )
 from train.reproduce.study import Study
 
@@ -34,8 +36,9 @@ CHAPTERS: tuple[tuple[str, tuple[Study, ...]], ...] = (
         "Chapter 5: control",
         chapter5_modes.STUDIES + chapter5_passive.STUDIES + chapter5_one_voltage.STUDIES + chapter5_individual.STUDIES,
     ),
+    ("Chapter 6: placement", chapter6_tables.STUDIES + chapter6_layouts.STUDIES),
 )
-"""Chapter 6 comes as one more entry here, and its concluding statements as rows of ``ledger.ROWS``."""
+"""By chapter, with its title."""
 
 STUDIES: tuple[Study, ...] = tuple(study for _, studies in CHAPTERS for study in studies)
 NAMES = tuple(study.name for study in STUDIES)

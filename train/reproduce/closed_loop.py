@@ -151,6 +151,12 @@ def peak_voltages(responses: Mapping[str, Response]) -> Array:
     return np.array([response.asked for response in responses.values()])
 
 
+def voltage_energy(response: Response, plant: Plant) -> float:
+    """∫uᵀRu dt, J s: what the voltages put into the actuators, as the index weighs it."""
+    per_step = np.einsum("ki,ij,kj->k", response.voltages, plant.input_weight, response.voltages)
+    return float(plant.control_interval * per_step[:-1].sum())
+
+
 def settling_times(responses: Mapping[str, Response]) -> Array:
     """(labels,), s."""
     return np.array([response.settling for response in responses.values()])

@@ -105,34 +105,41 @@ def legend_handles(outcome: Outcome) -> list[Any]:
         )
         for line, text in outcome.lines.items()
     ]
+    scatters = all(lines == {"points"} for lines in used.values())
     for label in labels:
         line = "" if used[label] == {"points"} else "-" if len(used[label]) > 1 else DASHES[next(iter(used[label]))]
-        handles.append(Line2D([], [], linestyle=line, label=label, **{"marker": ".", **looks.get(label, PLAIN)}))
+        fill = {"markerfacecolor": "none"} if scatters and label != labels[0] else {}
+        handles.append(Line2D([], [], linestyle=line, label=label, **{"marker": ".", **looks.get(label, PLAIN), **fill}))
     return handles
 
 
 def draw_panel(axis: Any, panel: Panel, looks: Looks, in_pairs: bool) -> None:
     """One pair of axes. Where dotted curves run on solid ones, these are broad and pale so that both show."""
     points = any(curve.line == "points" for curve in panel.curves)
+    scattered = all(curve.line == "points" for curve in panel.curves)
     for value in panel.marked:
         axis.axvline(value, color="0.6", linewidth=0.8, zorder=0)
     for curve in panel.curves:
-        draw_curve(axis, curve, looks, in_pairs, marked=not points)
+        draw_curve(axis, curve, looks, in_pairs, marked=not points, hollow=scattered and curve is not panel.curves[0])
     axis.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
     if panel.logarithmic:
         axis.set_yscale("log")
+    if panel.whole:
+        axis.yaxis.get_major_locator().set_params(integer=True)
 
 
-def draw_curve(axis: Any, curve: Curve, looks: Looks, in_pairs: bool, marked: bool) -> None:
+def draw_curve(axis: Any, curve: Curve, looks: Looks, in_pairs: bool, marked: bool, hollow: bool = False) -> None:
     """One curve; its markers are sparse and begin at a place of its own, so that they do not pile up.
 
-    Where points of the same label mean something (not ``marked``) the line goes without markers.
+    Where points of the same label mean something (not ``marked``) the line goes without markers. ``hollow`` points do not hide
+    others.
     """
     style = {**looks.get(curve.label, PLAIN)}
     if not marked and curve.line != "points":
         style.pop("marker", None)
     if curve.line == "points":
-        axis.plot(curve.x, curve.y, linestyle="", **{"marker": ".", **style})
+        fill = {"markerfacecolor": "none", "markersize": 6} if hollow else {}
+        axis.plot(curve.x, curve.y, linestyle="", **{"marker": ".", **style, **fill})
         return
     if style.get("marker"):
         place, points = list(looks).index(curve.label), len(curve.x)

@@ -112,6 +112,52 @@ ROWS = (
     ),
     Row("5.6", "The effects of pretwist, taper and gyroscopic coupling on controlled responses are highlighted", (), NO_RESULT),
     Row(
+        "6.6",
+        "Poles of correctly placed sensors and actuators shift deep inside the left half plane",
+        of("figure-6.7", "slowest", "mean"),
+        "The slowest pole of every loop does; the observer's of the pretwisted blade do not on the mean.",
+    ),
+    Row(
+        "6.6",
+        "Settling time, tip displacement and control effort can be reduced by optimal locations",
+        of("figure-6.5", "settling", "tip", "effort", "voltage") + of("figure-6.6", "settling", "tip", "effort", "voltage"),
+        "Settling time falls by about a tenth, the effort as the index weighs it by a quarter, the tip displacement by 1 %, as "
+        "±1500 V change the first peak little. The voltages, which the thesis calls effort too, rise.",
+    ),
+    Row(
+        "6.6",
+        "With speed the optimal locations of sensors and actuators shift towards the root",
+        of("table-6.3", "shift") + of("table-6.4", "shift"),
+        "Actuators do. Sensors do not: at rest they lie at the root, but there their place hardly matters.",
+    ),
+    Row(
+        "6.6",
+        "Optimal sensors converge near the root",
+        of("table-6.4", "near", "nearer"),
+        "One always lies at the root; at 200 rad/s the others lie further out.",
+    ),
+    Row(
+        "6.6",
+        "Optimal locations depend on speed, pretwist, presetting and number of actuators",
+        of("table-6.3", "depends"),
+    ),
+    Row(
+        "6.6",
+        "GA then SQP is far superior to GA or SQP",
+        of("table-6.3", "superior") + of("table-6.4", "superior"),
+        "SQP alone ends at the same layout in most cases; GA alone is dearer by little.",
+    ),
+    Row(
+        "7.1",
+        "GA is likely to come closer to the global optimum, so that GA and then SQP place actuators by tr(P) and sensors by tr(S)",
+        of("figure-6.4", "neighbourhood")
+        + of("table-6.1", "ga-below-sqp")
+        + of("table-6.2", "ga-below-sqp")
+        + of("table-6.3", "then")
+        + of("table-6.4", "then"),
+        "GA comes near; but with four patches SQP from equally spaced ones ends lower.",
+    ),
+    Row(
         "7.1",
         "Hybrid deformation variables capture gyroscopic coupling and centrifugal stiffening",
         of("table-2.1", "couplings") + of("table-2.2", "couplings") + of("table-3.3", "six-terms"),

@@ -52,6 +52,8 @@ class Panel:
     logarithmic: bool = False
     marked: Sequence[float] = ()
     """Values of x drawn as thin vertical lines."""
+    whole: bool = False
+    """y counts something: whole numbers at its ticks."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -168,6 +168,31 @@ class Marginal(Rule):
 
 
 @dataclass(frozen=True, slots=True)
+class Substantial(Rule):
+    """The thesis says a quantity rises or falls substantially; evidence: relative changes."""
+
+    direction: int
+    limit: float = 0.05
+
+    def _judge(self, evidence: Array) -> Judgement:
+        along = self.direction * evidence
+        verdict = Verdict.NOT_REPRODUCED
+        if np.all(along >= self.limit):
+            verdict = Verdict.REPRODUCED
+        elif np.all(along > 0.0):
+            verdict = Verdict.TREND
+        ours = f"{int((along > 0.0).sum())} of {along.size} {self._way}, {int((along >= self.limit).sum())} of them substantially"
+        return Judgement(verdict, f"substantially {self._way}", ours, span(evidence))
+
+    @property
+    def _way(self) -> str:
+        return "up" if self.direction > 0 else "down"
+
+    def _words(self) -> str:
+        return f"reproduced if every change is {self._way} by at least {percent(self.limit)}, trend if {self._way} by less"
+
+
+@dataclass(frozen=True, slots=True)
 class Below(Rule):
     """The thesis says a quantity stays below a limit; evidence: its values over the range of what the thesis leaves open."""
 
@@ -201,6 +226,20 @@ class Holds(Rule):
 
     def _words(self) -> str:
         return f"reproduced if it holds in every case, trend from {percent(self.share)} of them"
+
+
+@dataclass(frozen=True, slots=True)
+class WhateverIsOpen(Rule):
+    """The thesis states a fact but not all that it depends on; evidence: one or zero for each choice of what is left open."""
+
+    def _judge(self, evidence: Array) -> Judgement:
+        held = float(evidence.mean())
+        verdict = Verdict.REPRODUCED if held == 1.0 else Verdict.NOT_REPRODUCED if held == 0.0 else Verdict.UNTESTABLE
+        ours = f"holds for {int(round(evidence.sum()))} of {evidence.size} choices"
+        return Judgement(verdict, "holds", ours, percent(1.0 - held) + " do not")
+
+    def _words(self) -> str:
+        return "reproduced if it holds whatever is left open, not reproduced if it never does, cannot be tested if that decides"
 
 
 def percent(share: float) -> str:
