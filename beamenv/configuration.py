@@ -53,7 +53,7 @@ class BeamConfig:
     def __post_init__(self) -> None:
         object.__setattr__(self, "ply_angles_deg", as_ply_angles(self.ply_angles_deg))
         if isinstance(self.material, Mapping):
-            object.__setattr__(self, "material", Lamina(**self.material))
+            object.__setattr__(self, "material", changed(GRAPHITE_EPOXY, self.material, "material"))
         elif isinstance(self.material, str) and self.material not in MATERIALS:
             raise ValueError(f"material = {self.material!r} of the beam must be one of {', '.join(MATERIALS)}, or a Lamina.")
 
@@ -125,7 +125,8 @@ class BladeConfig:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "voltage_limits", tuple(float(limit) for limit in self.voltage_limits))
-        check(self, "effort_weight", "control_interval", allowed="a positive number", valid=lambda value: value > 0.0)
+        check(self, "effort_weight", allowed="a positive number", valid=lambda value: value > 0.0)
+        check(self, "control_interval", allowed="from 1e-6 to 1 s", valid=lambda value: 1e-6 <= value <= 1.0)
         check(
             self,
             "white_load",
@@ -208,6 +209,8 @@ def changed(config: Any, changes: Mapping[str, Any], name: str) -> Any:
     values = {}
     for key, value in changes.items():
         current = getattr(config, key)
+        if is_dataclass(current) and not isinstance(current, Lamina) and not isinstance(value, (Mapping, type(current))):
+            raise ValueError(f"{name}.{key} = {value!r} must be a mapping of field names to values.")
         nested = is_dataclass(current) and isinstance(value, Mapping) and not isinstance(current, Lamina)
         values[key] = changed(current, value, f"{name}.{key}") if nested else value
     return replace(config, **values)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -79,7 +79,7 @@ def resolve_task(
         raise ValueError(f"physical_units is {physical_units!r}, but must be True or False.")
     return Task(
         config=config,
-        design_config=config if design is None else _design_config(preset, speed, design),
+        design_config=config if design is None else _same_electronics(_design_config(preset, speed, design), config),
         scenario=scenario(scenario_argument),
         steps=round(duration / interval),
         physical_units=bool(physical_units),
@@ -92,6 +92,21 @@ def _design_config(preset: str, speed: float | None, design: BladeConfig | Mappi
         return blade_config(design, None, speed)
     own_speed = isinstance(design, BladeConfig) or (isinstance(design, Mapping) and "speed" in design)
     return blade_config(preset, design, None if own_speed else speed)
+
+
+def _same_electronics(design: BladeConfig, true: BladeConfig) -> BladeConfig:
+    """The design blade behind the very sensors' range, drive and clock that the true one has."""
+    for name in ("control_interval", "voltage_limits"):
+        if getattr(design, name) != getattr(true, name):
+            raise ValueError(
+                f"design has {name} = {getattr(design, name)!r}, but must have the true blade's, {getattr(true, name)!r}."
+            )
+    if design.sensor_full_scale is None:
+        design = replace(design, sensor_full_scale=float(build_plant(true).sensor_full_scale[0]))
+    shapes = [(plant.B.shape[1], len(plant.C)) for plant in (build_plant(design), build_plant(true))]
+    if shapes[0] != shapes[1]:
+        raise ValueError(f"design has {shapes[0]} voltages and sensors, but must have as many as the true blade, {shapes[1]}.")
+    return design
 
 
 def checked_action(action: Any, shape: tuple[int, ...]) -> Array:

@@ -143,3 +143,21 @@ def test_a_bad_history_length_is_named(length):
 def test_a_history_wants_normalised_units():
     with pytest.raises(ValueError, match="env has physical_units=True"):
         SensorHistory(gymnasium.make(beamenv.ENV_ID, physical_units=True))
+
+
+@pytest.mark.parametrize(
+    ("design", "words"),
+    [
+        ({"control_interval": 1e-3}, "design has control_interval = 0.001"),
+        ({"voltage_limits": (-500.0, 1500.0)}, "design has voltage_limits"),
+        ({"patches": {"actuators": 2}}, r"design has \(2, 4\) voltages and sensors"),
+    ],
+)
+def test_a_design_plant_shares_the_electronics_of_the_true_one(design, words):
+    with pytest.raises(ValueError, match=words):
+        gymnasium.make(beamenv.ENV_ID, design=design)
+
+
+def test_a_design_plant_reads_the_true_blade_s_instruments():
+    env = gymnasium.make(beamenv.ENV_ID, design={"beam": {"pretwist_deg": 0.0}}).unwrapped
+    assert env.design_plant.sensor_full_scale == pytest.approx(env.plant.sensor_full_scale)

@@ -40,7 +40,7 @@ def test_passive_checker_stays_silent_through_an_episode():
 ARGUMENTS = [
     {},
     {"preset": "chandra-chopra", "speed": 80.0, "duration": 0.25, "physical_units": True},
-    {"blade": {"damping_ratio": 0.02, "patches": {"actuators": 2}}, "design": {"damping_ratio": 0.01}, "scenario": "pulse"},
+    {"blade": {"damping_ratio": 0.02, "patches": {"actuators": 2}}, "design": {"patches": {"actuators": 2}}, "scenario": "pulse"},
     {
         "blade": blade_config(overrides={"beam": {"taper": 1.5}}),
         "design": BladeConfig(),
