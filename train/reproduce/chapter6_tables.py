@@ -161,8 +161,9 @@ def depends_on(config: BladeConfig) -> list[bool]:
 WHERE = "θ = 30°, untwisted; GA with 30 individuals and 50 generations; patches of 85 mm within 0 … 0.7 L that do not overlap"
 ALONE = f"{WHERE}; SQP from equally spaced patches (the thesis names no start)"
 WHY_SQP = (
-    "With the exact gradient of the trace SQP from equally spaced patches ends at the best layout known more often than not, and "
-    "GA alone stays 0 to 2 % above it; the thesis' SQP ended 1.6 to 26 times above its GA."
+    "With the exact gradient of the trace SQP from equally spaced patches ends at the best layout known of four actuators and of "
+    "any number of sensors, though not always of one to three actuators, and GA alone stays 0 to 2 % above it; the thesis' SQP "
+    "ended 1.6 to 26 times above its GA."
 )
 WHY_START = "With four patches all random starts end at one layout; with two actuators the start decides."
 WHY_SCALE = (
