@@ -191,7 +191,7 @@ def reproduce(
     fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
     docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
 ) -> None:
-    """Regenerate the thesis' tables and figures and judge its statements. About half a minute.
+    """Regenerate the thesis' tables and figures and judge its statements. About two minutes.
 
     An interrupted run goes on from what its folder holds.
     """
