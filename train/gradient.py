@@ -19,9 +19,8 @@ from torch import Tensor, nn
 from beamenv.disturbances import noise_factor
 from beamenv.kernel import Operators, advance
 from beamenv.loads import static_deflection
-from beamenv.plant import Plant
 from beamenv.scenarios import Scenario, draw_load_cases
-from beamenv.simulation import normalised
+from beamenv.plant import Plant, normalised
 from train.policies import RecurrentPolicy
 from train.training import Progress, Report, uncontrolled_cost
 

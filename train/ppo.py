@@ -13,8 +13,7 @@ import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
-from beamenv.plant import Plant
-from beamenv.simulation import normalised
+from beamenv.plant import Plant, normalised
 from train.asymmetric import AsymmetricPolicy
 from train.policies import HistoryPolicy
 from train.training import Progress, Report, uncontrolled_cost
