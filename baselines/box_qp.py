@@ -50,7 +50,7 @@ class BoxQP:
             if exit_flag > 0:
                 minimisers[row] = minimiser
         self.failures += int(np.isnan(minimisers).any(axis=1).sum())
-        return minimisers * self._unit
+        return np.clip(minimisers * self._unit, self.lowest, self.highest)  # DAQP meets bounds to its tolerance
 
 
 def _daqp() -> Any:

@@ -85,7 +85,7 @@ class PredictiveController:
         limited = ((plan < lowest) | (plan > highest)).any(axis=(1, 2))
         if limited.any():
             move = self.program.minimise(estimate[limited] @ self.program_gradient.T)[:, : len(lowest)]
-            voltage[limited] = np.where(np.isnan(move), voltage[limited], np.clip(move, lowest, highest))
+            voltage[limited] = np.where(np.isnan(move), voltage[limited], move)
         return voltage
 
     def in_physical_units(self) -> PredictiveController:
