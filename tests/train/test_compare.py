@@ -43,7 +43,7 @@ def finished(tmp_path_factory, ticking):
 def test_every_piece_is_written(finished):
     folder, _, _ = finished
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-    expected = {"configuration.json", "table.csv", "table.md", "episode.png", "learning.png", "poles.png"}
+    expected = {"configuration.json", "table.csv", "table.md", "episode.png", "learning.png", "poles.png", "report.html"}
     expected |= {f"evaluations/{name}.json" for name in (*CLASSICAL, "gradient", "ppo")}
     for agent in ("gradient", "ppo"):
         expected |= {f"learning_{agent}.csv", f"agents/{agent}/weights.npz", f"agents/{agent}/agent.json"}
