@@ -27,7 +27,10 @@ BOX = np.array([[0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]])
 RAISED = 0.06
 """Depths that patches are drawn above the wall they lie in, so that they are seen."""
 BODY = "#a9b4c0"
-CAMERA = {"eye": {"x": 1.1, "y": 0.85, "z": -0.75}, "up": {"x": 0.0, "y": 1.0, "z": 0.0}, "center": {"x": 0.0, "y": 0.0, "z": 0.0}}
+SPAN_SHOWN = 1.45
+"""Length of the span axis in the units of plotly's cameras."""
+EYE = np.array([1.25, 0.9, -0.5])
+"""Where the camera stands, in (lag, flap, span), on the side that the top wall is turned to when that is +lag."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,35 +172,38 @@ def _actuators(patches: list[Strip], first: dict[str, Any]) -> dict[str, Any]:
 
 
 def _outline(blade: BladeConfig, body: Strip) -> dict[str, Any]:
-    """Edges of the blade at rest, one dashed line."""
+    """Edges of the blade at rest, one line."""
     corners = body.at_rest(blade)
     gap = np.full((1, 3), np.nan)
     pieces = [np.concatenate([corners[:, edge], gap]) for edge in range(len(BOX))] + [corners[-1, [0, 1, 2, 3, 0]]]
     points = dict(zip("xyz", np.concatenate(pieces).T.astype(np.float32), strict=True))
-    look = {"mode": "lines", "line": {"color": NEUTRAL, "width": 2, "dash": "dash"}, "hoverinfo": "skip", "showlegend": False}
+    look = {"mode": "lines", "line": {"color": NEUTRAL, "width": 2}, "hoverinfo": "skip", "showlegend": False}
     return {"type": "scatter3d", **points, **look}
 
 
 def _layout(blade: BladeConfig, reach: float, limit: float, name: str) -> dict[str, Any]:
     half = reach + 0.55 * float(np.hypot(blade.beam.width, blade.beam.depth))
     across = {"range": [-half, half], "showticklabels": False, "ticks": ""}
-    bar = {
-        "title": {"text": "voltage, V", "side": "top"},
-        "orientation": "h",
-        "thickness": 10,
-        "len": 0.8,
-        "y": -0.02,
-        "yanchor": "top",
-    }
+    share = 2.0 * half / blade.beam.length  # one scale for all directions
+    below = {"orientation": "h", "thickness": 10, "len": 0.8, "y": -0.02, "yanchor": "top"}
+    bar = {"title": {"text": "voltage, V", "side": "top"}, **below}
     return {
-        "title": {"text": name, "x": 0.5, "font": {"size": 15}},
+        "title": {"text": name, "x": 0.0, "xanchor": "left", "font": {"size": 15}},
         "margin": {"l": 0, "r": 0, "t": 40, "b": 0},
         "scene": {
             "xaxis": {"title": {"text": "lag"}, **across},
             "yaxis": {"title": {"text": "flap"}, **across},
-            "zaxis": {"title": {"text": "span, m"}, "range": [0.0, blade.beam.length]},
-            "aspectmode": "data",
-            "camera": CAMERA,
+            "zaxis": {"title": {"text": "span, m"}, "range": [0.0, blade.beam.length], "nticks": 5},
+            "aspectmode": "manual",
+            "aspectratio": {"x": SPAN_SHOWN * share, "y": SPAN_SHOWN * share, "z": SPAN_SHOWN},
+            "camera": _camera(blade),
         },
         "coloraxis": {"colorscale": "RdBu", "reversescale": True, "cmin": -limit, "cmax": limit, "colorbar": bar},
     }
+
+
+def _camera(blade: BladeConfig) -> dict[str, Any]:
+    middle = np.radians(blade.beam.presetting_deg + 0.5 * blade.beam.pretwist_deg)
+    side = -1.0 if np.sin(middle) > 0.0 else 1.0
+    points = {"eye": EYE * [side, 1.0, 1.0], "up": (0.0, 1.0, 0.0), "center": (0.0, -0.12, -0.07)}
+    return {name: dict(zip("xyz", map(float, point), strict=True)) for name, point in points.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,8 +10,12 @@ import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import NDArray
 
+from baselines import Evaluation
+
 Array = NDArray[np.float64]
 
+COLOURED = (0.3, 1.0)
+"""log₁₀ J / J without control at which colours end, at least and at most: one that does very badly must not bleach the others."""
 TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
 
@@ -32,11 +37,23 @@ class HeatMap:
             if value != shape:
                 raise ValueError(f"{name} has shape {value}, but must have {shape}: scenarios by controllers.")
 
+    @classmethod
+    def of(cls, evaluations: Mapping[str, Sequence[Evaluation]]) -> HeatMap:
+        """From the evaluations of each scenario; controllers are told apart by name and need not be in every scenario."""
+        controllers = tuple(dict.fromkeys(each.name for row in evaluations.values() for each in row))
+        relative_cost = np.full((len(evaluations), len(controllers)), np.nan)
+        failed = np.zeros_like(relative_cost)
+        for row, several in enumerate(evaluations.values()):
+            for each in several:
+                place = row, controllers.index(each.name)
+                relative_cost[place], failed[place] = each.relative_cost.value, each.episodes.failed.mean()
+        return cls(tuple(evaluations), controllers, relative_cost, failed)
+
 
 def heat_map(content: HeatMap) -> go.Figure:
     """Blue is better than no control, red worse, in the logarithm; every cell says its number, or ✕ and the share of failures."""
     cost = np.where((content.relative_cost > 0.0) & np.isfinite(content.relative_cost), content.relative_cost, np.nan)
-    reach = max(0.3, float(np.nanmax(np.abs(np.log10(cost)), initial=0.0)))
+    reach = float(np.clip(np.nanmax(np.abs(np.log10(cost)), initial=0.0), *COLOURED))
     ticks = [tick for tick in TICKS if abs(np.log10(tick)) <= reach]
     bar = {
         "title": {"text": "J / J without control", "side": "right"},
@@ -67,15 +84,17 @@ def heat_map(content: HeatMap) -> go.Figure:
     return figure.update_layout(
         xaxis={"title": {"text": "controller"}, "type": "category", "tickangle": -35, "automargin": True, "showgrid": False},
         yaxis={"title": {"text": "scenario"}, "type": "category", "autorange": "reversed", "automargin": True, "showgrid": False},
-        margin={"l": 20, "r": 10, "t": 10, "b": 20},
+        margin={"l": 20, "r": 10, "t": 40, "b": 20},
         showlegend=False,
     )
 
 
 def _texts(cost: Array, failed: Array) -> list[list[str]]:
-    """The cost of each cell, and the share of failures below it where there are any; colours choose a legible ink for it."""
+    """The cost of each cell that has one, and the share of failures below it where there are any."""
 
     def text(value: float, share: float) -> str:
+        if np.isnan(value):
+            return ""
         return f"{value:.2f}<br>✕ {100.0 * share:.0f} %" if share > 0.0 else f"{value:.2f}"
 
     return [[text(*cell) for cell in zip(*row, strict=True)] for row in zip(cost, failed, strict=True)]

@@ -27,7 +27,15 @@ nameToggle();
 
 // Figures.
 
-const config = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] };
+const config = {
+  responsive: true,
+  displaylogo: false,
+  showSendToCloud: false,
+  modeBarButtonsToRemove: [
+    ...["toImage", "select2d", "lasso2d", "zoomIn2d", "zoomOut2d", "autoScale2d"],
+    ...["zoom3d", "pan3d", "orbitRotation", "tableRotation", "resetCameraLastSave3d"],
+  ],
+};
 
 function draw(figure) {
   const { data, layout, frames } = JSON.parse(document.querySelector(`[data-figure="${figure.id}"]`).textContent);

@@ -78,8 +78,9 @@ def write_page(path: Path, content: PageContent) -> None:
     """Write the page, whole or not at all.
 
     A comparison gives table, episode, poles, learning curves and configuration. A benchmark over scenarios gives
-    ``PageContent(title, table=Table(...), heat_map=HeatMap(scenarios, controllers, relative_cost, failed),
-    learning=LearningCurves(curves, levels), configuration={...})``. Versions are always told.
+    ``PageContent(title, table=Table(...), heat_map=HeatMap.of({scenario: evaluations}), learning=LearningCurves(curves, levels),
+    configuration={...})``, and may add an episode of any scenario: ``record_episode(arguments, seed, pair)``. Versions are
+    always told.
     """
     write_whole(path, render(content))
 
@@ -115,9 +116,9 @@ def animation(content: PageContent) -> Animation | None:
     if content.episode is None:
         return None
     pair = blade_figures(content.episode)
-    left, right = (Plot(f"blade-{side}", "", "", figure, 420) for side, figure in zip(("left", "right"), pair, strict=True))
+    left, right = (Plot(f"blade-{side}", "", "", figure, 440) for side, figure in zip(("left", "right"), pair, strict=True))
     note = (
-        f"Deflections are drawn {motions(content.episode)[1]:,.0f} times larger than life; dashes: the blade at rest. "
+        f"Deflections are drawn {motions(content.episode)[1]:,.0f} times larger than life; thin lines: the blade at rest. "
         "Actuators are coloured by their voltage. Drag to turn both blades, scroll to zoom."
     )
     return Animation((left, right), [round(1e3 * float(time), 3) for time in frame_times(content.episode)], note)

@@ -58,16 +58,18 @@ def _add_voltages(figure: go.Figure, recording: Recording, row: int) -> None:
 
 def spectra(episode: RecordedEpisode) -> go.Figure:
     """Amplitude spectral density of the tip in lag and flap, before and after; dotted: natural frequencies of the blade."""
+    modes = build_plant(episode.blade).natural_frequencies / (2.0 * np.pi)
+    highest = 1.1 * modes[-1]
     figure = go.Figure(layout=_stacked(TIP_PANELS, ["µm/√Hz"] * 2))
     for recording, colour in _coloured(episode):
         name = f"{recording.name} ({'before' if recording is episode.without_control else 'after'})"
         for row, displacement in enumerate(recording.tip.T, start=1):
             frequency, density = amplitude_density(displacement, episode.blade.control_interval)
-            figure.add_trace(_line(frequency, 1e6 * density, name, colour, row=row))
-    modes = build_plant(episode.blade).natural_frequencies / (2.0 * np.pi)
+            shown = frequency <= highest
+            figure.add_trace(_line(frequency[shown], 1e6 * density[shown], name, colour, row=row))
     logarithmic = {"type": "log", "exponentformat": "power"}
     return figure.update_layout(
-        xaxis={"title": {"text": "frequency, Hz"}, "range": [0.0, 1.1 * modes[-1]]},
+        xaxis={"title": {"text": "frequency, Hz"}, "range": [0.0, highest]},
         yaxis=logarithmic,
         yaxis2=logarithmic,
         shapes=[_upright(mode, color=NEUTRAL, width=1, dash="dot") for mode in modes],
@@ -102,9 +104,10 @@ def pole_map(poles: Mapping[str, Array]) -> go.Figure:
             mode="markers",
             name=name,
             marker=marker,
+            cliponaxis=False,
             hovertemplate="%{customdata:.1f} + %{y:.1f} j rad/s",
         )
-    ticks = np.array([-3000.0, -1000.0, -300.0, -100.0, -30.0, -10.0, 0.0, 10.0, 30.0, 100.0, 300.0, 1000.0])
+    ticks = np.array([-10000.0, -1000.0, -100.0, -10.0, 0.0, 10.0, 100.0, 1000.0])
     names = [f"{tick:g}".replace("-", "−") for tick in ticks]
     axis = {"title": {"text": "real part, rad/s"}, "tickvals": symmetric_logarithm(ticks), "ticktext": names, "zeroline": True}
     figure.update_layout(xaxis=axis, yaxis={"title": {"text": "imaginary part, rad/s"}, "rangemode": "tozero"})
@@ -161,7 +164,7 @@ def _stacked(titles: list[str], units: list[str]) -> dict[str, Any]:
     names = [f"y{row if row > 1 else ''}" for row in range(1, len(titles) + 1)]
     above = {"xref": "paper", "x": 0.0, "xanchor": "left", "y": 1.0, "yanchor": "bottom", "showarrow": False}
     return {
-        "grid": {"rows": len(titles), "columns": 1, "subplots": [[f"x{name}"] for name in names], "ygap": 0.28},
+        "grid": {"rows": len(titles), "columns": 1, "subplots": [[f"x{name}"] for name in names], "ygap": 0.2},
         "annotations": [{**above, "text": title, "yref": f"{name} domain"} for title, name in zip(titles, names, strict=True)],
         "xaxis": {"showspikes": True, "spikemode": "across", "spikesnap": "cursor"},
         **{f"yaxis{name[1:]}": {"title": {"text": unit}} for name, unit in zip(names, units, strict=True)},
