@@ -14,7 +14,7 @@ import pytest
 import beamenv
 from baselines import evaluate, lqg, no_control
 from beamenv.configuration import BladeConfig, build_plant
-from train.page import Cell, HeatMap, LearningCurves, PageContent, Table, comparison_table, record, write_page
+from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, comparison_table, record, write_page
 from train.page.blade import BOX, Strip, blade_figures, frame_times, magnification, motions
 from train.page.heat_map import heat_map
 from train.page.page import plots, render
@@ -119,9 +119,9 @@ def test_a_recorded_episode_is_the_one_that_was_evaluated():
 
 def test_a_recording_ends_where_the_blade_fails():
     env = gym.make(beamenv.ENV_ID, duration=0.05)
-    plant = env.unwrapped.plant
-    recording = record(no_control(plant), env, 0, {"initial_state": 1e3 * np.ones(len(plant.A))})
-    assert len(recording.time) == len(recording.states) == 2
+    load = {"case": "step", "magnitude": 1e5, "onset": 0.01, "direction_deg": 90.0}
+    recording = record(no_control(env.unwrapped.plant), env, 0, {"load": load})
+    assert 0.01 < recording.time[-1] < 0.05
     env.close()
 
 
@@ -158,6 +158,15 @@ def test_the_drawn_tip_moves_by_the_magnified_tip_displacement_and_the_root_stay
         lag = np.stack([frame.data[0].x for frame in figure.frames])
         np.testing.assert_allclose(lag[:, :4], np.broadcast_to(lag[0, :4], (len(times), 4)), atol=1e-6)
         np.testing.assert_allclose(lag[:, -1] - lag[0, -1], factor * (recording.tip[at, 0] - recording.tip[0, 0]), atol=1e-6)
+
+
+def test_a_blade_that_failed_stays_as_it_was_last(page_content):
+    whole, short = page_content.episode.pair
+    short = Recording(short.name, *(series[:60] for series in (short.time, short.states, short.tip, short.volts)))
+    episode = replace(page_content.episode, pair=(whole, short))
+    (_, lost), _ = motions(episode)
+    assert len(lost.deflection) == len(frame_times(episode)) == 26
+    np.testing.assert_array_equal(lost.rows[-10:], 59)
 
 
 def test_both_blades_are_drawn_to_one_scale_and_coloured_on_one(page_content):
@@ -247,15 +256,7 @@ def test_a_row_of_another_length_is_refused():
 def test_a_failed_blade_is_marked_with_the_share_of_failures():
     content = HeatMap(("step", "pulse"), ("LQG", "PPO"), np.array([[0.4, 0.5], [np.inf, 0.8]]), np.array([[0.0, 0.0], [0.25, 0.5]]))
     cells, lost = heat_map(content).data
-    assert (
-        cells.text.tolist()
-        if hasattr(cells.text, "tolist")
-        else list(map(list, cells.text))
-        == [
-            ["0.40", "0.50"],
-            ["", "0.80<br>✕ 50 %"],
-        ]
-    )
+    assert np.asarray(cells.text).tolist() == [["0.40", "0.50"], ["", "0.80<br>✕ 50 %"]]
     assert np.isnan(cells.z[1][0])
     assert (list(lost.x), list(lost.y), list(lost.text)) == (["LQG"], ["pulse"], ["✕ 25 %"])
 

@@ -1,4 +1,4 @@
-"""The page in a real browser, headless: it draws without an error, moves, sorts, and can be read in both themes and on a telephone."""
+"""The page in a real browser: it draws without an error, moves, sorts, and can be read in both themes and on a telephone."""
 
 import shutil
 import time
@@ -6,8 +6,7 @@ import time
 import numpy as np
 import pytest
 
-selenium = pytest.importorskip("selenium", reason="selenium is not installed")
-webdriver = pytest.importorskip("selenium.webdriver")
+webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 
 pytestmark = [
@@ -15,19 +14,11 @@ pytestmark = [
     pytest.mark.skipif(CHROMIUM is None or DRIVER is None, reason="Chromium and its driver are not installed"),
 ]
 
-ALONE = [
-    "--headless=new",
-    "--no-sandbox",
-    "--no-first-run",
-    "--disable-sync",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-quic",
-    "--disable-gpu",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
+ALONE = (
+    *("--headless=new", "--no-sandbox", "--no-first-run", "--disable-sync", "--disable-background-networking"),
+    *("--disable-component-update", "--disable-quic"),
+    *("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
+)
 """No network, and WebGL without a graphics card."""
 
 

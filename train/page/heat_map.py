@@ -54,13 +54,6 @@ def heat_map(content: HeatMap) -> go.Figure:
     """Blue is better than no control, red worse, in the logarithm; every cell says its number, or ✕ and the share of failures."""
     cost = np.where((content.relative_cost > 0.0) & np.isfinite(content.relative_cost), content.relative_cost, np.nan)
     reach = float(np.clip(np.nanmax(np.abs(np.log10(cost)), initial=0.0), *COLOURED))
-    ticks = [tick for tick in TICKS if abs(np.log10(tick)) <= reach]
-    bar = {
-        "title": {"text": "J / J without control", "side": "right"},
-        "tickvals": np.log10(ticks),
-        "ticktext": ticks,
-        "thickness": 12,
-    }
     figure = go.Figure()
     figure.add_heatmap(
         x=content.controllers,
@@ -78,7 +71,7 @@ def heat_map(content: HeatMap) -> go.Figure:
         zmax=reach,
         xgap=2,
         ygap=2,
-        colorbar=bar,
+        colorbar=_bar(reach),
     )
     figure.add_trace(_lost(content))
     return figure.update_layout(
@@ -87,6 +80,13 @@ def heat_map(content: HeatMap) -> go.Figure:
         margin={"l": 20, "r": 10, "t": 40, "b": 20},
         showlegend=False,
     )
+
+
+def _bar(reach: float) -> dict[str, Any]:
+    """The key to the colours, which stand for −reach to reach of log₁₀ J / J without control."""
+    ticks = [tick for tick in TICKS if abs(np.log10(tick)) <= reach]
+    title = {"text": "J / J without control", "side": "right"}
+    return {"title": title, "tickvals": np.log10(ticks), "ticktext": ticks, "thickness": 12}
 
 
 def _texts(cost: Array, failed: Array) -> list[list[str]]:
