@@ -16,7 +16,6 @@ import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.configuration import to_dict
 from train.agents import AGENTS, train_agent
-from train.comparison_page import write_comparison_page
 from train.contenders import CLASSICAL, classical
 from train.figures import write_figures
 from train.policies import load_policy, save_policy
@@ -69,6 +68,8 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     Each piece is written as soon as it is there. A folder that holds trained agents of the same comparison is gone on from;
     ``ValueError`` if it holds another comparison.
     """
+    from train.comparison_page import write_comparison_page  # plotly takes a while, and others want this module's names alone
+
     listener = listener or Listener()
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
     try:
