@@ -80,17 +80,9 @@ class LinearController:
         ``observation`` (p,) or (N, p) is normalised as the environment gives it; rows where ``episode_start`` is true
         forget their memory. Raises ValueError for an observation of another length.
         """
-        measured = np.asarray(observation, dtype=np.float64)
         order = len(self.transition)
-        if measured.ndim not in (1, 2) or measured.shape[-1] != self.measurement_scale.size:
-            raise ValueError(
-                f"observation has shape {measured.shape}, but {self.name} takes {self.observes} vectors of length "
-                f"{self.measurement_scale.size}, alone or in rows"
-            )
-        memory = np.zeros((*measured.shape[:-1], order)) if state is None else state
-        if episode_start is not None and state is not None:
-            begins = np.asarray(episode_start, dtype=bool).reshape(measured.shape[:-1])
-            memory = np.where(begins[..., None], 0.0, memory)
+        measured = checked_observation(observation, self.measurement_scale.size, f"{self.name} takes {self.observes} vectors")
+        memory = remembered(state, episode_start, (*measured.shape[:-1], order))
         product = np.concatenate([memory, measured], axis=-1) @ self._fused
         action = np.clip(product[..., order:], self._limits[0], self._limits[1])
         following = product[..., :order] + action @ self._feedback
@@ -99,6 +91,23 @@ class LinearController:
     def in_physical_units(self) -> LinearController:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
+
+
+def checked_observation(observation: ArrayLike, length: int, wanted: str) -> Array:
+    """The observation as (length,) or (N, length) float64; ``wanted`` begins the sentence of the ValueError for another shape."""
+    measured = np.asarray(observation, dtype=np.float64)
+    if measured.ndim not in (1, 2) or measured.shape[-1] != length:
+        raise ValueError(f"observation has shape {measured.shape}, but {wanted} of length {length}, alone or in rows")
+    return measured
+
+
+def remembered(state: Array | None, episode_start: ArrayLike | None, shape: tuple[int, ...]) -> Array:
+    """The memory (…, s) to go on with: zero without a ``state`` and in the rows where ``episode_start`` is true."""
+    if state is None:
+        return np.zeros(shape)
+    if episode_start is None:
+        return state
+    return np.where(np.asarray(episode_start, dtype=bool).reshape(shape[:-1])[..., None], 0.0, state)
 
 
 def static_law(plant: Plant, name: str, gain: Array, observes: Literal["observation", "state"] = "observation") -> LinearController:

@@ -8,9 +8,10 @@ import numpy as np
 from scipy.linalg import expm
 
 from baselines.controller import LinearController, drive_scale
-from baselines.persistent_load import PersistentLoad, with_persistent_load
+from baselines.load_model import LoadModel, with_load
+from baselines.persistent_load import PersistentLoad
 from baselines.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
-from beamenv.plant import Plant, sample
+from beamenv.plant import Plant, SampledPlant, sample
 
 _CONVERTER_STEP = 2.0**-15
 """Of full scale: a 16-bit converter's."""
@@ -37,7 +38,9 @@ def lqg(
     Raises ValueError for another design, or for a persistent load with the continuous one.
     """
     if design == "sampled":
-        return _sampled(plant, persistent_load)
+        if persistent_load is None:
+            return sampled_lqg(plant)
+        return sampled_lqg(plant, "LQG with load estimate", persistent_load.model(plant.control_interval))
     if design != "continuous":
         raise ValueError(f'design = {design!r} is not an LQG design: allowed are "sampled" and "continuous"')
     if persistent_load is not None:
@@ -45,36 +48,43 @@ def lqg(
     return _continuous(plant)
 
 
-def _sampled(plant: Plant, load: PersistentLoad | None) -> LinearController:
-    held = sample(plant) if load is None else with_persistent_load(sample(plant), load)
+def sampled_lqg(plant: Plant, name: str = "LQG", load: LoadModel | None = None) -> LinearController:
+    """The sampled optimum, with the states of ``load`` behind those of the blade in its memory."""
+    held, K, L = sampled_gains(plant, load)
+    correct = np.eye(len(held.A)) - L @ held.C
+    return observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
+
+
+def sampled_gains(plant: Plant, load: LoadModel | None = None) -> tuple[SampledPlant, Array, Array]:
+    """The sampled plant with its load model, and the gains K (m, n + q) of u = −K x̂ and L (n + q, p) of x̂ ← x̂ + L (y − C x̂)."""
+    held = sample(plant) if load is None else with_load(sample(plant), load)
     E = held.disturbance_input
     _, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, _sensor_noise(plant) / held.interval)
-    correct = np.eye(len(held.A)) - L @ held.C
-    name = "LQG" if load is None else "LQG with load estimate"
-    return _observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
+    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
+    return held, K, L
 
 
 def _continuous(plant: Plant) -> LinearController:
     E, n, p = plant.disturbance_input, len(plant.A), len(plant.C)
     _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
-    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, _sensor_noise(plant))
+    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
     dynamics = np.zeros((n + p + plant.B.shape[1],) * 2)
     scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_scale(plant)])  # keeps the exponential well scaled
     dynamics[:n] = np.hstack([plant.A - plant.B @ K - L @ plant.C, L, plant.B]) * scale
     F, G, H = np.split(expm(dynamics * plant.control_interval)[:n] / scale, [n, n + p], axis=1)
     onward = F + H @ K
-    return _observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
+    return observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
 
 
-def _sensor_noise(plant: Plant) -> Array:
+def known_sensor_noise(plant: Plant) -> Array:
     """V (p, p), A² s. Without any noise the filter's equation has no solution, so at least the converter's steps count."""
     converter = np.diag((_CONVERTER_STEP * plant.sensor_full_scale) ** 2 / 12.0) * plant.control_interval
     silent = np.diag(plant.sensor_noise) < np.diag(converter)
     return plant.sensor_noise + np.where(silent, converter, 0.0)
 
 
-def _observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
+def observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
+    """The law ξ⁺ = F ξ + G y + H u, u = clip(M ξ + T y) behind the plant's own instruments and drive."""
     return LinearController(
         name=name,
         transition=F,
