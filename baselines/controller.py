@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from beamenv.plant import Plant
 
 Array = NDArray[np.float64]
+Observes = Literal["observation", "state", "observation and speed"]
+"""What ``predict`` wants: the sensors' readings, the true state, or the readings (p,) with the rotor speed in rad/s behind them."""
 
 
 @runtime_checkable
@@ -55,18 +57,21 @@ class LinearController:
     """(2, m), V: lower and upper drive limit."""
     observes: Literal["observation", "state"] = "observation"
     """Whether ``predict`` wants the sensors' observation or the true state (n,), which no real blade offers."""
-    _fused: Array = field(init=False, repr=False)
-    _feedback: Array = field(init=False, repr=False)
-    _limits: Array = field(init=False, repr=False)
+    fused: Array = field(init=False, repr=False)
+    """(s + p, s + m): [ξ, observation] @ fused = [F ξ + G y, action before the limits]."""
+    feedback: Array = field(init=False, repr=False)
+    """(m, s): action @ feedback = H u."""
+    limits: Array = field(init=False, repr=False)
+    """(2, m): of an action."""
 
     def __post_init__(self) -> None:
-        """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]."""
+        """Fuse the law into two products in the units of observation and action."""
         scale, drive = self.measurement_scale, self.voltage_scale[:, None]
         memory = np.hstack([self.transition, self.measurement_input * scale])
         action = np.hstack([self.state_gain, self.measurement_gain * scale]) / drive
-        object.__setattr__(self, "_fused", np.ascontiguousarray(np.vstack([memory, action]).T))
-        object.__setattr__(self, "_feedback", np.ascontiguousarray(drive * self.voltage_input.T))
-        object.__setattr__(self, "_limits", self.voltage_limits / self.voltage_scale)
+        object.__setattr__(self, "fused", np.ascontiguousarray(np.vstack([memory, action]).T))
+        object.__setattr__(self, "feedback", np.ascontiguousarray(drive * self.voltage_input.T))
+        object.__setattr__(self, "limits", self.voltage_limits / self.voltage_scale)
 
     def predict(
         self,
@@ -83,9 +88,9 @@ class LinearController:
         order = len(self.transition)
         measured = checked_observation(observation, self.measurement_scale.size, f"{self.name} takes {self.observes} vectors")
         memory = remembered(state, episode_start, (*measured.shape[:-1], order))
-        product = np.concatenate([memory, measured], axis=-1) @ self._fused
-        action = np.clip(product[..., order:], self._limits[0], self._limits[1])
-        following = product[..., :order] + action @ self._feedback
+        product = np.concatenate([memory, measured], axis=-1) @ self.fused
+        action = np.clip(product[..., order:], self.limits[0], self.limits[1])
+        following = product[..., :order] + action @ self.feedback
         return action, following if order else None
 
     def in_physical_units(self) -> LinearController:

@@ -28,13 +28,13 @@ _GAINS = np.logspace(-3.0, 0.0, 16)
 def positive_position_feedback(
     plant: Plant, gain: ArrayLike | None = None, modes: int = 3, filter_damping: float = FILTER_DAMPING, leak: float = LEAK
 ) -> LinearController:
-    """Voltages u_j = Σ_k g_k q_k / c_j, with a filter for each of the first ``modes`` natural frequencies on each pair j of patches.
+    """Voltages u_j = Σ_k g_k q_k / c_j, with a filter for each of the first ``modes`` natural frequencies on each pair of patches.
 
         q̈_k + 2 ζ_f ω_k q̇_k + ω_k² q_k = ω_k² q,        q̇ = y_j − (leak ω_1) q,
 
-    filters the sensor's charge q, for the sensor tells the rate of strain and positive position feedback wants strain. c_j is the charge
-    that a volt on the same pair brings about at rest, so that a single mode with a single filter is stable just as long as g < 1
-    (Fanson and Caughey, AIAA Journal 28, 1990). Ganged drive takes the sensors' mean.
+    filters the sensor's charge q, for the sensor tells the rate of strain and positive position feedback wants strain. c_j is the
+    charge that a volt on the same pair brings about at rest, so that a single mode with a single filter is stable just as long as
+    g < 1 (Fanson and Caughey, AIAA Journal 28, 1990). Ganged drive takes the sensors' mean.
 
     ``gain`` (modes,) or one number for all are the g_k. By default those of least stationary cost under the plant's white loads
     and sensor noise, among stable loops: the best common one of a few, then each for itself (Nelder and Mead's simplex). Integrated
