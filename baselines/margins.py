@@ -30,7 +30,7 @@ class StabilityMargins:
     phase_margin_deg: float
     """Degrees, by which the phase of any one loop may be shifted either way."""
     delay_margin: float
-    """s, by which any one loop may be delayed."""
+    """s, by which any one loop may be delayed: a lag of ω times as much at each frequency ω where its gain is 1."""
     disk_margin: float
     """α of the symmetric disk margin: all loops at once may be multiplied by any (1 + δ/2)/(1 − δ/2) with |δ| < α ≤ 2, which are
     gains from (2 − α)/(2 + α) to (2 + α)/(2 − α) or phases up to 2 arctan(α/2) (Seiler, Packard and Gahinet, IEEE Control Systems

@@ -57,8 +57,8 @@ def positive_position_feedback(
 
 
 def _check(modes: int, most: int, **positive: float) -> None:
-    if not 1 <= modes <= most:
-        raise ValueError(f"modes = {modes!r} must be from 1 to {most}, the number of the plant's modes")
+    if not (isinstance(modes, (int, np.integer)) and 1 <= modes <= most):
+        raise ValueError(f"modes = {modes!r} must be an integer from 1 to {most}, the number of the plant's modes")
     for name, value in positive.items():
         if not (np.isfinite(value) and value > 0.0):
             raise ValueError(f"{name} = {value!r} must be a positive number")

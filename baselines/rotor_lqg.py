@@ -20,15 +20,15 @@ from beamenv.plant import Plant
 class RotorHarmonics:
     """Line loads in lag and flap at whole multiples of the rotor speed: oscillators that all but keep their phase.
 
-    The rule for the numbers: the first four harmonics, of the size that the environment's harmonic loads have (1.5 … 4.5 N/m), each
-    steady over an episode of 0.5 s.
+    The rule for the numbers: the first four harmonics, each of the size of the environment's harmonic loads, whose mean amplitude
+    of 3 N/m in any direction is 1.5 N/m root mean square in lag and in flap, and steady over an episode of 0.5 s.
     """
 
     speed: float
     """rad/s, of the rotor."""
     orders: tuple[int, ...] = (1, 2, 3, 4)
     """Loads per revolution."""
-    magnitude: float = 3.0
+    magnitude: float = 1.5
     """N/m, root mean square, of each harmonic in each direction."""
     duration: float = 0.5
     """s: time in which a harmonic forgets its amplitude and phase."""

@@ -53,18 +53,3 @@ def _undamped(plant):
     A = plant.A.copy()
     A[3:, 3:] -= np.diag(np.diag(A)[3:])
     return A
-
-
-def test_batches_limits_and_bad_input_are_those_of_every_law(small_plant):
-    law = clipped_lqg(small_plant())
-    rows = 50.0 * np.random.default_rng(0).normal(size=(5, 2))
-    action, memory = law.predict(rows)
-    one, one_memory = law.predict(rows[3])
-    np.testing.assert_allclose(action[3], one, rtol=1e-12)
-    np.testing.assert_allclose(memory[3], one_memory, rtol=1e-12)
-    assert action.min() >= -1 / 3
-    assert action.max() <= 1.0
-    volts, _ = law.in_physical_units().predict(rows * law.measurement_scale)
-    np.testing.assert_allclose(volts, action * law.voltage_scale, rtol=1e-12)
-    with pytest.raises(ValueError, match=r"observation has shape \(3,\), but LQG, clipping known takes.*length 2"):
-        law.predict(np.zeros(3))

@@ -81,8 +81,15 @@ def test_the_estimate_follows_the_voltage_that_was_applied(small_plant):
     assert np.abs(law.voltage_input - held.B).max() < 0.1 * np.abs(held.B).max()
 
 
-def test_what_is_not_possible_is_refused_by_name(blade):
+def test_sensors_next_to_exact_are_no_obstacle(small_plant):
+    exact = small_plant(sensor_noise=np.zeros((2, 2)))
+    assert h_infinity_norm(exact, h_infinity(exact)) < h_infinity_norm(exact, lqg(exact))
+
+
+def test_what_is_not_possible_is_refused_by_name(blade, small_plant):
     plant, least = blade
+    with pytest.raises(ValueError, match="plant has no white load"):
+        h_infinity(small_plant(process_noise=np.zeros((2, 2))))
     with pytest.raises(ValueError, match="attenuation = .* is too little"):
         h_infinity_law(plant, 0.99 * least)
     with pytest.raises(ValueError, match="back_off = 1.0 is not allowed"):
