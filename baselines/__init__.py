@@ -10,6 +10,7 @@ from baselines.lqg import lqg
 from baselines.lqr import lqr
 from baselines.margins import StabilityMargins, stability_margins
 from baselines.metrics import EpisodeMetrics
+from baselines.mpc import PredictiveController, mpc
 from baselines.no_control import no_control
 from baselines.persistent_load import PersistentLoad
 from baselines.positive_position_feedback import positive_position_feedback
@@ -27,6 +28,7 @@ __all__ = [
     "Evaluation",
     "LinearController",
     "PersistentLoad",
+    "PredictiveController",
     "RotorHarmonics",
     "ScheduledLQG",
     "StabilityMargins",
@@ -37,6 +39,7 @@ __all__ = [
     "h_infinity_norm",
     "lqg",
     "lqr",
+    "mpc",
     "no_control",
     "positive_position_feedback",
     "roll_out",

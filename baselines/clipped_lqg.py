@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from baselines.controller import Array, checked_observation, drive_scale, remembered
-from baselines.lqg import sampled_gains
+from baselines.controller import Array, Observes, drive_scale, measurement, remembered
+from baselines.lqg import sampled_design
 from baselines.persistent_load import PersistentLoad
 from beamenv.plant import Plant
 
@@ -45,6 +45,7 @@ class ClippedLQG:
     """(m,), V: the voltage that an action of 1 stands for."""
     voltage_limits: Array
     """(2, m), V: lower and upper drive limit."""
+    observes: Observes = "observation"
 
     def predict(
         self,
@@ -54,8 +55,8 @@ class ClippedLQG:
         deterministic: bool = True,
     ) -> tuple[Array, Array]:
         """Action (m,) or (N, m) in units of the drive limit, and the next memory; as ``LinearController.predict``."""
-        measured = checked_observation(observation, len(self.output), f"{self.name} takes observation vectors")
-        memory = remembered(state, episode_start, (*measured.shape[:-1], len(self.transition)))
+        measured = measurement(self, observation)
+        memory = remembered(state, episode_start, measured.shape[:-1], len(self.transition))
         expected = np.clip(memory @ self.output.T, -self.full_scale, self.full_scale)
         estimate = memory + (measured * self.measurement_scale - expected) @ self.kalman_gain.T
         voltage = np.clip(-estimate @ self.feedback_gain.T, *self.voltage_limits)
@@ -71,10 +72,9 @@ def clipped_lqg(plant: Plant, persistent_load: PersistentLoad | None = None) -> 
 
     ``persistent_load`` adds a load that lasts to the state, as in ``lqg``.
     """
-    load = None if persistent_load is None else persistent_load.model(plant.control_interval)
-    held, K, L = sampled_gains(plant, load)
+    held, _, K, L = sampled_design(plant, persistent_load)
     return ClippedLQG(
-        name="LQG, clipping known" if load is None else "LQG with load estimate, clipping known",
+        name="LQG, clipping known" if persistent_load is None else "LQG with load estimate, clipping known",
         transition=held.A,
         voltage_input=held.B,
         output=held.C,

@@ -57,21 +57,18 @@ class LinearController:
     """(2, m), V: lower and upper drive limit."""
     observes: Literal["observation", "state"] = "observation"
     """Whether ``predict`` wants the sensors' observation or the true state (n,), which no real blade offers."""
-    fused: Array = field(init=False, repr=False)
-    """(s + p, s + m): [ξ, observation] @ fused = [F ξ + G y, action before the limits]."""
-    feedback: Array = field(init=False, repr=False)
-    """(m, s): action @ feedback = H u."""
-    limits: Array = field(init=False, repr=False)
-    """(2, m): of an action."""
+    _fused: Array = field(init=False, repr=False)
+    _feedback: Array = field(init=False, repr=False)
+    _limits: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Fuse the law into two products in the units of observation and action."""
+        """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]."""
         scale, drive = self.measurement_scale, self.voltage_scale[:, None]
         memory = np.hstack([self.transition, self.measurement_input * scale])
         action = np.hstack([self.state_gain, self.measurement_gain * scale]) / drive
-        object.__setattr__(self, "fused", np.ascontiguousarray(np.vstack([memory, action]).T))
-        object.__setattr__(self, "feedback", np.ascontiguousarray(drive * self.voltage_input.T))
-        object.__setattr__(self, "limits", self.voltage_limits / self.voltage_scale)
+        object.__setattr__(self, "_fused", np.ascontiguousarray(np.vstack([memory, action]).T))
+        object.__setattr__(self, "_feedback", np.ascontiguousarray(drive * self.voltage_input.T))
+        object.__setattr__(self, "_limits", self.voltage_limits / self.voltage_scale)
 
     def predict(
         self,
@@ -85,34 +82,51 @@ class LinearController:
         ``observation`` (p,) or (N, p) is normalised as the environment gives it; rows where ``episode_start`` is true
         forget their memory. Raises ValueError for an observation of another length.
         """
-        order = len(self.transition)
-        measured = checked_observation(observation, self.measurement_scale.size, f"{self.name} takes {self.observes} vectors")
-        memory = remembered(state, episode_start, (*measured.shape[:-1], order))
-        product = np.concatenate([memory, measured], axis=-1) @ self.fused
-        action = np.clip(product[..., order:], self.limits[0], self.limits[1])
-        following = product[..., :order] + action @ self.feedback
+        measured, order = measurement(self, observation), len(self.transition)
+        memory = remembered(state, episode_start, measured.shape[:-1], order)
+        product = np.concatenate([memory, measured], axis=-1) @ self._fused
+        action = np.clip(product[..., order:], self._limits[0], self._limits[1])
+        following = product[..., :order] + action @ self._feedback
         return action, following if order else None
+
+    @property
+    def matrices(self) -> tuple[Array, Array]:
+        """[ξ, observation] @ fused (s + p, s + m) = [F ξ + G y, action], and feedback (m, s): ξ⁺ gains action @ feedback."""
+        return self._fused, self._feedback
 
     def in_physical_units(self) -> LinearController:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
 
 
-def checked_observation(observation: ArrayLike, length: int, wanted: str) -> Array:
-    """The observation as (length,) or (N, length) float64; ``wanted`` begins the sentence of the ValueError for another shape."""
+class _Law(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def observes(self) -> str: ...
+    @property
+    def measurement_scale(self) -> Array: ...
+
+
+def measurement(law: _Law, observation: ArrayLike) -> Array:
+    """The observation (p,) or (N, p) as float64. Raises ValueError unless it has the length that the law takes."""
     measured = np.asarray(observation, dtype=np.float64)
-    if measured.ndim not in (1, 2) or measured.shape[-1] != length:
-        raise ValueError(f"observation has shape {measured.shape}, but {wanted} of length {length}, alone or in rows")
+    if measured.ndim not in (1, 2) or measured.shape[-1] != law.measurement_scale.size:
+        raise ValueError(
+            f"observation has shape {measured.shape}, but {law.name} takes {law.observes} vectors of length "
+            f"{law.measurement_scale.size}, alone or in rows"
+        )
     return measured
 
 
-def remembered(state: Array | None, episode_start: ArrayLike | None, shape: tuple[int, ...]) -> Array:
-    """The memory (…, s) to go on with: zero without a ``state`` and in the rows where ``episode_start`` is true."""
+def remembered(state: Array | None, episode_start: ArrayLike | None, batch: tuple[int, ...], order: int) -> Array:
+    """The memory (*batch, order) that a decision starts from: zero without a state, and where an episode starts."""
     if state is None:
-        return np.zeros(shape)
+        return np.zeros((*batch, order))
     if episode_start is None:
         return state
-    return np.where(np.asarray(episode_start, dtype=bool).reshape(shape[:-1])[..., None], 0.0, state)
+    begins = np.asarray(episode_start, dtype=bool).reshape(batch)
+    return np.where(begins[..., None], 0.0, state)
 
 
 def static_law(plant: Plant, name: str, gain: Array, observes: Literal["observation", "state"] = "observation") -> LinearController:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -29,6 +30,14 @@ class LoadModel:
             output=np.hstack([self.output, other.output]),
             noise=block_diag(self.noise, other.noise),
         )
+
+
+class Load(Protocol):
+    """What the load is, apart from the clock it is sampled by."""
+
+    def model(self, interval: float) -> LoadModel:
+        """The load from one control interval (s) to the next."""
+        ...
 
 
 def with_load(held: SampledPlant, load: LoadModel) -> SampledPlant:

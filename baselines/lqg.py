@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import add
 from typing import Literal
 
 import numpy as np
 from scipy.linalg import expm
 
 from baselines.controller import LinearController, drive_scale
-from baselines.load_model import LoadModel, with_load
+from baselines.load_model import Load, with_load
 from baselines.persistent_load import PersistentLoad
 from baselines.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
 from beamenv.plant import Plant, SampledPlant, sample
@@ -38,9 +40,7 @@ def lqg(
     Raises ValueError for another design, or for a persistent load with the continuous one.
     """
     if design == "sampled":
-        if persistent_load is None:
-            return sampled_lqg(plant)
-        return sampled_lqg(plant, "LQG with load estimate", persistent_load.model(plant.control_interval))
+        return sampled_lqg(plant, "LQG" if persistent_load is None else "LQG with load estimate", persistent_load)
     if design != "continuous":
         raise ValueError(f'design = {design!r} is not an LQG design: allowed are "sampled" and "continuous"')
     if persistent_load is not None:
@@ -48,20 +48,21 @@ def lqg(
     return _continuous(plant)
 
 
-def sampled_lqg(plant: Plant, name: str = "LQG", load: LoadModel | None = None) -> LinearController:
-    """The sampled optimum, with the states of ``load`` behind those of the blade in its memory."""
-    held, K, L = sampled_gains(plant, load)
+def sampled_lqg(plant: Plant, name: str = "LQG", *loads: Load | None) -> LinearController:
+    """The sampled optimum, with the states of the ``loads`` behind those of the blade in its memory."""
+    held, _, K, L = sampled_design(plant, *loads)
     correct = np.eye(len(held.A)) - L @ held.C
     return observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
 
 
-def sampled_gains(plant: Plant, load: LoadModel | None = None) -> tuple[SampledPlant, Array, Array]:
-    """The sampled plant with its load model, and the gains K (m, n + q) of u = −K x̂ and L (n + q, p) of x̂ ← x̂ + L (y − C x̂)."""
-    held = sample(plant) if load is None else with_load(sample(plant), load)
+def sampled_design(plant: Plant, *loads: Load | None) -> tuple[SampledPlant, Array, Array, Array]:
+    """The sampled plant, with the states of whatever ``loads`` are given, its regulator's P and K, and its filter's L."""
+    models = [load.model(plant.control_interval) for load in loads if load is not None]
+    held = with_load(sample(plant), reduce(add, models)) if models else sample(plant)
     E = held.disturbance_input
-    _, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+    P, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
     _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
-    return held, K, L
+    return held, P, K, L
 
 
 def _continuous(plant: Plant) -> LinearController:

@@ -70,7 +70,4 @@ def rotor_lqg(plant: Plant, harmonics: RotorHarmonics, turbulence: PersistentLoa
     answers it (the internal model principle: Francis and Wonham, Automatica 12, 1976; for helicopter rotors Shaw and Albion, J. Am.
     Helicopter Soc. 26, 1981). Raises ValueError for a harmonic beyond half the sampling rate.
     """
-    load = harmonics.model(plant.control_interval)
-    if turbulence is not None:
-        load = load + turbulence.model(plant.control_interval)
-    return sampled_lqg(plant, "LQG with rotor harmonics", load)
+    return sampled_lqg(plant, "LQG with rotor harmonics", harmonics, turbulence)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
-from baselines.controller import Array, LinearController, Observes, checked_observation, remembered
+from baselines.controller import Array, LinearController, Observes, measurement, remembered
 from baselines.lqg import sampled_lqg
 from baselines.persistent_load import PersistentLoad
 from beamenv.configuration import BladeConfig
@@ -50,15 +51,19 @@ class ScheduledLQG:
         ``observation`` (p + 1,) or (N, p + 1) are the readings, normalised, and the speed in rad/s. Raises ValueError for another
         length or a speed that is no number.
         """
-        law = self.laws[0]
-        order, length = len(law.transition), law.measurement_scale.size + 1
-        measured = checked_observation(observation, length, f"{self.name} takes readings and the rotor speed in vectors")
+        measured, law = measurement(self, observation), self.laws[0]
+        order, limits = len(law.transition), law.voltage_limits / law.voltage_scale
         weights = self._weights(measured[..., -1])
-        memory = remembered(state, episode_start, (*measured.shape[:-1], order))
-        joined = np.concatenate([memory, measured[..., :-1]], axis=-1)
-        product = _mixed(weights, joined, [each.fused for each in self.laws])
-        action = np.clip(product[..., order:], *law.limits)
-        return action, product[..., :order] + _mixed(weights, action, [each.feedback for each in self.laws])
+        memory = remembered(state, episode_start, measured.shape[:-1], order)
+        fused, feedback = zip(*(each.matrices for each in self.laws), strict=True)
+        product = _mixed(weights, np.concatenate([memory, measured[..., :-1]], axis=-1), fused)
+        action = np.clip(product[..., order:], limits[0], limits[1])
+        return action, product[..., :order] + _mixed(weights, action, feedback)
+
+    @property
+    def measurement_scale(self) -> Array:
+        """(p + 1,): the measurement that an observation of 1 stands for, in A and, last, in rad/s."""
+        return np.append(self.laws[0].measurement_scale, 1.0)
 
     def at(self, speed: float) -> LinearController:
         """The linear law that this one is at a constant speed in rad/s."""
@@ -81,7 +86,7 @@ class ScheduledLQG:
         return np.stack([np.interp(speed, self.speeds, share) for share in np.eye(len(self.speeds))], axis=-1)
 
 
-def _mixed(weights: Array, rows: Array, matrices: list[Array]) -> Array:
+def _mixed(weights: Array, rows: Array, matrices: Sequence[Array]) -> Array:
     """Σ_j weights_j (rows @ matrices_j), leaving out what has no weight anywhere."""
     used = [j for j in range(len(matrices)) if weights[..., j].any()]
     return np.asarray(sum(weights[..., j, None] * (rows @ matrices[j]) for j in used))
@@ -118,8 +123,7 @@ def scheduled_lqg_for(
 
 def _law(plant: Plant, from_common: Array, persistent_load: PersistentLoad | None) -> LinearController:
     """The LQG of a plant with its memory, x or [x; lasting load], in the common coordinates."""
-    load = None if persistent_load is None else persistent_load.model(plant.control_interval)
-    law = sampled_lqg(plant, "LQG", load)
+    law = sampled_lqg(plant, "LQG", persistent_load)
     there = block_diag(from_common, np.eye(len(law.transition) - len(from_common)))
     back = np.linalg.inv(there)
     return replace(

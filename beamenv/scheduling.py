@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import block_diag
 
+from beamenv.bank import seen_from
 from beamenv.configuration import BladeConfig, build_beam, build_plant
 from beamenv.plant import Plant
-from beamenv.reduction import truncate
 
 Array = NDArray[np.float64]
 
@@ -47,13 +46,12 @@ def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike) -> Sp
 
 
 def _from_common(config: BladeConfig, other: BladeConfig) -> Array:
-    beam = build_beam(config)
-    own, there = (truncate(beam, each.speed, each.modes, each.gyroscopic) for each in (config, other))
-    in_common = there.mode_shapes.T @ beam.matrices.mass @ own.mode_shapes
-    least = np.linalg.svd(in_common, compute_uv=False).min()
+    seen = seen_from(config, build_beam(config), other)
+    assert seen is not None  # the blade is the same
+    least = np.linalg.svd(seen[config.modes :, config.modes :], compute_uv=False).min()
     if least < _LEAST_IN_COMMON:
         raise ValueError(
             f"speeds: the {config.modes} modes at {other.speed:g} rad/s are not those at {config.speed:g} rad/s (principal cosine "
             f"{least:.2g}); retain another number of modes or stay nearer"
         )
-    return block_diag(there.natural_frequencies[:, None] * in_common / own.natural_frequencies, in_common)
+    return seen.T

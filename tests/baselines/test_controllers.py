@@ -9,6 +9,7 @@ from baselines import (
     h_infinity,
     lqg,
     lqr,
+    mpc,
     no_control,
     positive_position_feedback,
     rotor_lqg,
@@ -32,6 +33,8 @@ LAWS = {
     "LQG, clipping known": clipped_lqg,
     "H∞": h_infinity,
     "positive position feedback": positive_position_feedback,
+    "MPC": mpc,
+    "MPC with load estimate": lambda plant: mpc(plant, PersistentLoad()),
 }
 
 

@@ -88,7 +88,7 @@ def test_a_batch_may_turn_at_several_speeds(family):
 
 def test_what_cannot_be_scheduled_is_refused_by_name(family):
     law = scheduled_lqg(family)
-    with pytest.raises(ValueError, match=r"observation has shape \(4,\).*rotor speed in vectors of length 5"):
+    with pytest.raises(ValueError, match=r"observation has shape \(4,\).*observation and speed vectors of length 5"):
         law.predict(np.zeros(4))
     with pytest.raises(ValueError, match="rotor speed nan"):
         law.predict(np.append(np.zeros(4), np.nan))
