@@ -146,6 +146,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 50}
+    _renderer: BladeRenderer | None = None
 
     def __init__(
         self,
@@ -173,6 +174,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         self._steps = task.steps
         self._elapsed = 0
         self._generators: list[np.random.Generator] | None = None
+        self.close()
         self._renderer = None if self.render_mode is None else self._make_renderer()
 
     @property
@@ -236,5 +238,5 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     def _instant(self, motion: Motion) -> Instant:
         from beamenv.rendering import Instant
 
-        full_scales = motion.observation / self.observation_space.high
-        return Instant(self.state, motion.volts, full_scales, float(motion.cost_increment))
+        reading = motion.observation / self.plant.sensor_full_scale if self.task.physical_units else motion.observation
+        return Instant(self.state, motion.volts, reading, float(motion.cost_increment))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.rendering.palette import PAPER
 
-Colour = str | Sequence[float]
+Colour = str | Sequence[int]
 Points = NDArray[np.float64] | Sequence[Sequence[float]]
 
 WIDTH, HEIGHT = 960, 540
@@ -49,7 +49,7 @@ class Canvas:
         self._background = self._fine.copy()
         self._picture = pygame.Surface((WIDTH, HEIGHT), depth=32)
         self._array = np.empty((HEIGHT, WIDTH, 3), dtype=np.uint8)
-        self._array_surface = pygame.image.frombuffer(self._array, (WIDTH, HEIGHT), "RGB")
+        self._array_surface = pygame.image.frombuffer(self._array.data, (WIDTH, HEIGHT), "RGB")
 
     @property
     def picture(self) -> Any:

@@ -88,6 +88,8 @@ def draw_scale(canvas: Canvas, place: Frame, scale: str, limit: float, title: st
     for left, right, colour in zip(edges[:-1].tolist(), edges[1:].tolist(), colours, strict=True):
         canvas.polygon([(left, place.top), (right, place.top), (right, bottom), (left, bottom)], colour)
     ends = (place.left, place.left + place.width)
-    canvas.line([(x, y) for y, x in ((place.top, ends[0]), (place.top, ends[1]), (bottom, ends[1]), (bottom, ends[0]))], QUIET, 0.5, True)
+    canvas.line(
+        [(x, y) for y, x in ((place.top, ends[0]), (place.top, ends[1]), (bottom, ends[1]), (bottom, ends[0]))], QUIET, 0.5, True
+    )
     for share in QUARTERS.tolist():
         canvas.write(f"{limit * (2.0 * share - 1.0):g}", ends[0] + share * place.width, bottom + 10.0, QUIET, "tick", anchor=0.5)

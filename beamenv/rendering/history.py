@@ -40,13 +40,13 @@ class History:
         """Start an episode."""
         self._instants.clear()
         self._costs.clear()
-        self._instants.append(first)
+        self._instants.append(_copied(first))
         self._costs.append(0.0)
         self._steps = 0
 
     def record(self, instant: Instant) -> None:
         """Take down the next instant."""
-        self._instants.append(instant)
+        self._instants.append(_copied(instant))
         self._costs.append(self._costs[-1] + instant.cost_increment)
         self._steps += 1
 
@@ -57,13 +57,13 @@ class History:
 
     @property
     def time(self) -> float:
-        """s since the episode began."""
+        """Time since the episode began, s."""
         return self._steps * self._interval
 
     @property
     def ages(self) -> Array:
         """(k,) s: how long ago each instant was, negative, oldest first; the last is 0."""
-        return self._interval * np.arange(1 - len(self._instants), 1)
+        return self._interval * np.arange(1 - len(self._instants), 1, dtype=np.float64)
 
     @property
     def states(self) -> Array:
@@ -79,3 +79,8 @@ class History:
     def costs(self) -> Array:
         """(k,), J s: the cost of the episode up to each instant."""
         return np.array(self._costs)
+
+
+def _copied(instant: Instant) -> Instant:
+    """An instant that lives on whatever becomes of the arrays it was told in."""
+    return Instant(instant.state.copy(), instant.volts.copy(), instant.reading.copy(), instant.cost_increment)

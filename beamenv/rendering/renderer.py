@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from beamenv.simulation import reward_scale
 
 Array = NDArray[np.float64]
 
-TIP = Chart("tip displacement, µm", Frame(682.0, 44.0, 262.0, 118.0), -1.0, 1.0)
+TIP = Chart("tip displacement", Frame(682.0, 44.0, 262.0, 118.0), -1.0, 1.0)
 VOLTAGES = Chart("voltage, V", Frame(682.0, 208.0, 262.0, 118.0), -1.0, 1.0)
 COST = Chart("running cost J, mJ s", Frame(682.0, 372.0, 262.0, 118.0), 0.0, 1.0)
 VOLTAGE_KEY, OUTPUT_KEY = Frame(26.0, 494.0, 240.0, 9.0), Frame(346.0, 494.0, 240.0, 9.0)
@@ -46,7 +47,10 @@ class BladeRenderer:
         self._limit = float(np.abs(plant.voltage_limits).max())
         self._colours = line_colours(plant.B.shape[1])
         usual_cost = 0.1 * WINDOW / config.control_interval * reward_scale(plant)
-        self._least = TIP.up_to(round_above(1e6 * self._scene.solid.reference_deflection)), COST.up_to(round_above(1e3 * usual_cost))
+        usual_tip = self._scene.solid.reference_deflection
+        unit, self._per_metre, self._digits = ("mm", 1e3, 1) if usual_tip > 1e-3 else ("µm", 1e6, 0)
+        tip = replace(TIP, title=f"{TIP.title}, {unit}").up_to(round_above(self._per_metre * usual_tip))
+        self._least = tip, COST.up_to(round_above(1e3 * usual_cost))
         self._history = History(config.control_interval)
         self._stride = -(-(round(WINDOW / config.control_interval) + 1) // CURVE_POINTS)
         self._canvas = Canvas()
@@ -99,7 +103,9 @@ class BladeRenderer:
         canvas.clear()
         magnified, speed = self._scene.solid.magnification, self._config.speed
         canvas.write(f"deflection × {magnified:,.0f}   ·   Ω = {speed:g} rad/s   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
-        canvas.write("actuators lie in the top wall; sensors lie in the bottom wall and are drawn below it", 24.0, 68.0, QUIET, "note")
+        canvas.write(
+            "actuators lie in the top wall; sensors lie in the bottom wall and are drawn below it", 24.0, 68.0, QUIET, "note"
+        )
         draw_scale(canvas, VOLTAGE_KEY, VOLTAGE_SCALE, self._limit, "actuator voltage, V")
         draw_scale(canvas, OUTPUT_KEY, OUTPUT_SCALE, 1.0, "sensor output, full scale")
         for chart in (self._tip, self._voltages, self._cost):
@@ -111,14 +117,14 @@ class BladeRenderer:
         history, last = self._history, self._history.last
         newest_first = slice(None, None, -self._stride)
         ages, volts, costs = history.ages[newest_first], history.volts[newest_first], 1e3 * history.costs[newest_first, None]
-        tip = 1e6 * history.states[newest_first] @ self.operator[:2, -1].T
+        tip = self._per_metre * history.states[newest_first] @ self.operator[:2, -1].T
         charts = self._tip.reaching(1.02 * np.abs(tip).max()), self._cost.reaching(1.02 * costs[0, 0])
         if charts != (self._tip, self._cost):
             self._lay_out(*charts)
         volts_now = np.broadcast_to(last.volts, (self._actuators,))  # ganged actuators share one voltage
         self._scene.draw(self._canvas, self.operator @ last.state, volts_now / self._limit, last.reading)
-        lag, flap = tip[0]
-        self._tip.draw(self._canvas, ages, tip, [LAG, FLAP], [f"lag {lag:+.0f}", f"flap {flap:+.0f}"])
+        labels = [f"{name} {value:+.{self._digits}f}" for name, value in zip(("lag", "flap"), tip[0], strict=True)]
+        self._tip.draw(self._canvas, ages, tip, [LAG, FLAP], labels)
         self._voltages.draw(self._canvas, ages, volts, self._colours, [f"{k + 1}" for k in range(len(self._colours))])
         self._cost.draw(self._canvas, ages, costs, [INK], [f"{costs[0, 0]:.3g}"])
         self._canvas.open(CLOCK)

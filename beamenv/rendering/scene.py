@@ -34,6 +34,8 @@ HUB = np.array([40.0, 49.0, 59.0]), np.array([92.0, 104.0, 117.0])
 """Colours in the shade and in the light."""
 DARK = 0.7
 """Values of the colour scales beyond which white letters are read better."""
+NARROW = 8.0
+"""Height, px, below which a patch has no room for its number."""
 
 
 class Scene:
@@ -93,8 +95,9 @@ class Scene:
         for k in np.flatnonzero(faces_camera(corners)).tolist():
             canvas.polygon(corners[k], colours[k])
             canvas.line(corners[k], INK, closed=True)
-            x, y = corners[k].mean(axis=0).tolist()
-            canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
+            if np.linalg.norm(corners[k, 3] - corners[k, 0]) > NARROW:
+                x, y = corners[k].mean(axis=0).tolist()
+                canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
 
     def _draw_body(self, canvas: Canvas, faces: Array, colours: tuple[Array, Array], ribs: Container[int] = ()) -> None:
         """Faces (k, 4, 3), the farthest first, those turned away left out; ``ribs`` are stations with a line across."""
@@ -105,12 +108,12 @@ class Scene:
         for face, colour in zip(seen.tolist(), shades, strict=True):
             canvas.polygon(corners[face], colour)
             if face // len(CORNERS) + 1 in ribs:
-                canvas.line(corners[face, 1:3], [RIB * part for part in colour])
+                canvas.line(corners[face, 1:3], [round(RIB * part) for part in colour])
 
-    def _shades(self, faces: Array, shade: Array, lit: Array) -> list[list[float]]:
+    def _shades(self, faces: Array, shade: Array, lit: Array) -> list[list[int]]:
         normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
         brightness = 0.5 + 0.5 * (normals @ self._light) / np.linalg.norm(normals, axis=-1)
-        colours: list[list[float]] = (shade + brightness[:, None] * (lit - shade)).tolist()
+        colours: list[list[int]] = np.rint(shade + brightness[:, None] * (lit - shade)).astype(int).tolist()
         return colours
 
 

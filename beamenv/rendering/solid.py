@@ -94,7 +94,9 @@ class BladeSolid:
 
 
 def quadrilaterals(walls: Array) -> Array:
-    """(4 (stations − 1), 4, 3): the faces of the walls between stations, counter-clockwise from outside, and the tip's face last."""
+    """(4 (stations − 1) + 1, 4, 3): faces of the walls (stations, 4, 3) between stations and last the face of the tip, each
+    counter-clockwise from outside.
+    """
     following = np.roll(walls, -1, axis=1)
     faces = np.stack([walls[:-1], walls[1:], following[1:], following[:-1]], axis=2)
     return np.concatenate([faces.reshape(-1, 4, 3), walls[-1, ::-1][None]])
