@@ -84,12 +84,12 @@ def _run(
     controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None
 ) -> tuple[Array, Array, Array, Array]:
     """Cost (T, N), tip (T, N, 2), voltages (T, N, m) and failures (T, N) of one episode of each blade, NaN once it is over."""
-    wants_state = getattr(controller, "observes", "observation") == "state"
+    observes = getattr(controller, "observes", "observation")
     observation, memory = _reset(env, seeds, options), None
     begins, running = np.ones(len(seeds), dtype=bool), np.ones(len(seeds), dtype=bool)
     steps: list[tuple[Array, ...]] = []
     while running.any():
-        seen = np.vstack(_attribute(env, "state")) if wants_state else observation
+        seen = _seen(observes, observation, env)
         action, memory = controller.predict(seen, state=memory, episode_start=begins, deterministic=True)
         observation, failed, ended, info = _step(env, action)
         recorded = (info["cost_increment"], info["tip_displacement"], info["volts"], failed)
@@ -98,6 +98,15 @@ def _run(
         begins[:] = False
     cost, tip, voltages, failures = (np.stack(series) for series in zip(*steps, strict=True))
     return cost, tip, voltages, failures
+
+
+def _seen(observes: str, observation: Any, env: Environment) -> Any:
+    """What a controller is shown (N, …): the observation, with the rotor speed (rad/s) behind it, or the true state instead."""
+    if observes == "state":
+        return np.vstack(_attribute(env, "design_state"))
+    if observes == "observation and speed":
+        return np.hstack([observation, np.hstack(_attribute(env, "rotor_speed")).reshape(-1, 1)])
+    return observation
 
 
 def _reset(env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None) -> Any:

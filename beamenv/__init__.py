@@ -1,6 +1,7 @@
 """Vibration control of rotating thin-walled composite blades: structure, patches, plant and Gymnasium environments.
 
-Importing this package registers ``beamenv/RotatingBeam-v0``, single and batched.
+Importing this package registers ``beamenv/RotatingBeam-v0``, single and batched, and for each scenario of the benchmark, say
+"overload", ``beamenv/RotatingBeam-overload-v0``.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
+
+from beamenv.named_scenarios import NAMES as BENCHMARK_SCENARIOS
 
 if TYPE_CHECKING:
     from beamenv.configuration import PRESETS, BladeConfig, blade_config, build_plant
@@ -43,6 +46,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "BENCHMARK_SCENARIOS",
     "ENV_ID",
     "PRESETS",
     "SCENARIOS",
@@ -76,9 +80,16 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
-if ENV_ID not in gymnasium.registry:
-    gymnasium.register(
-        id=ENV_ID,
-        entry_point="beamenv.env:RotatingBeamEnv",
-        vector_entry_point="beamenv.vector_env:RotatingBeamVectorEnv",
-    )
+def _register(env_id: str, **arguments: str) -> None:
+    if env_id not in gymnasium.registry:
+        gymnasium.register(
+            id=env_id,
+            entry_point="beamenv.env:RotatingBeamEnv",
+            vector_entry_point="beamenv.vector_env:RotatingBeamVectorEnv",
+            kwargs=arguments,
+        )
+
+
+_register(ENV_ID)
+for _name in BENCHMARK_SCENARIOS:
+    _register(f"beamenv/RotatingBeam-{_name}-v0", scenario=_name)

@@ -249,8 +249,27 @@ def build_beam(config: BladeConfig) -> RotatingBeam:
 @lru_cache(maxsize=64)
 def build_plant(config: BladeConfig) -> Plant:
     """The reduced plant of a configuration, built once and cached; ``ValueError`` as the parts raise it."""
+    return plant_of(config, build_beam(config))
+
+
+def changed_blade(
+    config: BladeConfig, speed: float, ply_angle: float, modulus: float, mass: float, damping_ratio: float
+) -> BladeConfig:
+    """A blade whose speed, ply angles, moduli and density are those of another times a ratio, with a damping ratio of its own."""
+    material = MATERIALS[config.beam.material] if isinstance(config.beam.material, str) else config.beam.material
+    stiffer = {name: modulus * getattr(material, name) for name in ("E1", "E2", "G12", "G13", "G23")}
+    beam = replace(
+        config.beam,
+        material=replace(material, density=mass * material.density, **stiffer),
+        ply_angles_deg=tuple((wall, tuple(ply_angle * angle for angle in angles)) for wall, angles in config.beam.ply_angles_deg),
+    )
+    return replace(config, beam=beam, speed=speed * config.speed, damping_ratio=damping_ratio)
+
+
+def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
+    """The reduced plant of a configuration whose blade has been built."""
     return reduced_plant(
-        build_beam(config),
+        beam,
         config.patches,
         speed=config.speed,
         modes=config.modes,

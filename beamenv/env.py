@@ -169,7 +169,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         self.task = task
         self.action_space = task.action_space()
         self.observation_space = task.observation_space()
-        self._blade = Blades(self.plant, task.scenario, None, task.physical_units)
+        self._blade = Blades(task.bank, task.scenario, None, task.physical_units)
         self._action_shape = (self.plant.B.shape[1],)
         self._steps = task.steps
         self._elapsed = 0
@@ -191,6 +191,16 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     def state(self) -> Array:
         """(n,) the true state, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
         return self._blade.state
+
+    @property
+    def design_state(self) -> Array:
+        """(d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        return self._blade.design_state
+
+    @property
+    def rotor_speed(self) -> Any:
+        """() rad/s: what a tachometer shows now."""
+        return self._blade.speed
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         """Begin an episode; ``options`` may fix its "load" or give its "initial_state" (see the class)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -15,12 +16,12 @@ from beamenv.plant import Plant, sample
 class Operators:
     """What one step needs, fused into one product; arrays of NumPy or of torch.
 
-    With z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
+    One plant for all blades, or one for each: ``fused`` then has their leading axes. With z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
     [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost (s)].
     """
 
     fused: Any
-    """(s, n + p + 2 + s)."""
+    """(s, n + p + 2 + s), or (..., s, n + p + 2 + s) with the blades' own axes."""
     states: int
     outputs: int
 
@@ -36,17 +37,24 @@ class Operators:
         """The same operators with each array passed through ``to_array``, say ``torch.as_tensor``."""
         return replace(self, **{f.name: to_array(getattr(self, f.name)) for f in fields(self) if f.type == "Any"})
 
+    def pick(self, index: Any) -> Operators:
+        """The operators of one plant of several, or of one for each blade."""
+        return replace(self, fused=self.fused[index])
+
 
 def advance(operators: Operators, joined: Any, out: Any = None) -> tuple[Any, Any, Any, Any]:
     """One control interval, exactly.
 
     ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
-    increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., n + m + 2 + n + p + 2) may be given to
-    hold the product, and the first three arrays are then views of it.
+    increment of J over the interval (...,) in J s. With NumPy and one plant, ``out`` (..., n + m + 2 + n + p + 2) may be
+    given to hold the product, and the first three arrays are then views of it.
     """
     n, p = operators.states, operators.outputs
-    product = joined @ operators.fused if out is None else product_into(out, joined, operators.fused)
+    if operators.fused.ndim > 2:
+        product = (joined[..., None, :] @ operators.fused)[..., 0, :]
+    else:
+        product = joined @ operators.fused if out is None else product_into(out, joined, operators.fused)
     increment = row_dot(product[..., n + p + 2 :], joined)
     return product[..., :n], product[..., n : n + p], product[..., n + p : n + p + 2], increment
 
@@ -61,3 +69,8 @@ def row_dot(left: Any, right: Any) -> Any:
     if not isinstance(left, np.ndarray):
         return (left * right).sum(-1)
     return left.dot(right) if left.ndim == 1 else np.einsum("...i,...i->...", left, right)
+
+
+def namespace(values: Any) -> Any:
+    """The module whose functions take the array: NumPy, or torch for its tensors."""
+    return np if isinstance(values, (np.ndarray, np.generic)) else sys.modules["torch"]

@@ -27,7 +27,8 @@ class LoadCases:
 
         d(k) = amplitude · [onset ≤ k < end] · (sin(rate k + phase) if rate > 0 else 1)
 
-    and the blade starts from rest in the static deflection under the uniform line load ``deflection``.
+    and besides, with h = 1, 2, … per revolution of the rotor, Σ cosine_h cos(h revolution k) + sine_h sin(h revolution k). The
+    blade starts from rest in the static deflection under the uniform line load ``deflection``.
     """
 
     case: Integers
@@ -44,6 +45,12 @@ class LoadCases:
     """(N,) rad per control interval; 0 for a load that does not oscillate."""
     phase: Array
     """(N,) rad."""
+    cosine: Array
+    """(N, H, 2), N/m: lag, flap."""
+    sine: Array
+    """(N, H, 2), N/m: lag, flap."""
+    revolution: Array
+    """(N,) rad per control interval: the rotor's."""
     oscillating: Integers = field(init=False, repr=False)
     """Rows with ``rate`` > 0, kept so that sines are evaluated for them alone."""
 
@@ -66,7 +73,20 @@ class LoadCases:
 
     def at(self, step: int | Integers) -> Array:
         """Line loads (…, N, 2) in N/m in interval ``step``, an integer or an array that broadcasts against (N,)."""
-        return self.amplitude * self.gain(step)[..., None]
+        load = self.amplitude * self.gain(step)[..., None]
+        return load + self.of_rotor(step) if self.has_harmonics else load
+
+    @property
+    def has_harmonics(self) -> bool:
+        """Whether the rotor's harmonics act."""
+        return self.cosine.shape[1] > 0
+
+    def of_rotor(self, step: int | Integers) -> Array:
+        """The rotor's harmonics (…, N, 2) in N/m in interval ``step``."""
+        orders = np.arange(1, self.cosine.shape[1] + 1)
+        angle = orders * (self.revolution * step)[..., None]
+        products = (np.einsum("...nh,nhk->...nk", f(angle), part) for f, part in ((np.cos, self.cosine), (np.sin, self.sine)))
+        return np.asarray(sum(products))
 
     def rows(self, rows: Integers) -> LoadCases:
         """The load cases of some of the blades, in the order given."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.plant import Plant
+from beamenv.bank import Bank
 from beamenv.scenarios import Scenario
 from beamenv.simulation import Blades, Generators, Motion, Rows
 
@@ -15,24 +15,34 @@ Array = NDArray[np.float64]
 
 
 class MixedBlades:
-    """N blades, blade k of ``plants[k]``, with the interface of ``Blades``; the plants have equally many states and patches.
+    """N blades, blade k of ``banks[k]``, with the interface of ``Blades``; their plants have equally many states and patches.
 
-    Blades of the same plant object are advanced together.
+    Blades of the same bank object are advanced together.
     """
 
-    def __init__(self, plants: Sequence[Plant], scenario: Scenario, physical_units: bool = False) -> None:
-        self.count = len(plants)
-        distinct = {id(plant): plant for plant in plants}
-        kind = np.array([list(distinct).index(id(plant)) for plant in plants])
+    def __init__(self, banks: Sequence[Bank], scenario: Scenario, physical_units: bool = False) -> None:
+        self.count = len(banks)
+        distinct = {id(bank): bank for bank in banks}
+        kind = np.array([list(distinct).index(id(bank)) for bank in banks])
         self._rows: list[Rows] = [np.flatnonzero(kind == k) for k in range(len(distinct))]
         self._groups = [
-            Blades(plant, scenario, len(rows), physical_units) for plant, rows in zip(distinct.values(), self._rows, strict=True)
+            Blades(bank, scenario, len(rows), physical_units) for bank, rows in zip(distinct.values(), self._rows, strict=True)
         ]
 
     @property
     def state(self) -> Array:
         """(N, n) true states in energy coordinates."""
         return _together([blades.state for blades in self._groups], self._rows)
+
+    @property
+    def design_state(self) -> Array:
+        """(N, d) true states in the design plants' coordinates."""
+        return _together([blades.design_state for blades in self._groups], self._rows)
+
+    @property
+    def speed(self) -> Array:
+        """(N,) rad/s."""
+        return _together([blades.speed for blades in self._groups], self._rows)
 
     def begin(
         self,

@@ -10,7 +10,7 @@ with u the actuator voltages (V), d the uniform line loads in lag and flap (N/m)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -150,3 +150,23 @@ def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
         sensor_noise=plant.sensor_noise / interval,
         interval=interval,
     )
+
+
+def normalised(plant: Plant) -> Plant:
+    """The plant as a controller meets it: voltages in units of the drive limit, currents in units of sensor full scale."""
+    drive, full_scale = drive_limit(plant), plant.sensor_full_scale
+    return replace(
+        plant,
+        B=plant.B * drive,
+        C=plant.C / full_scale[:, None],
+        D=plant.D * drive / full_scale[:, None],
+        input_weight=plant.input_weight * np.outer(drive, drive),
+        sensor_noise=plant.sensor_noise / np.outer(full_scale, full_scale),
+        voltage_limits=plant.voltage_limits / drive,
+        sensor_full_scale=np.ones_like(full_scale),
+    )
+
+
+def drive_limit(plant: Plant) -> Array:
+    """(m,) V: the voltage an action of 1 stands for, the larger magnitude of the two limits."""
+    return np.abs(plant.voltage_limits).max(axis=0)

@@ -1,19 +1,31 @@
-"""Scenarios: from what the load case of an episode is drawn, and which noises are on."""
+"""Scenarios: from what the load case of an episode is drawn, which noises are on, and what is wrong with the blade.
+
+Those with a name are files in ``named_scenarios``: a TOML file put there is a scenario, and an environment id, of its name.
+"""
 
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv import named_scenarios
 from beamenv.loads import CASES, NEVER, LoadCases
+from beamenv.named_scenarios import NAMES
 from beamenv.plant import Plant
+from beamenv.troubles import Acquisition, Drive, Failures, PlantVariation, Range, Rotor, checked_range
 
-Range = tuple[float, float]
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 DRAWS = 7
 """Uniform numbers one load case takes, whatever the case: paired seeds stay paired when a scenario is altered."""
@@ -54,6 +66,12 @@ class Scenario:
     """Whether the plant's white line loads act."""
     sensor_noise: bool = True
     """Whether the plant's sensor noise is added to each reading."""
+    plants: PlantVariation = field(default_factory=PlantVariation)
+    """How the true plant differs from the design's."""
+    drive: Drive = field(default_factory=Drive)
+    acquisition: Acquisition = field(default_factory=Acquisition)
+    failures: Failures = field(default_factory=Failures)
+    rotor: Rotor = field(default_factory=Rotor)
 
     def __post_init__(self) -> None:
         for name in CASES[:-1]:
@@ -61,7 +79,7 @@ class Scenario:
         if sum(self.shares) > 1.0 + 1e-9:
             raise ValueError(f"scenario: the shares {CASES[:-1]} are {self.shares}, but must not add up to more than 1.")
         for name, (least, most) in _LIMITS.items():
-            object.__setattr__(self, name, _checked_range(name, getattr(self, name), least, most))
+            object.__setattr__(self, name, checked_range(name, getattr(self, name), least, most))
         for name in ("white_load", "sensor_noise"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"scenario: {name} is {getattr(self, name)!r}, but must be true or false.")
@@ -73,7 +91,19 @@ class Scenario:
 
     def to_dict(self) -> dict[str, Any]:
         """A dictionary that JSON can hold; ``scenario`` takes it back."""
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+        return _with_lists(asdict(self))
+
+    @property
+    def imperfect(self) -> bool:
+        """Whether there is more between controller and patches than saturation and noise."""
+        faulty = self.failures.dead_actuators or self.failures.faulty_sensors or self.acquisition.dropout
+        return bool(faulty or self.drive.hysteresis or self.drive.delay != (0, 0))
+
+
+def _with_lists(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _with_lists(each) for key, each in value.items()}
+    return [_with_lists(each) for each in value] if isinstance(value, tuple) else value
 
 
 _LIMITS = {
@@ -92,14 +122,20 @@ def _check_share(name: str, value: Any) -> None:
         raise ValueError(f"scenario: {name} is {value!r}, but must be a share from 0 to 1.")
 
 
-def _checked_range(name: str, value: Any, least: float, most: float) -> Range:
-    """The range as two floats; a single number means both ends."""
-    ends = value if isinstance(value, Sequence) and not isinstance(value, str) else (value, value)
-    numeric = all(isinstance(end, (int, float, np.number)) and not isinstance(end, bool) for end in ends)
-    if len(ends) != 2 or not numeric or not all(math.isfinite(end) and least <= end <= most for end in ends) or ends[0] > ends[1]:
-        bound = "" if least == -math.inf else f" not below {least:g}"
-        raise ValueError(f"scenario: {name} is {value!r}, but must be a number or a range [low, high] of finite numbers{bound}.")
-    return float(ends[0]), float(ends[1])
+def _changed(base: Any, given: Mapping[str, Any], table: str = "") -> Any:
+    """The scenario, or one of its tables, with the given fields changed; a table's fields change one by one."""
+    known = [each.name for each in fields(base)]
+    if unknown := sorted(set(given) - set(known)):
+        raise ValueError(f"scenario has no field {table + unknown[0]!r}: its fields are {', '.join(table + name for name in known)}.")
+    changes = {}
+    for name, value in given.items():
+        current = getattr(base, name)
+        if is_dataclass(current) and not isinstance(value, type(current)):
+            if not isinstance(value, Mapping):
+                raise ValueError(f"scenario: {name} is {value!r}, but must be a table of fields.")
+            value = _changed(current, value, f"{name}.")
+        changes[name] = value
+    return replace(base, **changes)
 
 
 _ALONE = dict.fromkeys(CASES[:-1], 0.0)
@@ -110,13 +146,12 @@ SCENARIOS: dict[str, Scenario] = {
     "quiet": Scenario(**_ALONE, white_load=False, sensor_noise=False),  # type: ignore[arg-type]
 }
 """Named scenarios: all four load cases in turn; each one alone; white load and sensor noise only (what an LQG is
-designed for); nothing at all."""
-
+designed for); nothing at all; and the benchmark's, a file each."""
 
 def scenario(given: Scenario | Mapping[str, Any] | str | None = None) -> Scenario:
-    """The scenario meant by a name in ``SCENARIOS``, by a dictionary of fields, or by itself; None is "default".
+    """The scenario meant by a name in ``SCENARIOS``, the path of a TOML file, a dictionary of fields, or by itself; None is "default".
 
-    A dictionary may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
+    A dictionary or file may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
     or field and for a value out of range.
     """
     if given is None:
@@ -124,21 +159,31 @@ def scenario(given: Scenario | Mapping[str, Any] | str | None = None) -> Scenari
     if isinstance(given, Scenario):
         return given
     if isinstance(given, str):
-        return _named(given)
+        return load_scenario(given) if given.endswith(".toml") else _named(given)
     if not isinstance(given, Mapping):
         raise ValueError(f"scenario is {given!r}, but must be a name, a dictionary or a Scenario.")
     base = _named(given.get("preset", "default"))
-    changes = {name: value for name, value in given.items() if name != "preset"}
-    known = [each.name for each in fields(Scenario)]
-    if unknown := sorted(set(changes) - set(known)):
-        raise ValueError(f"scenario has no field {unknown[0]!r}: its fields are {', '.join(known)}.")
-    return replace(base, **changes)
+    chosen: Scenario = _changed(base, {name: value for name, value in given.items() if name != "preset"})
+    return chosen
+
+
+def load_scenario(path: str | Path) -> Scenario:
+    """The scenario in a TOML file; ``ValueError`` if it cannot be read or holds what no scenario has."""
+    try:
+        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise ValueError(f"scenario file {str(path)!r} cannot be read: {error}.") from None
+    return scenario(content)
 
 
 def _named(name: Any) -> Scenario:
     if name not in SCENARIOS:
-        raise ValueError(f"scenario is {name!r}, but must be one of {', '.join(SCENARIOS)}, or a dictionary of fields.")
+        raise ValueError(f"scenario is {name!r}, but must be one of {', '.join(SCENARIOS)}, a .toml file, or a dictionary of fields.")
     return SCENARIOS[name]
+
+
+for _name in NAMES:
+    SCENARIOS[_name] = scenario(tomllib.loads(files(named_scenarios).joinpath(f"{_name}.toml").read_text(encoding="utf-8")))
 
 
 LOAD_OPTIONS = ("case", "magnitude", "direction_deg", "onset", "duration", "frequency_ratio", "phase_deg")
@@ -164,14 +209,40 @@ def with_load(base: Scenario, load: Mapping[str, Any]) -> Scenario:
 
 
 def draw_load_cases(
-    chosen: Scenario, plant: Plant, generators: np.random.Generator | Sequence[np.random.Generator], count: int
+    chosen: Scenario,
+    plant: Plant,
+    generators: np.random.Generator | Sequence[np.random.Generator],
+    count: int,
+    speeds: NDArray[np.float64] | None = None,
 ) -> LoadCases:
-    """Load cases of ``count`` blades from one generator for all of them, or from a sequence of one for each."""
+    """Load cases of ``count`` blades from one generator for all of them, or from a sequence of one for each.
+
+    ``speeds`` (count,) in rad/s are needed where the rotor's harmonics act.
+    """
+    cases = _load_cases(chosen, plant, draw_uniforms(generators, count, DRAWS))
+    orders = len(chosen.rotor.harmonics)
+    if not orders:
+        return cases
+    assert speeds is not None
+    return _with_harmonics(cases, chosen.rotor, draw_uniforms(generators, count, 3 * orders), speeds * plant.control_interval)
+
+
+def draw_uniforms(
+    generators: np.random.Generator | Sequence[np.random.Generator], count: int, numbers: int
+) -> NDArray[np.float64]:
+    """Uniform numbers (count, numbers) from one generator for all blades, or from a sequence of one for each."""
     if isinstance(generators, np.random.Generator):
-        uniforms = generators.random((count, DRAWS))
-    else:
-        uniforms = np.stack([generator.random(DRAWS) for generator in generators])
-    return _load_cases(chosen, plant, uniforms)
+        return generators.random((count, numbers))
+    return np.stack([generator.random(numbers) for generator in generators])
+
+
+def _with_harmonics(cases: LoadCases, rotor: Rotor, uniforms: NDArray[np.float64], revolution: NDArray[np.float64]) -> LoadCases:
+    share, phase, direction = np.split(uniforms, 3, axis=1)
+    amplitude = np.asarray(rotor.harmonics) * (0.5 + share)
+    angle = 2.0 * np.pi * direction
+    vector = amplitude[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    turn = 2.0 * np.pi * phase[..., None]
+    return replace(cases, cosine=vector * np.cos(turn), sine=vector * np.sin(turn), revolution=revolution)
 
 
 def _load_cases(chosen: Scenario, plant: Plant, uniforms: NDArray[np.float64]) -> LoadCases:
@@ -194,6 +265,9 @@ def _load_cases(chosen: Scenario, plant: Plant, uniforms: NDArray[np.float64]) -
         end=np.where(is_pulse, onset + lasting, NEVER),
         rate=np.where(is_harmonic, rate, 0.0),
         phase=np.radians(_within(chosen.phase_deg, uniforms[:, 6])),
+        cosine=np.zeros((len(case), 0, 2)),
+        sine=np.zeros((len(case), 0, 2)),
+        revolution=np.zeros(len(case)),
     )
 
 

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.disturbances import SeededDisturbances, SharedDisturbances, columns_first, noise_factor, place
+from scipy.special import ndtri
+
+from beamenv.bank import Bank
+from beamenv.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, columns_first, noise_factor, place
+from beamenv.electronics import DRAWS, Faults, SignalMemory, acquire, draw_faults, drive
+from beamenv.hysteresis import PLAYS, prandtl_ishlinskii
 from beamenv.kernel import Operators, advance, product_into, row_dot
 from beamenv.loads import static_deflection
-from beamenv.plant import Plant
+from beamenv.plant import Plant, drive_limit, normalised
 from beamenv.reduction import REFERENCE_LOAD
-from beamenv.scenarios import Scenario, draw_load_cases
+from beamenv.scenarios import Scenario, draw_load_cases, draw_uniforms
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -62,26 +66,6 @@ def reward_scale(plant: Plant) -> float:
     return float(state @ plant.state_weight @ state) * plant.control_interval
 
 
-def normalised(plant: Plant) -> Plant:
-    """The plant as a controller meets it: voltages in units of the drive limit, currents in units of sensor full scale."""
-    drive, full_scale = drive_limit(plant), plant.sensor_full_scale
-    return replace(
-        plant,
-        B=plant.B * drive,
-        C=plant.C / full_scale[:, None],
-        D=plant.D * drive / full_scale[:, None],
-        input_weight=plant.input_weight * np.outer(drive, drive),
-        sensor_noise=plant.sensor_noise / np.outer(full_scale, full_scale),
-        voltage_limits=plant.voltage_limits / drive,
-        sensor_full_scale=np.ones_like(full_scale),
-    )
-
-
-def drive_limit(plant: Plant) -> Array:
-    """(m,) V: the voltage an action of 1 stands for, the larger magnitude of the two limits."""
-    return np.abs(plant.voltage_limits).max(axis=0)
-
-
 def _alike(values: Array) -> Array:
     """One number () in place of equal ones (k,): it broadcasts faster."""
     return np.array(values[0]) if np.all(values == values[0]) else values
@@ -96,49 +80,72 @@ def _shape(count: int | None) -> tuple[int, ...]:
 
 
 class Blades:
-    """A batch of ``count`` blades of one plant, advanced together; ``count=None`` is a blade alone, without a batch axis.
+    """A batch of ``count`` blades, advanced together; ``count=None`` is a blade alone, without a batch axis.
 
-    ``generators`` is one generator for all blades or a sequence of one for each, whichever ``begin`` was first given.
-    With ``physical_units`` actions are volts and readings amperes, else both are normalised.
+    ``plant`` is the one plant of them all, or a bank of plants, of which each episode has one. ``generators`` is one generator
+    for all blades or a sequence of one for each, whichever ``begin`` was first given. With ``physical_units`` actions are volts
+    and readings amperes, else both are normalised.
     """
 
-    def __init__(self, plant: Plant, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
-        self.plant, self.scenario, self.count = plant, scenario, count
-        self._shape = _shape(count)
+    def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
+        self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
+        self.plant, self.scenario, self.count = self.bank.plant, scenario, count
+        self.shape = self._shape = _shape(count)
         self._physical = physical_units
-        self._normalised = normalised(plant)
-        self._operators = Operators.from_plant(self._normalised)
-        self._drive, self._full_scale = _alike(drive_limit(plant)), _alike(plant.sensor_full_scale)
+        self._normalised = normalised(self.plant)
+        self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
-        self._effort_weight = self._normalised.input_weight * plant.control_interval
-        self._reward_per_cost = -1.0 / reward_scale(plant)
-        self._release = static_deflection(plant, np.eye(2))
-        self._safe_energy = _safe_energy(plant)
+        self._reward_per_cost = -1.0 / reward_scale(self.plant)
+        self._safe_energy = _safe_energy(self.bank)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
+        self.electronics = Electronics(self.plant, scenario, count or 1) if scenario.imperfect else None
+        self.index = np.zeros(count or 1, dtype=np.int64)
+        """(N,) place of each blade's plant in the bank."""
         self._lay_out()
 
     def _lay_out(self) -> None:
         n, m = self.plant.B.shape
-        _, self._joined = columns_first(self._shape, n + m + 2)
-        _, self._product = columns_first(self._shape, self._operators.fused.shape[1])
+        n = self.bank.operators.states
+        alone = len(self.bank) == 1
+        width = self.bank.operators.fused.shape[-1]
+        self._joined = columns_first(self._shape, n + m + 2)[1] if alone else np.zeros((*self._shape, n + m + 2))
+        self._product = columns_first(self._shape, width)[1]
         _, self._weighted = columns_first(self._shape, m)
         self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
-        self._next_state = self._product[..., :n]
+        self._gathered: Operators | None = self.bank.operators if alone else None
 
     def __getstate__(self) -> tuple[Any, ...]:
-        return self.plant, self.scenario, self.count, self._physical, self._joined.copy(), self._disturbances
+        moving = self._joined.copy(), self._disturbances, self.electronics, self.index.copy()
+        return self.bank, self.scenario, self.count, self._physical, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
-        *arguments, joined, disturbances = state
+        *arguments, joined, disturbances, electronics, index = state
         self.__init__(*arguments)  # type: ignore[misc]
         self._joined[...] = joined
-        self._disturbances = disturbances
+        self._disturbances, self.electronics, self.index = disturbances, electronics, index
 
     @property
     def state(self) -> Array:
         """(…, n) true states in energy coordinates: ½ xᵀx is the vibration energy in joules."""
         return self._by_blade(self._state)
+
+    @property
+    def design_state(self) -> Array:
+        """(…, d) the true states as the design plant has its own: by displacements and velocities."""
+        if self.bank.to_design is None:
+            raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
+        state = self.state
+        if len(self.bank) == 1:
+            return np.asarray(state @ self.bank.to_design[0])
+        seen = (np.atleast_2d(state)[:, None, :] @ self.bank.to_design[self.index])[:, 0]
+        return np.asarray(seen if self._shape else seen[0])
+
+    @property
+    def speed(self) -> Array:
+        """(…,) rad/s: what a tachometer shows."""
+        speeds = self.bank.speeds[self.index]
+        return speeds if self._shape else speeds[0]
 
     def begin(
         self,
@@ -155,29 +162,49 @@ class Blades:
         if rows is None:
             rows = np.arange(self.count or 1)
             kind = SharedDisturbances if isinstance(generators, np.random.Generator) else SeededDisturbances
-            self._disturbances = kind(noise_factor(self._normalised, scenario), self._shape)
+            turbulence = Turbulence.of(self.plant, scenario)
+            self._disturbances = kind(noise_factor(self._normalised, scenario), self._shape, turbulence)
         assert self._disturbances is not None
         own = generators if isinstance(generators, np.random.Generator) else [generators[row] for row in rows]
-        cases = draw_load_cases(scenario, self.plant, own, len(rows))
+        self._draw_plants_and_faults(rows, own)
+        cases = draw_load_cases(scenario, self.plant, own, len(rows), self.bank.speeds[self.index[rows]])
         noise = self._disturbances.begin(rows, cases, generators)  # type: ignore[arg-type]
-        state = cases.deflection @ self._release
+        state = np.einsum("nk,nkj->nj", cases.deflection, self.bank.release[self.index[rows]])
+        if self.bank.start is not None:
+            state += self.bank.start
         if initial_state is not None:
             state[...] = initial_state
         at = place(rows, self._shape)
         self._joined[at] = 0.0
         self._state[at] = state
-        motion = self._undriven(state, noise)
+        motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
-    def _undriven(self, state: Array, noise: Array) -> Motion:
+    def _draw_plants_and_faults(self, rows: Rows, own: Generators) -> None:
+        """Which plant each blade has, and what is wrong with it; nothing is drawn where a scenario leaves nothing to chance."""
+        drawn = len(self.bank) > 1 and not self.bank.runs
+        uniforms = draw_uniforms(own, len(rows), DRAWS) if drawn or self.electronics is not None else None
+        self.index[rows] = (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn and uniforms is not None else 0
+        if self._shape and drawn:
+            self._gathered = None
+        if self.electronics is not None and uniforms is not None:
+            self.electronics.begin(rows, uniforms)
+
+    def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
         """Motion at the start of an episode, one row for each state (rows, n)."""
         count = len(state)
+        index = self.index[rows]
+        output, noise = np.einsum("ni,nij->nj", state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
+        if self.electronics is None:
+            reading = np.clip(output + noise, -1.0, 1.0)
+        else:
+            reading = self.electronics.first_reading(rows, output, noise)
         return Motion(
-            observation=self._observed(state @ self._normalised.C.T + noise),
+            observation=self._in_units(reading),
             reward=np.zeros(count),
             failed=np.zeros(count, dtype=np.bool_),
             volts=np.zeros((count, self.plant.B.shape[1])),
-            tip_displacement=state @ self.plant.tip_displacement.T,
+            tip_displacement=np.einsum("ni,nij->nj", state, self.bank.tip[index]),
             energy=0.5 * row_dot(state, state),
             effort=np.zeros(count),
             cost_increment=np.zeros(count),
@@ -191,18 +218,21 @@ class Blades:
         assert self._disturbances is not None
         held = actions / self._drive if self._physical else actions
         held = np.maximum(np.minimum(held, self._highest), self._lowest)
-        self._voltages[...] = held.reshape(self._voltages.shape)
+        acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
+        self._voltages[...] = acting.reshape(self._voltages.shape)
         self._disturbances.loads(self._loads)
-        _, reading, tip, increment = advance(self._operators, self._joined, out=self._product)
-        self._state[...] = self._next_state
-        reading += self._disturbances.next(generators, resting)  # type: ignore[arg-type]
+        operators = self._operators()
+        out = self._product if operators.fused.ndim == 2 and len(self.bank) == 1 else None
+        following, reading, tip, increment = advance(operators, self._joined, out=out)
+        self._state[...] = following
+        noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = 0.5 * row_dot(self._state, self._state)
-        weighted = product_into(self._weighted, self._voltages, self._effort_weight)
-        effort = row_dot(weighted, self._voltages)
+        effort = self._effort()
+        self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
         return Motion(
-            self._observed(self._by_blade(reading)),
+            self._observed(reading, noise),
             increment * self._reward_per_cost,
             self._failed(energy),
             held * self._drive,
@@ -212,29 +242,116 @@ class Blades:
             increment,
         )
 
+    def elapse(self) -> None:
+        """One control interval later: where plants follow one another, the next is on."""
+        if self.bank.runs:
+            self.index = np.minimum(self.index + 1, len(self.bank) - 1)
+
+    @property
+    def disturbances(self) -> SharedDisturbances | SeededDisturbances:
+        """Loads and noise, from the first ``begin`` on."""
+        assert self._disturbances is not None
+        return self._disturbances
+
+    def _operators(self) -> Operators:
+        """One plant's operators for the whole batch where all blades have the same now, else gathered blade by blade."""
+        if self._gathered is not None:
+            return self._gathered
+        if self.bank.runs or not self._shape:
+            first = self.index[0]
+            if (self.index == first).all():
+                return self.bank.operators.pick(first)
+            return self.bank.operators.pick(self.index.reshape(self._shape))
+        self._gathered = self.bank.operators.pick(self.index.reshape(self._shape))
+        return self._gathered
+
+    def _effort(self) -> Array:
+        if len(self.bank) == 1:
+            return np.asarray(row_dot(product_into(self._weighted, self._voltages, self.bank.effort_weight[0]), self._voltages))
+        weight = self.bank.effort_weight[self.index.reshape(self._shape)] if self._shape else self.bank.effort_weight[self.index[0]]
+        return np.asarray(row_dot((self._voltages[..., None, :] @ weight)[..., 0, :], self._voltages))
+
     def _by_blade(self, columns: Array) -> Array:
         """A copy (…, columns) of what is laid out in blocks."""
         return np.array(columns, order="C").reshape(self.count or 1, -1) if self._shape else columns.copy()
 
-    def _observed(self, reading: Array) -> Array:
-        """Readings (…, p) in full scales, as the data acquisition gives them; changed in place."""
+    def _observed(self, output: Array, noise: Array) -> Array:
+        """Readings (…, p) as the data acquisition gives them, in full scales or in amperes."""
+        if self.electronics is not None:
+            flat = self.electronics.acquire(np.atleast_2d(self._by_blade(output)), np.atleast_2d(self._by_blade(noise)))
+            return self._in_units(flat if self._shape else flat[0])
+        output += noise[..., : output.shape[-1]]
+        reading = self._by_blade(output)
         np.minimum(reading, _FULL, out=reading)
         np.maximum(reading, _MINUS_FULL, out=reading)
-        if self._physical:
-            reading *= self._full_scale
-        return reading
+        return self._in_units(reading)
+
+    def _in_units(self, reading: Array) -> Array:
+        return reading * self._full_scale if self._physical else reading
 
     def _failed(self, energy: Array) -> NDArray[np.bool_]:
         """|cᵀx| ≤ ‖c‖‖x‖: only a blade with enough energy can have failed, and only then are its strains worked out."""
         failed = np.zeros(energy.shape, dtype=np.bool_)
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either
-            strain = np.abs(self._by_blade(self._state) @ self.plant.strain.T).max(axis=-1)
-            failed[...] = ~(strain <= FAILURE_STRAIN)
+            rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
+            state = np.atleast_2d(self.state)[rows]
+            strain = np.abs(np.einsum("nki,ni->nk", self.bank.strain[self.index[rows]], state)).max(axis=-1)
+            np.atleast_1d(failed)[rows] = ~(strain <= FAILURE_STRAIN)
         return failed
 
 
-def _safe_energy(plant: Plant) -> float:
+class Electronics:
+    """The electronics of N blades with a scenario's imperfections, and what they remember."""
+
+    def __init__(self, plant: Plant, scenario: Scenario, count: int) -> None:
+        m, p = plant.B.shape[1], len(plant.C)
+        lowest, highest = normalised(plant).voltage_limits
+        troubled = scenario.drive
+        self._scenario = scenario
+        self.hysteresis = (
+            prandtl_ishlinskii(troubled.hysteresis, float(lowest.min()), float(highest.max())) if troubled.hysteresis else None
+        )
+        self.threshold = float(ndtri(scenario.acquisition.dropout)) if scenario.acquisition.dropout else None
+        """A reading is lost where its standard normal is below."""
+        self.faults = Faults(np.zeros(count, dtype=np.int64), np.ones((count, m)), np.ones((count, p)), np.zeros((count, p)))
+        plays = np.zeros((count, m, PLAYS if self.hysteresis else 0))
+        self.memory = SignalMemory(np.zeros((count, troubled.delay[1] + 1, m)), plays, np.zeros((count, p)))
+
+    def begin(self, rows: Rows, uniforms: Array) -> None:
+        """Draw the faults of new episodes and forget the past."""
+        _, m = self.faults.actuator_gain.shape
+        _, p = self.faults.sensor_gain.shape
+        self.faults = self.faults.replace(rows, draw_faults(self._scenario.failures, self._scenario.drive.delay, uniforms, m, p))
+        self.memory = SignalMemory(*(part.copy() for part in self.memory))
+        for part in self.memory:
+            part[rows] = 0.0
+
+    def first_reading(self, rows: Rows, output: Array, noise: Array) -> Array:
+        """Readings (rows, p) at the start of episodes: none is lost."""
+        chosen = Faults(*(part[rows] for part in (self.faults.delay, self.faults.actuator_gain, *self._sensors)))
+        readings, _ = acquire(chosen, self.memory, output, noise, None)
+        self.memory.readings[rows] = readings
+        return np.asarray(readings)
+
+    @property
+    def _sensors(self) -> tuple[Array, Array]:
+        return self.faults.sensor_gain, self.faults.sensor_bias
+
+    def drive(self, held: Array) -> Array:
+        """Voltages (N, m) that act, from those held."""
+        acting, self.memory = drive(self.faults, self.hysteresis, self.memory, held)
+        return np.asarray(acting)
+
+    def acquire(self, output: Array, disturbance: Array) -> Array:
+        """Readings (N, p) from outputs (N, p) and [noise | lost | …] (N, c)."""
+        p = output.shape[1]
+        lost = None if self.threshold is None else disturbance[:, p : 2 * p] < self.threshold
+        readings, self.memory = acquire(self.faults, self.memory, output, disturbance[:, :p], lost)
+        return np.array(readings)
+
+
+def _safe_energy(bank: Bank) -> float:
     """Vibration energy, J, below which no state can strain the blade beyond ``FAILURE_STRAIN``."""
-    steepest = float(np.sqrt((plant.strain**2).sum(axis=-1)).max(initial=0.0))
+    steepest = float(np.sqrt((bank.strain**2).sum(axis=-1)).max(initial=0.0))
     return np.inf if steepest == 0.0 else 0.5 * (FAILURE_STRAIN / steepest) ** 2

@@ -11,6 +11,7 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
+from beamenv.bank import Bank, build_bank
 from beamenv.configuration import BladeConfig, blade_config, build_plant
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario, scenario, with_load
@@ -47,6 +48,11 @@ class Task:
         """The plant that controllers are designed for; the true one unless said otherwise."""
         return build_plant(self.design_config)
 
+    @property
+    def bank(self) -> Bank:
+        """The true plants that episodes draw from."""
+        return build_bank(self.config, self.design_config, self.scenario.plants, self.steps)
+
     def action_space(self) -> Box:
         """Voltages, normalised or in V."""
         lowest, highest = self.plant.voltage_limits
@@ -77,13 +83,24 @@ def resolve_task(
         )
     if not isinstance(physical_units, (bool, np.bool_)):
         raise ValueError(f"physical_units is {physical_units!r}, but must be True or False.")
+    chosen = scenario(scenario_argument)
+    config = _in_scenario(config, chosen, chosen.plants.modes)
+    own = config if design is None else _design_config(preset, speed, design)
+    designed = _in_scenario(own, chosen, chosen.plants.design_modes)
     return Task(
         config=config,
-        design_config=config if design is None else _same_electronics(_design_config(preset, speed, design), config),
-        scenario=scenario(scenario_argument),
+        design_config=designed if designed == config else _same_electronics(designed, config),
+        scenario=chosen,
         steps=round(duration / interval),
         physical_units=bool(physical_units),
     )
+
+
+def _in_scenario(config: BladeConfig, chosen: Scenario, modes: int | None) -> BladeConfig:
+    """The blade with the drive and the number of modes that a scenario gives it."""
+    limits = chosen.drive.voltage_limits
+    config = config if limits is None else replace(config, voltage_limits=limits)
+    return config if modes is None else replace(config, modes=modes)
 
 
 def _design_config(preset: str, speed: float | None, design: BladeConfig | Mapping[str, Any] | str) -> BladeConfig:

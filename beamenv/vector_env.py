@@ -103,9 +103,9 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self._blades: Blades | MixedBlades
         if len(tasks) == 1:
-            self._blades = Blades(self.plant, self.task.scenario, self.num_envs, self.task.physical_units)
+            self._blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units)
         else:
-            self._blades = MixedBlades([task.plant for task in tasks], self.task.scenario, self.task.physical_units)
+            self._blades = MixedBlades([task.bank for task in tasks], self.task.scenario, self.task.physical_units)
         self._actions_shape = (self.num_envs, *self.single_action_space.shape)
         self._steps = min(self.task.steps, self._time_limit)
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
@@ -126,6 +126,16 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def state(self) -> Array:
         """(N, n) the true states, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
         return self._blades.state
+
+    @property
+    def design_state(self) -> Array:
+        """(N, d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        return self._blades.design_state
+
+    @property
+    def rotor_speed(self) -> Any:
+        """(N,) rad/s: what a tachometer shows now."""
+        return self._blades.speed
 
     @property
     def spec(self) -> EnvSpec | None:

@@ -12,8 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.plant import Plant
-from beamenv.simulation import drive_limit
+from beamenv.plant import Plant, drive_limit
 
 Array = NDArray[np.floating[Any]]
 

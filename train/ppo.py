@@ -13,8 +13,7 @@ import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
-from beamenv.plant import Plant
-from beamenv.simulation import normalised
+from beamenv.plant import Plant, normalised
 from train.asymmetric import AsymmetricPolicy
 from train.policies import HistoryPolicy
 from train.training import Progress, Report, uncontrolled_cost
@@ -110,7 +109,7 @@ class Clock(BaseCallback):
         super().__init__()
         task = envs.blades.task
         self._budget, self._report, self._steps = budget, report, task.steps
-        self._reference = uncontrolled_cost(task.plant, task.scenario, task.steps)
+        self._reference = uncontrolled_cost(task)
         self._begin = self._cost = 0.0
         self._envs, self._held = envs, envs.held
 

@@ -78,11 +78,11 @@ class RotatingBeam:
     def matrices(self) -> BeamMatrices:
         """M, K_e, K_Ω, G₁: assembled once, good at any speed."""
         edges = [edge for inlay in self.inlays for edge in (inlay.start, inlay.start + inlay.length)]
-        stations = Stations.between(self._breakpoints(edges), self.terms + EXTRA_STATIONS)
+        stations = Stations.between(self.breakpoints(edges), self.terms + EXTRA_STATIONS)
         walls = self.walls_at(stations.z)
         return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
 
-    def _breakpoints(self, edges: list[float]) -> Array:
+    def breakpoints(self, edges: list[float]) -> Array:
         """Ascending span coordinates of root, tip and the given edges, without repetition."""
         ends = np.unique(np.clip([0.0, *edges, self.length], 0.0, self.length))
         return ends[np.append(True, np.diff(ends) > 1e-9 * self.length)]
