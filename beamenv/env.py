@@ -243,10 +243,18 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     def _make_renderer(self) -> BladeRenderer:
         from beamenv.rendering import BladeRenderer
 
-        return BladeRenderer(self.task.config, self.metadata["render_fps"] if self.render_mode == "human" else None)
+        return BladeRenderer(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)
 
     def _instant(self, motion: Motion) -> Instant:
         from beamenv.rendering import Instant
 
         reading = motion.observation / self.plant.sensor_full_scale if self.task.physical_units else motion.observation
-        return Instant(self.state, motion.volts, reading, float(motion.cost_increment))
+        return Instant(
+            state=self.state,
+            plant=int(self._blade.index[0]),
+            speed=float(self.rotor_speed),
+            tip_displacement=motion.tip_displacement,
+            volts=motion.volts,
+            reading=reading,
+            cost_increment=float(motion.cost_increment),
+        )

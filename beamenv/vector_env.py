@@ -167,7 +167,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._over = np.arange(0)
         motion = self._blades.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._pictures is not None:
-            self._pictures.begin(self.state, motion)
+            self._pictures.begin(self._blades, motion)
         return motion.observation, _masked(information(motion))
 
     def _seed(self, seed: int | Sequence[int] | None) -> None:
@@ -192,7 +192,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             truncated[resting] = False
             self._begin(resting, motion)
         if self._pictures is not None:
-            self._pictures.record(self.state, motion, begun=resting)
+            self._pictures.record(self._blades, motion, begun=resting)
         over = motion.failed | truncated
         info = information(motion)
         if over.any():
@@ -224,7 +224,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         over[rows] = True
         self._begin(rows, motion)
         if self._pictures is not None:
-            self._pictures.begin(self.state, motion, rows)
+            self._pictures.begin(self._blades, motion, rows)
         info = _masked(information(motion))
         info.update(final_obs=final_obs, _final_obs=over, final_info=_masked(final, over), _final_info=over.copy())
         return motion.observation, reward, terminated, truncated, info
@@ -241,8 +241,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def _make_pictures(self, tasks: Sequence[Task]) -> BatchRenderer:
         from beamenv.rendering import BatchRenderer
 
-        configs = [tasks[row % len(tasks)].config for row in self._drawn]
-        return BatchRenderer(dict(zip(self._drawn, configs, strict=True)), self.task.observation_space().high)
+        drawn = {row: tasks[row % len(tasks)] for row in self._drawn}
+        return BatchRenderer(drawn, self.task.observation_space().high)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Nothing is open; but a closed environment must be reset before it is stepped."""

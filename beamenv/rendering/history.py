@@ -18,7 +18,13 @@ class Instant(NamedTuple):
     """One blade at the end of one control interval."""
 
     state: Array
-    """(n,) true state in energy coordinates."""
+    """(n,) true state, in energy coordinates of its plant."""
+    plant: int
+    """Place of the plant in the bank."""
+    speed: float
+    """rad/s."""
+    tip_displacement: Array
+    """(2,), m: lag, flap."""
     volts: Array
     """(m,), V, held over the interval."""
     reading: Array
@@ -66,9 +72,9 @@ class History:
         return self._interval * np.arange(1 - len(self._instants), 1, dtype=np.float64)
 
     @property
-    def states(self) -> Array:
-        """(k, n)."""
-        return np.array([instant.state for instant in self._instants])
+    def tips(self) -> Array:
+        """(k, 2), m: lag, flap."""
+        return np.array([instant.tip_displacement for instant in self._instants])
 
     @property
     def volts(self) -> Array:
@@ -83,4 +89,5 @@ class History:
 
 def _copied(instant: Instant) -> Instant:
     """An instant that lives on whatever becomes of the arrays it was told in."""
-    return Instant(instant.state.copy(), instant.volts.copy(), instant.reading.copy(), instant.cost_increment)
+    state, tip, volts, reading = (each.copy() for each in (instant.state, instant.tip_displacement, instant.volts, instant.reading))
+    return instant._replace(state=state, tip_displacement=tip, volts=volts, reading=reading)

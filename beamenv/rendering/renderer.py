@@ -9,14 +9,15 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
-from beamenv.configuration import BladeConfig, build_plant
 from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.charts import Chart, draw_scale, round_above
+from beamenv.rendering.deformation import Deformation
 from beamenv.rendering.history import WINDOW, History, Instant
 from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
 from beamenv.rendering.scene import Scene
 from beamenv.rendering.window import Window
 from beamenv.simulation import reward_scale
+from beamenv.task import Task
 
 Array = NDArray[np.float64]
 
@@ -33,16 +34,15 @@ class BladeRenderer:
     """Draws one blade's episode: ``begin``, then ``record`` after every step, and ``draw`` whenever a picture is wanted.
 
     ``rate`` (1/s) opens a window, which then shows every instant at this rate; None is for pictures as arrays alone.
-    ``operator`` (3, k, n) takes a state to lag, flap and twist at the ``stations`` (k,): exchange it together with the plant.
     Raises DependencyNotInstalled without pygame, which draws, or matplotlib, which lends colour scales and letters.
     """
 
-    def __init__(self, config: BladeConfig, rate: float | None = None) -> None:
+    def __init__(self, task: Task, rate: float | None = None) -> None:
         _check_installed()
-        self._config, self._rate = config, rate
-        plant = build_plant(config)
+        self._task, self._rate = task, rate
+        config, plant = task.config, task.plant
         self._scene = Scene(config)
-        self.operator = self._scene.solid.operator(config)
+        self._deformation = Deformation(task, self._scene.solid.stations)
         self._actuators = len(config.patches.actuator_positions(config.beam.length))
         self._limit = float(np.abs(plant.voltage_limits).max())
         self._colours = line_colours(plant.B.shape[1])
@@ -57,19 +57,14 @@ class BladeRenderer:
         self._window = None if rate is None else Window("beamenv", rate)
         self._lay_out(*self._least)
 
-    @property
-    def stations(self) -> Array:
-        """(k,) m from the root: where the blade's displacement is wanted."""
-        return self._scene.solid.stations
-
     def __getstate__(self) -> tuple[Any, ...]:
-        return self._config, self._rate, self.operator, self._history
+        return self._task, self._rate, self._history
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Surfaces and windows are made anew: they cannot be copied."""
-        config, rate, operator, history = state
-        self.__init__(config, rate)  # type: ignore[misc]
-        self.operator, self._history = operator, history
+        task, rate, history = state
+        self.__init__(task, rate)  # type: ignore[misc]
+        self._history = history
 
     def begin(self, first: Instant) -> None:
         """Start an episode."""
@@ -101,8 +96,8 @@ class BladeRenderer:
         """Draw what seldom changes."""
         canvas, self._tip, self._voltages, self._cost = self._canvas, tip, VOLTAGES.up_to(self._limit), cost
         canvas.clear()
-        magnified, speed = self._scene.solid.magnification, self._config.speed
-        canvas.write(f"deflection × {magnified:,.0f}   ·   Ω = {speed:g} rad/s   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
+        magnified = self._scene.solid.magnification
+        canvas.write(f"deflection × {magnified:,.0f}   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
         canvas.write(
             "actuators lie in the top wall; sensors lie in the bottom wall and are drawn below it", 24.0, 68.0, QUIET, "note"
         )
@@ -117,18 +112,20 @@ class BladeRenderer:
         history, last = self._history, self._history.last
         newest_first = slice(None, None, -self._stride)
         ages, volts, costs = history.ages[newest_first], history.volts[newest_first], 1e3 * history.costs[newest_first, None]
-        tip = self._per_metre * history.states[newest_first] @ self.operator[:2, -1].T
+        tip = self._per_metre * history.tips[newest_first]
         charts = self._tip.reaching(1.02 * np.abs(tip).max()), self._cost.reaching(1.02 * costs[0, 0])
         if charts != (self._tip, self._cost):
             self._lay_out(*charts)
         volts_now = np.broadcast_to(last.volts, (self._actuators,))  # ganged actuators share one voltage
-        self._scene.draw(self._canvas, self.operator @ last.state, volts_now / self._limit, last.reading)
+        self._scene.draw(
+            self._canvas, self._deformation.displacement(last.state, last.plant), volts_now / self._limit, last.reading
+        )
         labels = [f"{name} {value:+.{self._digits}f}" for name, value in zip(("lag", "flap"), tip[0], strict=True)]
         self._tip.draw(self._canvas, ages, tip, [LAG, FLAP], labels)
         self._voltages.draw(self._canvas, ages, volts, self._colours, [f"{k + 1}" for k in range(len(self._colours))])
         self._cost.draw(self._canvas, ages, costs, [INK], [f"{costs[0, 0]:.3g}"])
         self._canvas.open(CLOCK)
-        self._canvas.write(f"t = {1e3 * history.time:.1f} ms", 24.0, 28.0, INK, "title")
+        self._canvas.write(f"t = {1e3 * history.time:.1f} ms    Ω = {last.speed:.0f} rad/s", 24.0, 28.0, INK, "title")
         self._canvas.develop(CLOCK)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import BladeConfig, build_plant, displacement_operator
+from beamenv.configuration import BladeConfig, build_plant
 from beamenv.loads import static_deflection
 from beamenv.reduction import REFERENCE_LOAD
 
@@ -72,10 +72,6 @@ class BladeSolid:
         self._outline = outline
         self._on_top = np.stack([np.hstack([-half, half]), outline[:, :2, 1]], axis=-1)
         self._below = np.stack([np.hstack([half, -half]), outline[:, 2:, 1]], axis=-1)
-
-    def operator(self, config: BladeConfig) -> Array:
-        """(3, stations, n): what takes a state of this configuration's plant to lag, flap (m) and twist (rad) at ``stations``."""
-        return displacement_operator(config, self.stations)
 
     def pose(self, displacement: Array) -> Pose:
         """The blade displaced by lag, flap (m) and twist (rad) at its stations, (3, stations)."""

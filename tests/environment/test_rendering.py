@@ -13,6 +13,7 @@ from gymnasium.utils.env_checker import check_env
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, blade_config, build_plant
+from beamenv.configuration import displacement_operator
 from beamenv.loads import static_deflection
 
 pytest.importorskip("matplotlib")
@@ -44,7 +45,7 @@ def scene_of(picture):
 def patch_colour(env, picture, patch):
     """The commonest colour inside an actuator, which its outline and number do not hide."""
     scene = env._renderer._scene
-    pose = scene.solid.pose(env._renderer.operator @ env.state)
+    pose = scene.solid.pose(env._renderer._deformation.displacement(env.state, 0))
     left, top = scene._camera.project(pose.actuators[patch])[0].min(axis=0).astype(int)
     right, bottom = scene._camera.project(pose.actuators[patch])[0].max(axis=0).astype(int)
     near = picture[top : bottom + 1, left : right + 1].reshape(-1, 3)
@@ -97,9 +98,24 @@ def test_the_drawn_tip_moves_by_the_magnified_tip_displacement():
     config = blade_config()
     plant, solid = build_plant(config), BladeSolid(config)
     state = static_deflection(plant, [3.0, 30.0])
-    rest, bent = (solid.pose(solid.operator(config) @ each).walls.mean(axis=1) for each in (0.0 * state, state))
+    operator = displacement_operator(config, solid.stations)
+    rest, bent = (solid.pose(operator @ each).walls.mean(axis=1) for each in (0.0 * state, state))
     np.testing.assert_allclose((bent - rest)[-1, :2], solid.magnification * plant.tip_displacement @ state, rtol=1e-9)
     np.testing.assert_allclose((bent - rest)[0], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("preset", ["nominal", "spillover", "off-speed", "off-model", "spin-up"])
+def test_the_shape_of_every_plant_of_a_bank_ends_at_its_tip_displacement(preset):
+    few = {"plants": {"bank": 3}} if preset.startswith("off") else {}
+    env = RotatingBeamEnv(render_mode="rgb_array", scenario={"preset": preset, **few}, duration=0.05)
+    assert len(env.task.bank) == {"off-speed": 3, "off-model": 3, "spin-up": 100}.get(preset, 1)
+    for seed in range(2):
+        env.reset(seed=seed)
+        for _ in range(40):
+            _, _, _, _, info = env.step(np.full(4, 0.5))
+        last = env._renderer._history.last
+        shape = env._renderer._deformation.displacement(last.state, last.plant)
+        np.testing.assert_allclose(shape[:2, -1], info["tip_displacement"], rtol=1e-6, atol=1e-12)
 
 
 def test_a_twist_turns_the_section_about_its_axis_by_the_magnified_angle():
@@ -158,11 +174,11 @@ def test_every_actuator_and_sensor_of_every_preset_is_in_the_scene(preset):
 def test_history_keeps_the_last_fifth_of_a_second_and_the_whole_cost():
     history = History(interval=1e-3)
     for k in range(500):
-        instant = Instant(np.full(2, float(k)), np.zeros(1), np.zeros(1), 0.5)
+        instant = Instant(np.zeros(2), 0, 200.0, np.full(2, float(k)), np.zeros(1), np.zeros(1), 0.5)
         history.record(instant) if k else history.begin(instant)
     assert history.time == pytest.approx(0.499)
     assert history.ages[[0, -1]] == pytest.approx([-0.2, 0.0])
-    assert history.states[[0, -1], 0].tolist() == [299.0, 499.0]
+    assert history.tips[[0, -1], 0].tolist() == [299.0, 499.0]
     assert history.costs[-1] == pytest.approx(0.5 * 499)
 
 
@@ -195,8 +211,8 @@ def test_a_copied_environment_draws_on_alone(copied):
 
 def test_a_blade_that_is_no_longer_finite_is_still_drawn():
     env = drawn()
-    renderer = env._renderer
-    renderer.record(Instant(np.full_like(env.state, np.nan), np.zeros(4), np.zeros(4), np.nan))
+    nowhere = np.full_like(env.state, np.nan)
+    env._renderer.record(Instant(nowhere, 0, 200.0, nowhere[:2], np.zeros(4), np.zeros(4), np.nan))
     assert env.render().shape == (540, 960, 3)
 
 
