@@ -8,17 +8,15 @@ import pytest
 import torch
 
 from beamenv.configuration import blade_config, build_plant
-from train.actors import ActorSettings
-from train.gradient import new_actor
+from train.actors import ActorSettings, RecurrentActor
 from train.policies import HistoryPolicy, load_policy, save_policy
 
 
 @pytest.fixture(scope="module")
 def actor():
     torch.manual_seed(3)
-    actor = new_actor(
-        "recurrent", build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)})), ActorSettings(output_gain=3.0)
-    )
+    plant = build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)}))
+    actor = RecurrentActor(plant, ActorSettings(output_gain=3.0), runs=1)
     with torch.no_grad():
         actor.unit.out.bias[0, 0] = torch.tensor([0.3, -0.4, 0.0, 0.1])
     return actor
