@@ -29,7 +29,6 @@ from numpy.typing import NDArray
 from beamenv.bank import Bank, coordinates
 from beamenv.configuration import BladeConfig, build_beam, build_plant
 from beamenv.kernel import Operators
-from beamenv.loads import static_deflection
 from beamenv.plant import Plant, normalised
 from beamenv.reduction import truncate
 from beamenv.structure.base_motion import base_loads
