@@ -1,0 +1,119 @@
+"""True plants beside the design's: what varies does what it must, and every plant is that of its configuration."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from baselines import lqg
+from baselines.stationary import closed_loop_poles
+from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv.bank import build_bank, varied
+from beamenv.configuration import blade_config, build_beam, build_plant, changed_blade
+from beamenv.kernel import Operators
+from beamenv.loads import static_deflection
+from beamenv.plant import normalised
+from beamenv.scenarios import SCENARIOS
+from beamenv.task import resolve_task
+from beamenv.troubles import PlantVariation
+
+CONFIG = blade_config()
+
+
+@pytest.mark.parametrize("name", ["off-speed", "off-model"])
+def test_a_plant_of_a_bank_is_that_of_its_configuration(name):
+    variation = replace(SCENARIOS[name].plants, bank=6)
+    bank = build_bank(CONFIG, CONFIG, variation, 1000)
+    assert len(bank) == 6
+    ranged = replace(CONFIG, sensor_full_scale=float(build_plant(CONFIG).sensor_full_scale[0]))
+    for k, row in enumerate(varied(variation, CONFIG)):
+        config = changed_blade(ranged, *row)
+        plant = build_plant(config)
+        np.testing.assert_array_equal(bank.operators.fused[k], Operators.from_plant(normalised(plant)).fused)
+        np.testing.assert_allclose(bank.release[k], static_deflection(plant, np.eye(2)), rtol=1e-12)
+        np.testing.assert_array_equal(bank.tip[k], plant.tip_displacement.T)
+        assert bank.speeds[k] == config.speed
+        assert plant.control_interval == bank.plant.control_interval
+        np.testing.assert_array_equal(plant.sensor_full_scale, bank.plant.sensor_full_scale)
+
+
+def test_patches_without_mass_and_stiffness_leave_frequencies_to_the_laminate():
+    """ω ~ √(modulus/density) of a blade at rest, for every mode."""
+    bare = replace(CONFIG, speed=0.0, patches=replace(CONFIG.patches, passive=False))
+    nominal = build_plant(bare).natural_frequencies
+    stiffer = build_plant(changed_blade(bare, 1.0, 1.0, 1.21, 1.0, 0.01)).natural_frequencies
+    heavier = build_plant(changed_blade(bare, 1.0, 1.0, 1.0, 1.44, 0.01)).natural_frequencies
+    np.testing.assert_allclose(stiffer / nominal, 1.1, rtol=1e-8)
+    np.testing.assert_allclose(heavier / nominal, 1.0 / 1.2, rtol=1e-8)
+
+
+def test_a_faster_rotor_stiffens_flap_by_southwell():
+    """ω² = ω₀² + s Ω² to first order: the squares at 140, 200 and 260 rad/s lie within 1 % of a straight line over Ω²."""
+    squares = [build_plant(changed_blade(CONFIG, ratio, 1.0, 1.0, 1.0, 0.01)).natural_frequencies[0] ** 2 for ratio in (0.7, 1.0, 1.3)]
+    share = (1.0 - 0.49) / (1.69 - 0.49)
+    assert squares[1] == pytest.approx(squares[0] + share * (squares[2] - squares[0]), rel=0.01)
+    assert squares[2] > squares[0]
+
+
+def test_every_stratum_of_the_latin_hypercube_is_hit_once():
+    variation = replace(SCENARIOS["off-model"].plants, speed_ratio=(0.7, 1.3), bank=64, seed=3)
+    rows = varied(variation, CONFIG)
+    ranges = [(0.7, 1.3), (0.9, 1.1), (0.9, 1.1), (0.9, 1.1)]
+    columns = [(rows[:, k] - low) / (high - low) for k, (low, high) in enumerate(ranges)]
+    columns.append(np.log(rows[:, 4] / 0.003) / np.log(0.02 / 0.003))  # damping on a logarithmic scale
+    for column in columns:
+        assert sorted(np.floor(64 * column).astype(int)) == list(range(64))
+    assert np.abs(np.corrcoef(np.array(columns)) - np.eye(5)).max() < 0.4
+    assert not np.array_equal(rows, varied(replace(variation, seed=4), CONFIG))
+    np.testing.assert_array_equal(rows, varied(variation, CONFIG))
+
+
+def test_a_bank_of_what_does_not_vary_is_one_plant():
+    bank = build_bank(CONFIG, CONFIG, PlantVariation(), 1000)
+    assert len(bank) == 1
+    np.testing.assert_array_equal(bank.operators.fused, Operators.from_plant(normalised(build_plant(CONFIG))).fused)
+    np.testing.assert_allclose(bank.to_design[0], np.eye(22), atol=1e-9)  # its own state
+
+
+def test_the_tachometer_shows_the_speed_of_the_plant_that_moves():
+    envs = RotatingBeamVectorEnv(200, scenario="off-speed")
+    envs.reset(seed=0)
+    assert envs.rotor_speed.min() < 150.0
+    assert envs.rotor_speed.max() > 250.0
+    assert np.all((envs.rotor_speed >= 140.0) & (envs.rotor_speed <= 260.0))
+    assert envs.rotor_speed.mean() == pytest.approx(200.0, abs=4.0 * 35.0 / np.sqrt(200))
+
+
+@pytest.mark.parametrize("name", ["off-speed", "off-model", "spillover", "spin-up"])
+def test_the_design_sees_the_displacements_of_the_true_blade(name):
+    """The tip by the design's coordinates is the true tip, as far as the design's modes can tell."""
+    env = RotatingBeamEnv(scenario={"preset": name, "step": 1.0, "pulse": 0.0, "deflection": 0.0, "harmonic": 0.0, "onset": 0.0})
+    env.reset(seed=5, options={"load": {"case": "step", "magnitude": 30.0, "onset": 0.0}})
+    seen, true = [], []
+    for _ in range(300):
+        *_, info = env.step(np.zeros(4))
+        seen.append(env.design_plant.tip_displacement @ env.design_state)
+        true.append(info["tip_displacement"])
+    assert np.abs(np.array(seen) - true).max() < 0.01 * np.abs(true).max()
+
+
+def spillover():
+    task = resolve_task("thesis", None, None, None, "spillover", 0.5, False)
+    return task.plant, task.design_plant
+
+
+def test_design_and_truth_share_their_first_modes():
+    true, design = spillover()
+    assert (len(true.A), len(design.A)) == (44, 10)
+    np.testing.assert_allclose(design.natural_frequencies, true.natural_frequencies[:5], rtol=1e-9)
+
+
+def test_five_mode_lqg_spills_over_into_the_modes_it_does_not_know():
+    """The sampled loop is stable on the plant it was designed for, and has growing modes beyond the fifth on the true one."""
+    true, design = spillover()
+    assert closed_loop_poles(design, lqg(design)).real.max() < 0.0
+    unstable = closed_loop_poles(true, lqg(design))
+    unstable = unstable[unstable.real > 0.0]
+    assert len(unstable) >= 2
+    assert np.all(np.abs(unstable.imag) > true.natural_frequencies[4])
+    assert closed_loop_poles(true, lqg(true)).real.max() < 0.0
