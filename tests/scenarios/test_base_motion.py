@@ -106,8 +106,10 @@ def point_masses(beam):
         section = np.stack([np.einsum("spkg,k->spg", part, powers) for part in (motion.lag, motion.flap, motion.span)], axis=2)
         rows.append(section @ displaced[:, None])
     size = beam.space.size
-    return np.concatenate([m.ravel() for m in masses]), np.concatenate([p.reshape(-1, 3) for p in places]), np.concatenate(
-        [row.reshape(-1, 3, size) for row in rows]
+    return (
+        np.concatenate([m.ravel() for m in masses]),
+        np.concatenate([p.reshape(-1, 3) for p in places]),
+        np.concatenate([row.reshape(-1, 3, size) for row in rows]),
     )
 
 
