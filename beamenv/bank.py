@@ -77,14 +77,19 @@ class Bank:
         )
 
 
-@lru_cache(maxsize=16)
 def build_bank(config: BladeConfig, design: BladeConfig, variation: PlantVariation, steps: int) -> Bank:
-    """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals."""
-    plant = build_plant(config)
+    """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals; built once and cached."""
     if variation.spin_up is not None:
         from beamenv.spin_up import spin_up_bank
 
         return spin_up_bank(config, design, variation.spin_up, steps)
+    return drawn_bank(config, design, variation)
+
+
+@lru_cache(maxsize=16)
+def drawn_bank(config: BladeConfig, design: BladeConfig, variation: PlantVariation) -> Bank:
+    """The bank that each episode draws its plant from; of one plant where nothing varies."""
+    plant = build_plant(config)
     if not variation.varies:
         return Bank.single(plant, config.speed, seen_from(config, build_beam(config), design))
     ranged = replace(config, sensor_full_scale=float(plant.sensor_full_scale[0]))

@@ -22,6 +22,7 @@ over the interval; coordinates are energy coordinates at every instant.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -29,8 +30,7 @@ from numpy.typing import NDArray
 
 from beamenv.bank import Bank, coordinates
 from beamenv.configuration import BladeConfig, build_beam, build_plant
-from beamenv.kernel import Operators
-from beamenv.plant import Plant, normalised
+from beamenv.plant import Plant
 from beamenv.reduction import truncate
 from beamenv.structure.base_motion import base_loads
 
@@ -139,26 +139,34 @@ def _derivative(coefficients: Array, order: int, duration: float, time: Array) -
     return np.asarray(chebyshev.chebval(2.0 * time / duration - 1.0, derived)).T
 
 
+@lru_cache(maxsize=4)
 def spin_up_bank(config: BladeConfig, design: BladeConfig, speeds: tuple[float, float], steps: int) -> Bank:
-    """One plant for each of ``steps`` control intervals."""
+    """One plant for each of ``steps`` control intervals, built once and cached."""
     reference, interval = build_plant(config), config.control_interval
     run_up = RunUp.of(config, Cycloid(*speeds, steps * interval))
-    edges = interval * np.arange(steps + 1)
-    middles = edges[:-1] + 0.5 * interval
-    roots = np.linalg.cholesky(run_up.stiffness(edges))  # K = U Uᵀ, x = [Uᵀη; η̇]
-    mid_roots = np.linalg.cholesky(run_up.stiffness(middles))
+    edges: Array = interval * np.arange(steps + 1, dtype=np.float64)
+    middles: Array = edges[:-1] + 0.5 * interval
+    roots = _root(run_up.stiffness(edges))  # K = U Uᵀ, x = [Uᵀη; η̇]
+    mid_roots = _root(run_up.stiffness(middles))
     plants = [plant_at(reference, run_up, time, root) for time, root in zip(middles, mid_roots, strict=True)]
     bank = Bank.gather(reference, plants, run_up.course.speed(middles), None)
     incoming, outgoing = _changes(roots[:-1], mid_roots), _changes(mid_roots, roots[1:])
-    units = [_at_instants(plant, before, after) for plant, before, after in zip(plants, incoming, outgoing, strict=True)]
+    back = incoming.swapaxes(1, 2)
     return replace(
         bank,
-        operators=replace(bank.operators, fused=np.stack(units)),
+        operators=replace(bank.operators, fused=_at_instants(bank.operators.fused, incoming, outgoing)),
+        readout=back @ bank.readout,
+        tip=back @ bank.tip,
+        strain=bank.strain @ incoming,
+        release=np.linalg.solve(incoming, bank.release.swapaxes(1, 2)).swapaxes(1, 2),
         start=_initial_state(run_up, roots[0]),
         runs=True,
         to_design=_views(config, design, roots[:-1]),
-        **_instantaneous(bank, incoming),
     )
+
+
+def _root(stiffness: Array) -> Array:
+    return np.asarray(np.linalg.cholesky(stiffness), dtype=np.float64)
 
 
 def plant_at(reference: Plant, run_up: RunUp, time: float, root: Array) -> Plant:
@@ -190,28 +198,20 @@ def _changes(before: Array, after: Array) -> Array:
     return change
 
 
-def _at_instants(plant: Plant, incoming: Array, outgoing: Array) -> Array:
-    """The fused operator from the energy coordinates at an interval's begin to those at its end."""
-    fused = Operators.from_plant(normalised(plant)).fused.copy()
-    n = len(plant.A)
-    joined = np.eye(len(fused))
-    joined[:n, :n] = incoming
-    fused = joined.T @ fused
-    fused[:, :n] = fused[:, :n] @ outgoing.T
-    fused[:, -len(joined) :] = fused[:, -len(joined) :] @ joined
-    return np.asarray(fused)
+def _at_instants(fused: Array, incoming: Array, outgoing: Array) -> Array:
+    """Operators (K, s, …) from the energy coordinates at each interval's begin to those at its end, from those in its middle."""
+    n, size = incoming.shape[-1], fused.shape[1]
+    joined = np.tile(np.eye(size), (len(fused), 1, 1))
+    joined[:, :n, :n] = incoming
+    moved = joined.swapaxes(1, 2) @ fused
+    moved[..., :n] = moved[..., :n] @ outgoing.swapaxes(1, 2)
+    moved[..., -size:] = moved[..., -size:] @ joined
+    return np.asarray(moved)
 
 
 def _initial_state(run_up: RunUp, root: Array) -> Array:
     displaced, moving = run_up.initial_vibration()
     return np.concatenate([root.T @ displaced, moving])
-
-
-def _instantaneous(bank: Bank, incoming: Array) -> dict[str, Array]:
-    """The bank's maps from the state at the begin of each interval instead of in its middle."""
-    back = incoming.swapaxes(1, 2)
-    release = np.linalg.solve(incoming, bank.release.swapaxes(1, 2)).swapaxes(1, 2)
-    return {"readout": back @ bank.readout, "tip": back @ bank.tip, "strain": bank.strain @ incoming, "release": release}
 
 
 def _views(config: BladeConfig, design: BladeConfig, roots: Array) -> Array | None:

@@ -90,7 +90,7 @@ def test_the_tachometer_shows_the_speed_of_the_plant_that_moves():
 @pytest.mark.parametrize("name", ["off-speed", "off-model", "spillover", "spin-up"])
 def test_the_design_sees_the_displacements_of_the_true_blade(name):
     """The tip by the design's coordinates is the true tip, as far as the design's modes can tell."""
-    env = RotatingBeamEnv(scenario={"preset": name, "step": 1.0, "pulse": 0.0, "deflection": 0.0, "harmonic": 0.0, "onset": 0.0})
+    env = RotatingBeamEnv(scenario={"preset": name, "plants": {"bank": 6}})
     env.reset(seed=5, options={"load": {"case": "step", "magnitude": 30.0, "onset": 0.0}})
     seen, true = [], []
     for _ in range(300):

@@ -56,7 +56,7 @@ def test_drive_with_delay_hysteresis_and_dead_actuators():
     before = SignalMemory(tensor(past.commands).requires_grad_(), tensor(past.plays), tensor(past.readings))
     in_torch = replace(operator, radii=tensor(operator.radii))
     acting_torch, following_torch = drive(broken.convert(tensor), in_torch, before, leaf)
-    np.testing.assert_array_equal(acting_torch.detach().numpy(), acting)
+    np.testing.assert_allclose(acting_torch.detach().numpy(), acting, rtol=1e-13, atol=1e-16)
     for ours, theirs in zip(following, following_torch, strict=True):
         np.testing.assert_array_equal(theirs.detach().numpy(), ours)
     acting_torch.sum().backward()
