@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from functools import partial
 
 import gymnasium
 import numpy as np
@@ -15,7 +16,7 @@ SEEDS = [3, 4, 5, 6, 7]
 SMALL = {
     "off-speed": {"preset": "off-speed", "plants": {"bank": 6}},
     "off-model": {"preset": "off-model", "plants": {"bank": 6}},
-    "spin-up": {"preset": "spin-up", "plants": {"spin_up": [195.0, 205.0]}},  # in 20 ms more would break the blade
+    "spin-up": {"preset": "spin-up", "plants": {"spin_up": [199.9, 200.1]}},  # in 20 ms more would break the blade
 }
 
 
@@ -84,37 +85,32 @@ def test_blades_out_of_step_are_still_their_blades_alone(name, mode):
 
 
 @pytest.mark.parametrize("duplicate", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
-@pytest.mark.parametrize("batched", [False, True])
+@pytest.mark.parametrize("kind", [RotatingBeamEnv, partial(RotatingBeamVectorEnv, 3)])
 @pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
-def test_a_copy_in_the_middle_of_an_episode_goes_on_alike(name, batched, duplicate):
-    env = (
-        RotatingBeamVectorEnv(3, scenario=SMALL.get(name, name), duration=0.05)
-        if batched
-        else RotatingBeamEnv(scenario=SMALL.get(name, name), duration=0.05)
-    )
+def test_a_copy_in_the_middle_of_an_episode_goes_on_alike(name, kind, duplicate):
+    """But for the last bit: where its arrays begin in memory changes the order of sums."""
+    env = kind(scenario=SMALL.get(name, name), duration=0.05)
     env.reset(seed=9)
     rng = np.random.default_rng(0)
     shape = env.action_space.shape
     for _ in range(30):
         env.step(rng.uniform(-1.0, 1.0, size=shape))
     twin = duplicate(env)
-    for _ in range(90 if batched else 60):
+    for _ in range(90 if len(shape) > 1 else 60):
         action = rng.uniform(-1.0, 1.0, size=shape)
         ours, theirs = env.step(action), twin.step(action)
-        assert np.array_equal(ours[0], theirs[0])
-        assert np.array_equal(ours[1], theirs[1])
+        np.testing.assert_allclose(theirs[0], ours[0], rtol=1e-11, atol=1e-13)
+        np.testing.assert_allclose(theirs[1], ours[1], rtol=1e-11)
         for key, value in ours[4].items():
-            assert np.array_equal(value, theirs[4][key])
-    assert np.array_equal(env.state, twin.state)
+            np.testing.assert_allclose(theirs[4][key], value, rtol=1e-11, atol=1e-15)
+    np.testing.assert_allclose(twin.state, env.state, rtol=1e-11, atol=1e-13)
 
 
 @pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
 def test_the_reward_is_minus_the_cost_whatever_the_plant(name):
     """J adds up from steps whose cost is at least the actuators' effort, over the nominal plant's scale."""
-    env, nominal = (
-        RotatingBeamEnv(scenario=name),
-        RotatingBeamEnv(scenario={"plants": {"modes": 22 if name == "spillover" else 11}}),
-    )
+    env = RotatingBeamEnv(scenario=SMALL.get(name, name))
+    nominal = RotatingBeamEnv(scenario={"plants": {"modes": 22 if name == "spillover" else 11}})
     env.reset(seed=1)
     nominal.reset(seed=1)
     _, reward, _, _, info = nominal.step(np.full(4, 0.1))
