@@ -77,7 +77,7 @@ class Blades:
     def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
         self.plant, self.scenario, self.count = self.bank.plant, scenario, count
-        self._shape = batch_shape(count)
+        self.shape = self._shape = batch_shape(count)
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
@@ -115,6 +115,17 @@ class Blades:
     def state(self) -> Array:
         """(…, n) true states in energy coordinates: ½ xᵀx is the vibration energy in joules."""
         return self._by_blade(self._state)
+
+    @property
+    def index(self) -> Rows:
+        """(N,) place of each blade's plant in the bank."""
+        return self.plants.index
+
+    @property
+    def disturbances(self) -> SharedDisturbances | SeededDisturbances:
+        """Loads and noise, from the first ``begin`` on."""
+        assert self._disturbances is not None
+        return self._disturbances
 
     @property
     def design_state(self) -> Array:
@@ -211,8 +222,7 @@ class Blades:
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = 0.5 * row_dot(self._state, self._state)
         effort = row_dot(row_product(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
-        if self.bank.runs:
-            self.plants.follow()
+        self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
         return Motion(
@@ -225,6 +235,11 @@ class Blades:
             effort,
             increment,
         )
+
+    def elapse(self) -> None:
+        """One control interval later: where plants follow one another, the next is on."""
+        if self.bank.runs:
+            self.plants.follow()
 
     def _by_blade(self, columns: Array) -> Array:
         """A copy (…, columns) of what is laid out in blocks."""
