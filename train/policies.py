@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import io
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-from train.storage import write_json, write_whole
 
 Array = NDArray[np.floating[Any]]
 
@@ -64,7 +59,10 @@ class Policy:
 
 
 class HistoryPolicy(Policy):
-    """A tanh network on the last instants, laid out as ``beamenv.wrappers.RollingHistory`` does, asked every few instants.
+    """A network on the last instants, laid out as ``beamenv.wrappers.RollingHistory`` does, asked every few instants.
+
+    Its settings are ``input_gain``, ``held`` and, if they are not "tanh" and false, ``activation`` ("tanh" or "relu") of the
+    hidden layers and ``squashed``: whether the output is a tanh, too.
 
     Its memory is [window | intervals the voltages have been held | voltages].
     """
@@ -88,10 +86,15 @@ class HistoryPolicy(Policy):
 
     def _network(self, window: Array) -> Array:
         hidden, depth = window * np.float32(self.settings["input_gain"]), len(self.weights) // 2
+        activation = _rectified if self.settings.get("activation") == "relu" else np.tanh
         for layer in range(depth):
             hidden = hidden @ self.weights[f"weight{layer}"].T + self.weights[f"bias{layer}"]
-            hidden = np.tanh(hidden) if layer < depth - 1 else hidden
-        return hidden
+            hidden = activation(hidden) if layer < depth - 1 else hidden
+        return np.tanh(hidden) if self.settings.get("squashed") else hidden
+
+
+def _rectified(values: Array) -> Array:
+    return np.maximum(values, np.float32(0.0))
 
 
 class RecurrentPolicy(Policy):
@@ -110,39 +113,46 @@ class RecurrentPolicy(Policy):
         units = self.weights["weight_hh"].shape[1]
         hidden, voltages = memory[:, :units], memory[:, units:]
         inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages])
-        from_input = np.split(inputs @ self.weights["weight_ih"].T + self.weights["bias_ih"], 3, axis=1)
-        from_hidden = np.split(hidden @ self.weights["weight_hh"].T + self.weights["bias_hh"], 3, axis=1)
-        reset, update = (_sigmoid(a + b) for a, b in zip(from_input[:2], from_hidden[:2], strict=True))
-        candidate = np.tanh(from_input[2] + reset * from_hidden[2])
-        hidden = (1.0 - update) * candidate + update * hidden
-        action = np.tanh(hidden @ self.weights["weight_out"].T + self.weights["bias_out"])
+        hidden, action = gated_unit(self.weights, inputs, hidden)
         return action, np.hstack([hidden, np.zeros_like(action)])
+
+
+class ResidualPolicy(Policy):
+    """Adds to a linear controller and weighs it: u = clip((1 + g) ∘ u_lin + r), [g, r] the tanh output of a gated recurrent unit.
+
+    Its memory is [hidden units | the controller's | voltages].
+    """
+
+    __slots__ = ()
+    kind = "residual"
+
+    @property
+    def memory_size(self) -> int:
+        """Hidden units, the controller's memory and the last voltages."""
+        return int(self.weights["weight_hh"].shape[1]) + int(self.weights["feedback"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """The controller, the unit, and what both ask for."""
+        units, order = self.weights["weight_hh"].shape[1], self.weights["feedback"].shape[1]
+        hidden, linear, voltages = memory[:, :units], memory[:, units : units + order], memory[:, units + order :]
+        product = np.hstack([linear, readings]) @ self.weights["fused"]
+        asked = np.clip(product[:, order:], self.lowest, self.highest)
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked])
+        hidden, output = gated_unit(self.weights, inputs, hidden)
+        weight, added = np.split(output, 2, axis=1)
+        action = np.clip((1.0 + weight) * asked + added, self.lowest, self.highest)
+        return action, np.hstack([hidden, product[:, :order] + action @ self.weights["feedback"], action])
+
+
+def gated_unit(weights: Mapping[str, Array], inputs: Array, hidden: Array) -> tuple[Array, Array]:
+    """Hidden units (N, units) and tanh outputs of a gated recurrent unit, as torch's ``GRUCell`` and a linear layer have them."""
+    from_input = np.split(inputs @ weights["weight_ih"].T + weights["bias_ih"], 3, axis=1)
+    from_hidden = np.split(hidden @ weights["weight_hh"].T + weights["bias_hh"], 3, axis=1)
+    reset, update = (_sigmoid(a + b) for a, b in zip(from_input[:2], from_hidden[:2], strict=True))
+    candidate = np.tanh(from_input[2] + reset * from_hidden[2])
+    hidden = (1.0 - update) * candidate + update * hidden
+    return hidden, np.tanh(hidden @ weights["weight_out"].T + weights["bias_out"])
 
 
 def _sigmoid(values: Array) -> Array:
     return np.asarray(0.5 * (1.0 + np.tanh(0.5 * values)))
-
-
-KINDS: Mapping[str, type[Policy]] = {"history": HistoryPolicy, "recurrent": RecurrentPolicy}
-
-
-def save_policy(policy: Policy, folder: Path) -> None:
-    """``weights.npz`` and, last, ``agent.json``: a folder with the latter is whole."""
-    arrays = io.BytesIO()
-    np.savez(arrays, **policy.weights)
-    write_whole(folder / "weights.npz", arrays.getvalue())
-    about = {"kind": policy.kind, "name": policy.name, "settings": dict(policy.settings)}
-    write_json(folder / "agent.json", {**about, "lowest": policy.lowest.tolist(), "highest": policy.highest.tolist()})
-
-
-def load_policy(folder: Path) -> Policy:
-    """The policy saved in a folder; ``ValueError`` if there is none, or one of an unknown kind."""
-    if not (folder / "agent.json").is_file():
-        raise ValueError(f"folder = {str(folder)!r} must hold a trained agent: agent.json is not there.")
-    about = json.loads((folder / "agent.json").read_text())
-    if about["kind"] not in KINDS:
-        raise ValueError(f"kind = {about['kind']!r} of the agent in {str(folder)!r} must be one of {', '.join(KINDS)}.")
-    with np.load(folder / "weights.npz", allow_pickle=False) as arrays:
-        weights = {name: arrays[name] for name in arrays.files}
-    lowest, highest = (np.array(about[name], dtype=np.float32) for name in ("lowest", "highest"))
-    return KINDS[about["kind"]](about["name"], weights, about["settings"], lowest, highest)

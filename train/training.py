@@ -1,17 +1,18 @@
-"""What the trainers share: how they report, and the cost they are measured by."""
+"""What the trainers share: what a training is, how it reports, and the cost it is measured by."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 import torch
 
-from beamenv.plant import Plant
-from beamenv.scenarios import Scenario
 from beamenv.simulation import Blades
+from beamenv.task import Task
+from train.policies import Policy
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,17 +25,41 @@ class Progress:
     """Environment steps so far."""
     cost: float
     """J relative to no control, from recent training episodes."""
+    updates: int = 0
+    """Updates of the policy so far."""
 
 
 Report = Callable[[Progress], None]
 
 
-def uncontrolled_cost(plant: Plant, scenario: Scenario, steps: int, episodes: int = 512) -> float:
+class Training(Protocol):
+    """A training that goes on update by update. Equal arguments and equal calls make equal policies, bit for bit on one thread."""
+
+    steps: int
+    """Control intervals so far."""
+    updates: int
+    cost: float
+    """J relative to no control, recently."""
+
+    def update(self, remaining: float) -> None:
+        """One update; ``remaining``, from 1 to 0, is the share of the training still to come: learning rates fall with it."""
+
+    def policy(self) -> Policy:
+        """What has been learnt so far."""
+
+    def state(self) -> Mapping[str, Any]:
+        """Numbers, strings, lists, dictionaries and tensors that ``load`` goes on from."""
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Go on from a state of an equally made training."""
+
+
+def uncontrolled_cost(task: Task, episodes: int = 512) -> float:
     """Mean J (J s) of episodes without control: what running costs are relative to."""
-    blades, generator = Blades(plant, scenario, episodes), np.random.default_rng(0)
+    blades, generator = Blades(task.bank, task.scenario, episodes), np.random.default_rng(0)
     blades.begin(generator)
-    idle = np.zeros((episodes, plant.B.shape[1]))
-    return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(steps)))
+    idle = np.zeros((episodes, task.plant.B.shape[1]))
+    return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(task.steps)))
 
 
 @contextmanager
