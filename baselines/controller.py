@@ -87,6 +87,11 @@ class LinearController:
         following = product[..., :order] + action @ self._feedback
         return action, following if order else None
 
+    @property
+    def matrices(self) -> tuple[Array, Array]:
+        """[ξ, observation] @ fused (s + p, s + m) = [F ξ + G y, action], and feedback (m, s): ξ⁺ gains action @ feedback."""
+        return self._fused, self._feedback
+
     def in_physical_units(self) -> LinearController:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
