@@ -104,6 +104,10 @@ class SB3Training:
         """The actor as arrays."""
         raise NotImplementedError
 
+    def policies(self) -> list[Policy]:
+        """``policy`` alone."""
+        return [self.policy()]
+
     def close(self) -> None:
         """Close the batch."""
         self.envs.close()

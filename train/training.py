@@ -27,6 +27,8 @@ class Progress:
     """J relative to no control, from recent training episodes."""
     updates: int = 0
     """Updates of the policy so far."""
+    costs: tuple[float, ...] = ()
+    """``cost`` of each of the runs side by side, of which it is the mean."""
 
 
 Report = Callable[[Progress], None]
@@ -38,20 +40,25 @@ class Training(Protocol):
     steps: int
     """Control intervals so far."""
     updates: int
-    cost: float
-    """J relative to no control, recently."""
+    cost: Any
+    """J relative to no control, recently: a number, or one for each policy."""
+    losses: dict[str, float]
+    """What else the last update told, by name."""
 
     def update(self, remaining: float) -> None:
         """One update; ``remaining``, from 1 to 0, is the share of the training still to come: learning rates fall with it."""
 
-    def policy(self) -> Policy:
-        """What has been learnt so far."""
+    def policies(self) -> list[Policy]:
+        """What has been learnt so far: one policy, or those of several runs side by side."""
 
-    def state(self) -> Mapping[str, Any]:
+    def state(self) -> dict[str, Any]:
         """Numbers, strings, lists, dictionaries and tensors that ``load`` goes on from."""
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Go on from a state of an equally made training."""
+
+    def close(self) -> None:
+        """Let go of the environments."""
 
 
 def uncontrolled_cost(task: Task, episodes: int = 512) -> float:
