@@ -49,9 +49,11 @@ class OffPolicySettings:
     """γ: 20 actions, 40 ms."""
     energy_horizon: float = 0.03
     """s: potential of a joule, see ``train.vec_env``."""
+    reward_unit: float = 0.25
+    """Reward of a control interval without control, about, with its sign changed: values must outgrow untrained critics' noise."""
     exploration: float = -1.4
     """Logarithm of a standard deviation of the actions: its entropy is what the temperature is steered to."""
-    temperature: float = 0.05
+    temperature: float = 0.01
     """Weight of the entropy to begin with, in rewards."""
     target_rate: float = 0.01
     """At which target critics follow."""
@@ -63,8 +65,8 @@ class OffPolicySettings:
     """Of the actor: tanh or relu."""
     input_gain: float = 1.0
     """Readings are a few per cent of full scale most of the time."""
-    critic_first: int = 0
-    """Updates that train the critics alone, for an actor that is good already."""
+    critic_first: int = 10
+    """Updates that train the critics alone: an actor must not follow critics that know nothing."""
     smoothing: float = 0.02
     """Weight of the latest rollout in the running cost."""
 
@@ -92,6 +94,7 @@ class OffPolicyTraining(SB3Training):
             energy_horizon=settings.energy_horizon,
             discount=settings.discount,
             held=settings.held,
+            reward_unit=settings.reward_unit,
         )
         voltages = int(np.prod(envs.action_space.shape or ()))
         model = self.algorithm(

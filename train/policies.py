@@ -48,6 +48,10 @@ class Policy:
         following[:, -action.shape[1] :] = action
         return (action[0] if single else action), following
 
+    def knowing(self, memory: Array, voltages: Array) -> Array:
+        """The memory (N, k) after its last action was overruled: (N, m) ``voltages`` were held in its place."""
+        return np.hstack([memory[:, : -voltages.shape[1]], voltages])
+
     @property
     def memory_size(self) -> int:
         """Numbers in a blade's memory, k."""
@@ -142,6 +146,12 @@ class ResidualPolicy(Policy):
         weight, added = np.split(output, 2, axis=1)
         action = np.clip((1.0 + weight) * asked + added, self.lowest, self.highest)
         return action, np.hstack([hidden, product[:, :order] + action @ self.weights["feedback"], action])
+
+    def knowing(self, memory: Array, voltages: Array) -> Array:
+        """The controller's estimate, too, goes by the voltages that were held."""
+        m, order = voltages.shape[1], self.weights["feedback"].shape[1]
+        linear = memory[:, -m - order : -m] + (voltages - memory[:, -m:]) @ self.weights["feedback"]
+        return np.hstack([memory[:, : -m - order], linear, voltages])
 
 
 def gated_unit(weights: Mapping[str, Array], inputs: Array, hidden: Array) -> tuple[Array, Array]:

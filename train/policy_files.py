@@ -65,7 +65,7 @@ def load_policy(folder: Path, plant: Plant | None = None) -> Policy:
         _check_plant(about, folder, plant)
     path = folder / "weights.npz"
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:
             weights = {name: arrays[name] for name in arrays.files}
         lowest, highest = (np.array(about[name], dtype=np.float32) for name in ("lowest", "highest"))
         policy = KINDS[about["kind"]](about["name"], weights, about["settings"], lowest, highest)
@@ -84,10 +84,11 @@ def within_limits(policy: Policy, plant: Plant) -> Policy:
 
 
 def _check_plant(about: Mapping[str, Any], folder: Path, plant: Plant) -> None:
-    known = about.get("plants", {})
-    if fingerprint(plant) not in known.values():
-        plants = "none that it tells of" if not known else f"that of {', '.join(known)}"
+    known, own = about.get("plants"), fingerprint(plant)
+    if not isinstance(known, Mapping) or not known:
+        raise ValueError(f"the agent in {str(folder)!r} does not tell what plant it was trained on: train it again.")
+    if own not in known.values():
         raise ValueError(
-            f"plant with the fingerprint {fingerprint(plant)[:12]}… is not what the agent in {str(folder)!r} was trained on, "
-            f"{plants} ({', '.join(sorted({each[:12] + '…' for each in known.values()}))}): train one for it."
+            f"plant with the fingerprint {own[:12]}… is none of those the agent in {str(folder)!r} was trained on: "
+            f"{', '.join(f'{name} {value[:12]}…' for name, value in known.items())}."
         )

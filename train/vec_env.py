@@ -22,7 +22,7 @@ Array = NDArray[Any]
 
 
 REWARD_UNIT = 0.01
-"""What the environment's reward is multiplied by: its values, hundreds, would take a critic long to reach."""
+"""What the environment's reward is multiplied by if not said otherwise: its values, hundreds, would take a critic long to reach."""
 
 
 class BladeVecEnv(VecEnv):
@@ -52,6 +52,7 @@ class BladeVecEnv(VecEnv):
         shows_state: bool = False,
         held: int = 1,
         reference: float | None = None,
+        reward_unit: float = REWARD_UNIT,
     ) -> None:
         batch = batch_of(environment, count)
         self.blades: Any = batch.unwrapped
@@ -65,7 +66,7 @@ class BladeVecEnv(VecEnv):
         self._seed: int | None = seed
         self._scale = reward_scale(self.blades.plant)
         self._per_step = self.blades.task.steps / reference if reference else np.nan
-        self._unit = REWARD_UNIT * (self._scale * self._per_step if reference else 1.0)
+        self._unit = reward_unit * (self._scale * self._per_step if reference else 1.0)
         self.held = held
         self._discount = discount ** (1.0 / held)
         self._potential = energy_horizon / self._scale

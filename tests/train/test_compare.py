@@ -10,7 +10,8 @@ import train.compare
 from train.agents import train_agent
 from train.compare import Comparison, Listener, compare, read_curve
 from train.contenders import CLASSICAL, classical
-from train.policies import HistoryPolicy, load_policy
+from train.policies import HistoryPolicy
+from train.policy_files import load_policy
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
 
