@@ -113,17 +113,19 @@ class Journal:
     def go_on(self, before: Mapping[str, Any]) -> float:
         """Take up a checkpoint; the seconds spent until then."""
         self._training.load(before["training"])
-        self.curve = [Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]]
+        self.curve = [
+            Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]
+        ]
         self.seconds = before["seconds"]
         return self.seconds
 
     def note(self, progress: Progress) -> None:
-        """Report, and a point of the curve where it is time."""
-        self._report(progress)
+        """A point of the curve where it is time, and report."""
         self.seconds = progress.elapsed
         if self._course.gone(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1:
             self.curve.append(progress)
             self.scalars.write(progress, self._training.losses)
+        self._report(progress)
 
     def keep(self, elapsed: float) -> None:
         """Write a checkpoint."""

@@ -78,27 +78,37 @@ class AsymmetricRecurrentPolicy(RecurrentActorCriticPolicy):
 
 
 class AsymmetricSACPolicy(SACPolicy):
-    """SB3's policy: the actor on what is seen, the critics on everything."""
+    """SB3's policy: the actor on what is seen, the critics on the true state."""
 
     def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
-        self._actor_part = {"begin": 0, "end": seen, "gain": actor_gain}
+        self._seen, self._actor_gain = seen, actor_gain
         super().__init__(*args, **kwargs)
 
     def make_actor(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
         """With the part it sees."""
-        return super().make_actor(Part(self.observation_space, **self._actor_part))  # type: ignore[arg-type]
+        return super().make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
+
+    def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
+        """With the part that is hidden from the actor."""
+        width = int(self.observation_space.shape[0])  # type: ignore[index]
+        return super().make_critic(Part(self.observation_space, self._seen, width))
 
 
 class AsymmetricTQCPolicy(TQCPolicy):
-    """sb3-contrib's policy: the actor on what is seen, the critics on everything."""
+    """sb3-contrib's policy: the actor on what is seen, the critics on the true state."""
 
     def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
-        self._actor_part = {"begin": 0, "end": seen, "gain": actor_gain}
+        self._seen, self._actor_gain = seen, actor_gain
         super().__init__(*args, **kwargs)
 
     def make_actor(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
         """With the part it sees."""
-        return super().make_actor(Part(self.observation_space, **self._actor_part))  # type: ignore[arg-type]
+        return super().make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
+
+    def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
+        """With the part that is hidden from the actor."""
+        width = int(self.observation_space.shape[0])  # type: ignore[index]
+        return super().make_critic(Part(self.observation_space, self._seen, width))
 
 
 def tanh_layers(inputs: int, units: int) -> nn.Sequential:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import pickle
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,11 @@ def read_checkpoint(folder: Path) -> dict[str, Any]:
     if not path.is_file():
         raise ValueError(f"folder = {str(folder)!r} must hold a checkpoint to go on from: {NAME} is not there.")
     try:
-        content: dict[str, Any] = torch.load(path, weights_only=True)
-    except (OSError, EOFError, RuntimeError, pickle.UnpicklingError):
-        raise ValueError(f"{str(path)!r} must be a checkpoint of tensors and numbers, but is damaged or holds something else.") from None
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # torch only warns of a protocol that it never writes
+            content: dict[str, Any] = torch.load(path, weights_only=True)
+    except (OSError, EOFError, RuntimeError, UserWarning, pickle.UnpicklingError):
+        raise ValueError(
+            f"{str(path)!r} must be a checkpoint of tensors and numbers, but is damaged or holds something else."
+        ) from None
     return content

@@ -77,7 +77,9 @@ def _frequency(modes: Any, mode: int) -> str:
 def evaluate(
     controller: Annotated[
         str,
-        typer.Argument(help="none, velocity, lqg-thesis, lqg, lqg-load, lqr, lqr-load, an agent that ships, or a trained one's folder."),
+        typer.Argument(
+            help="none, velocity, lqg-thesis, lqg, lqg-load, lqr, lqr-load, an agent that ships, or a trained one's folder."
+        ),
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,

@@ -26,7 +26,9 @@ CLASSICAL: MappingProxyType[str, Callable[[Plant], LinearController]] = MappingP
 def classical(name: str, plant: Plant) -> LinearController:
     """A controller by its short name; ``ValueError`` lists the known ones."""
     if name not in CLASSICAL:
-        raise ValueError(f"controller = {name!r} must be one of {', '.join(CLASSICAL)}, an agent that ships, or the folder of a trained one.")
+        raise ValueError(
+            f"controller = {name!r} must be one of {', '.join(CLASSICAL)}, an agent that ships, or the folder of a trained one."
+        )
     return CLASSICAL[name](plant)
 
 

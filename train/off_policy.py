@@ -33,11 +33,13 @@ class OffPolicySettings:
     """Instants the agent sees, 6 ms."""
     held: int = 4
     """Control intervals for which an action is held, 2 ms."""
-    rollout: int = 8
+    rollout: int = 4
     """Actions of every blade between updates."""
-    gradient_steps: int = 16
-    """In an update."""
-    batch: int = 512
+    critic_steps: int = 12
+    """Gradient steps of the critics alone, in an update."""
+    gradient_steps: int = 4
+    """Gradient steps of critics and actor after them: an actor that is quicker than its critics saturates."""
+    batch: int = 256
     """Samples in a gradient step."""
     buffer: int = 200_000
     """Actions remembered."""
@@ -49,11 +51,11 @@ class OffPolicySettings:
     """γ: 20 actions, 40 ms."""
     energy_horizon: float = 0.03
     """s: potential of a joule, see ``train.vec_env``."""
-    reward_unit: float = 0.25
+    reward_unit: float = 0.04
     """Reward of a control interval without control, about, with its sign changed: values must outgrow untrained critics' noise."""
     exploration: float = -1.4
     """Logarithm of a standard deviation of the actions: its entropy is what the temperature is steered to."""
-    temperature: float = 0.01
+    temperature: float = 0.003
     """Weight of the entropy to begin with, in rewards."""
     target_rate: float = 0.01
     """At which target critics follow."""
@@ -61,11 +63,11 @@ class OffPolicySettings:
     """Of each of two layers of the actor."""
     critic_units: int = 128
     """Of each of two layers of the critics."""
-    activation: str = "tanh"
-    """Of the actor: tanh or relu."""
+    activation: str = "relu"
+    """Of all layers: tanh or relu."""
     input_gain: float = 1.0
     """Readings are a few per cent of full scale most of the time."""
-    critic_first: int = 10
+    critic_first: int = 50
     """Updates that train the critics alone: an actor must not follow critics that know nothing."""
     smoothing: float = 0.02
     """Weight of the latest rollout in the running cost."""
@@ -144,6 +146,9 @@ class OffPolicyTraining(SB3Training):
         memory = self.model.replay_buffer
         self.model.collect_rollouts(self.envs, self._callback, frequency, memory)
         if memory.size() * self.envs.num_envs >= self.settings.first:
+            self._free(False)
+            self.model.train(self.settings.critic_steps, self.settings.batch)
+            self._free(self.updates >= self.settings.critic_first)
             self.model.train(self.settings.gradient_steps, self.settings.batch)
 
     def policy(self) -> HistoryPolicy:

@@ -17,9 +17,7 @@ from train.lstm_policy import LSTMPolicy
 from train.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
 from train.storage import write_json, write_whole
 
-KINDS: Mapping[str, type[Policy]] = {
-    kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, ResidualPolicy, LSTMPolicy)
-}
+KINDS: Mapping[str, type[Policy]] = {kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, ResidualPolicy, LSTMPolicy)}
 
 OWN_KEYS = ("kind", "name", "settings", "lowest", "highest")
 """What ``agent.json`` must hold."""

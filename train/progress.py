@@ -43,7 +43,12 @@ class Progressbar(Listener):
         task = self._tasks[name]
         self._bars.start_task(task)
         rate = f"{progress.steps / max(progress.elapsed, 1e-9) / 1e3:.0f} k steps/s"
-        self._bars.update(task, completed=min(progress.elapsed if self._unit == "s" else progress.updates, budget), cost=f"{progress.cost:.3f}", rate=rate)
+        self._bars.update(
+            task,
+            completed=min(progress.elapsed if self._unit == "s" else progress.updates, budget),
+            cost=f"{progress.cost:.3f}",
+            rate=rate,
+        )
 
     def evaluated(self, evaluation: Evaluation) -> None:
         """Say how a controller did."""

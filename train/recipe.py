@@ -68,7 +68,7 @@ def parsed(text: str, source: str) -> Recipe:
     if wrong := sorted(set(content) ^ set(KEYS)):
         raise ValueError(f"recipe {source!r} has, or lacks, {wrong[0]!r}: its keys are {', '.join(KEYS)}.")
     agent, updates = content["agent"], content["updates"]
-    if agent not in AGENTS:
+    if not isinstance(agent, str) or agent not in AGENTS:
         raise ValueError(f"recipe {source!r}: agent = {agent!r} must be one of {', '.join(AGENTS)}.")
     if isinstance(updates, bool) or not isinstance(updates, int) or updates < 1:
         raise ValueError(f"recipe {source!r}: updates = {updates!r} must be a positive whole number.")

@@ -75,8 +75,7 @@ class SB3Training:
         """Gather experience and learn from it, at the share ``remaining`` of the learning rate."""
         before = self.model.num_timesteps
         self.model._current_progress_remaining = remaining
-        for parameter in self._held_back():
-            parameter.requires_grad_(self.updates >= self.settings.critic_first)
+        self._free(self.updates >= self.settings.critic_first)
         self._gather_and_learn()
         self.losses = {name: float(value) for name, value in self.model.logger.name_to_value.items()}
         self.model.logger.name_to_value.clear()
@@ -85,6 +84,11 @@ class SB3Training:
         latest = min(self._meter.read(), 100.0)
         weight = max(self.settings.smoothing, 1.0 / self.updates)
         self.cost = latest if np.isnan(self.cost) else self.cost + weight * (latest - self.cost)
+
+    def _free(self, free: bool) -> None:
+        """Whether the actor is trained."""
+        for parameter in self._held_back():
+            parameter.requires_grad_(free)
 
     def _gather_and_learn(self) -> None:
         raise NotImplementedError

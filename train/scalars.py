@@ -20,7 +20,10 @@ class Scalars:
     def write(self, progress: Progress, losses: Mapping[str, float]) -> None:
         """One point of every curve."""
         lasted = max(progress.elapsed - self._before.elapsed, 1e-9)
-        scalars = {"cost/relative to no control": progress.cost, "speed/steps per s": (progress.steps - self._before.steps) / lasted}
+        scalars = {
+            "cost/relative to no control": progress.cost,
+            "speed/steps per s": (progress.steps - self._before.steps) / lasted,
+        }
         if len(progress.costs) > 1:
             scalars |= {f"cost/run {run}": cost for run, cost in enumerate(progress.costs)}
         for name, value in {**scalars, **losses}.items():

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+import signal
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from types import FrameType, TracebackType
+from typing import Any
 
 import numpy as np
 
@@ -53,8 +57,8 @@ def follow(
     """
     begin = time.monotonic() - elapsed
     kept = elapsed
-    with suppress(KeyboardInterrupt):
-        while (gone := course.gone(training.updates, elapsed)) < 1.0:
+    with suppress(KeyboardInterrupt), Interruption() as interruption:
+        while (gone := course.gone(training.updates, elapsed)) < 1.0 and not interruption.asked:
             training.update(1.0 - gone)
             elapsed = time.monotonic() - begin
             report(progress(training, elapsed))
@@ -64,6 +68,28 @@ def follow(
     if keep is not None:
         keep(elapsed)
     return training.policies()
+
+
+class Interruption:
+    """Ctrl-C that waits for the end of an update: a checkpoint must not hold half of one. A second Ctrl-C does not wait."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._before: Any = None
+
+    def __enter__(self) -> Interruption:
+        if threading.current_thread() is threading.main_thread():
+            self._before = signal.signal(signal.SIGINT, self._ask)
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _ask(self, number: int, frame: FrameType | None) -> None:
+        if self.asked:
+            raise KeyboardInterrupt
+        self.asked = True
 
 
 def progress(training: Training, elapsed: float) -> Progress:

@@ -46,7 +46,9 @@ def put(moving: Any, saved: Any) -> Any:
     if saved is None or (moving is None and isinstance(saved, Tensor)):
         return saved
     if isinstance(moving, np.ndarray):
-        moving[...] = saved.numpy().astype(moving.dtype, copy=False)
+        if not moving.flags.writeable:
+            return saved.numpy().astype(moving.dtype)
+        moving[...] = saved.numpy()
         return moving
     if isinstance(saved, Tensor):
         return saved.clone()

@@ -18,7 +18,9 @@ def train(
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
     updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of the training.")] = 0,
-    folder: Annotated[Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")] = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
+    ] = None,
     recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
     start: Annotated[Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the folder's checkpoint, with the same arguments.")] = False,

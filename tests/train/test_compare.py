@@ -130,7 +130,7 @@ def test_another_comparison_does_not_overwrite_a_folder(finished):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"budget": {"sac": 1.0}}, "agent 'sac', but must name only gradient, ppo"),
+        ({"budget": {"dreamer": 1.0}}, "agent 'dreamer', but must name only gradient, ppo"),
         ({"budget": {"ppo": -1.0}}, "budget of ppo = -1.0 must be a positive number"),
         ({"seeds": 1}, "seeds = 1 must be at least 2"),
     ],
@@ -141,8 +141,8 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 
 
 def test_unknown_names_are_refused():
-    with pytest.raises(ValueError, match="agent = 'sac' must be one of gradient, ppo"):
-        train_agent("sac", {}, 1.0, 0, lambda progress: None)
+    with pytest.raises(ValueError, match="agent = 'dreamer' must be one of gradient, ppo"):
+        train_agent("dreamer", {}, 1.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="seconds = 0.0 must be a positive number"):
         train_agent("ppo", {}, 0.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="controller = 'pid' must be one of none, velocity"):
