@@ -77,7 +77,7 @@ def _frequency(modes: Any, mode: int) -> str:
 @app.command()
 def evaluate(
     controller: Annotated[
-        str, typer.Argument(help="none, velocity, lqg-thesis, lqg, lqg-load, lqr, lqr-load, or the folder of a trained agent.")
+        str, typer.Argument(help="A controller by name, say none, lqg or lqr-load, or the folder of a trained agent.")
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
@@ -93,15 +93,15 @@ def evaluate(
         import baselines
         import beamenv
         from train.compare import HELD_OUT
-        from train.contenders import CLASSICAL, classical
+        from train.contenders import contender, discover
 
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **environment_arguments(preset, speed, blade, scenario))
-        if controller not in CLASSICAL and Path(controller).is_dir():
+        if controller not in discover() and Path(controller).is_dir():
             from train.policies import load_policy
 
             law: Any = load_policy(Path(controller))
         else:
-            law = classical(controller, envs.unwrapped.design_plant)
+            law = contender(controller).build(envs.unwrapped.task)
         evaluation = baselines.evaluate(law, envs, range(HELD_OUT, HELD_OUT + seeds))
     if as_json:
         print_json(evaluation.to_dict())
@@ -172,10 +172,10 @@ def compare(
 
 
 @app.command()
-def benchmark(as_json: JsonOption = False) -> None:
+def speed(as_json: JsonOption = False) -> None:
     """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
-    from train.benchmark import benchmark as run
-    from train.benchmark import show
+    from train.speed import show
+    from train.speed import speed as run
 
     results = run()
     if as_json:

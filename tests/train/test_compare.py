@@ -8,8 +8,8 @@ import pytest
 
 import train.compare
 from train.agents import train_agent
-from train.compare import Comparison, Listener, compare, read_curve
-from train.contenders import CLASSICAL, classical
+from train.compare import CLASSICAL, Comparison, Listener, compare, read_curve
+from train.contenders import contender
 from train.policies import HistoryPolicy, load_policy
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
@@ -144,5 +144,5 @@ def test_unknown_names_are_refused():
         train_agent("sac", {}, 1.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="seconds = 0.0 must be a positive number"):
         train_agent("ppo", {}, 0.0, 0, lambda progress: None)
-    with pytest.raises(ValueError, match="controller = 'pid' must be one of none, velocity"):
-        classical("pid", None)
+    with pytest.raises(ValueError, match="controller = 'pid' must be one of lqg, lqg-load"):
+        contender("pid")

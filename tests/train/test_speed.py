@@ -1,10 +1,10 @@
-"""The benchmark: what it measures and how it judges."""
+"""Speed: what it measures and how it judges."""
 
 import gymnasium
 import pytest
 
 import beamenv
-from train.benchmark import ROWS, TARGETS, batch_run, benchmark, met, show, single_run
+from train.speed import ROWS, TARGETS, batch_run, met, show, single_run, speed
 
 
 def test_steps_are_counted_over_the_time_they_take():
@@ -39,4 +39,4 @@ def test_the_table_names_every_measurement_once(capsys):
 
 @pytest.mark.slow
 def test_every_row_is_measured():
-    assert set(benchmark()) == {name for name, _, _ in ROWS}
+    assert set(speed()) == {name for name, _, _ in ROWS}
