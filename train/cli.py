@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from train.benchmark_command import benchmark
 from train.options import BladeOption, JsonOption, PresetOption, ScenarioOption, SpeedOption, one_sentence, print_json
 from train.place import place
 
@@ -19,6 +20,7 @@ app = typer.Typer(
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
 app.command()(place)
+app.command()(benchmark)
 
 
 def environment_arguments(preset: str, speed: float | None, blade: Path | None, scenario: str) -> dict[str, Any]:

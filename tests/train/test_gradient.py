@@ -9,8 +9,8 @@ import beamenv
 from baselines import evaluate
 from beamenv.configuration import blade_config, build_plant
 from beamenv.kernel import Operators, advance
-from beamenv.scenarios import scenario
 from beamenv.plant import normalised
+from beamenv.scenarios import scenario
 from beamenv.simulation import Blades
 from train.gradient import Actor, GradientSettings, Windows, train_gradient
 from train.training import uncontrolled_cost
