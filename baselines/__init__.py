@@ -6,6 +6,7 @@ from baselines.evaluation import Estimate, Evaluation, evaluate
 from baselines.lqg import lqg
 from baselines.lqr import lqr
 from baselines.metrics import EpisodeMetrics
+from baselines.mpc import PredictiveController, mpc
 from baselines.no_control import no_control
 from baselines.persistent_load import PersistentLoad
 from baselines.stationary import closed_loop_poles, stationary_cost
@@ -19,10 +20,12 @@ __all__ = [
     "Evaluation",
     "LinearController",
     "PersistentLoad",
+    "PredictiveController",
     "closed_loop_poles",
     "evaluate",
     "lqg",
     "lqr",
+    "mpc",
     "no_control",
     "roll_out",
     "stationary_cost",

@@ -80,25 +80,51 @@ class LinearController:
         ``observation`` (p,) or (N, p) is normalised as the environment gives it; rows where ``episode_start`` is true
         forget their memory. Raises ValueError for an observation of another length.
         """
-        measured = np.asarray(observation, dtype=np.float64)
-        order = len(self.transition)
-        if measured.ndim not in (1, 2) or measured.shape[-1] != self.measurement_scale.size:
-            raise ValueError(
-                f"observation has shape {measured.shape}, but {self.name} takes {self.observes} vectors of length "
-                f"{self.measurement_scale.size}, alone or in rows"
-            )
-        memory = np.zeros((*measured.shape[:-1], order)) if state is None else state
-        if episode_start is not None and state is not None:
-            begins = np.asarray(episode_start, dtype=bool).reshape(measured.shape[:-1])
-            memory = np.where(begins[..., None], 0.0, memory)
+        measured, order = measurement(self, observation), len(self.transition)
+        memory = remembered(state, episode_start, measured.shape[:-1], order)
         product = np.concatenate([memory, measured], axis=-1) @ self._fused
         action = np.clip(product[..., order:], self._limits[0], self._limits[1])
         following = product[..., :order] + action @ self._feedback
         return action, following if order else None
 
+    @property
+    def matrices(self) -> tuple[Array, Array]:
+        """[ξ, observation] @ fused (s + p, s + m) = [F ξ + G y, action], and feedback (m, s): ξ⁺ gains action @ feedback."""
+        return self._fused, self._feedback
+
     def in_physical_units(self) -> LinearController:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
+
+
+class _Law(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def observes(self) -> str: ...
+    @property
+    def measurement_scale(self) -> Array: ...
+
+
+def measurement(law: _Law, observation: ArrayLike) -> Array:
+    """The observation (p,) or (N, p) as float64. Raises ValueError unless it has the length that the law takes."""
+    measured = np.asarray(observation, dtype=np.float64)
+    if measured.ndim not in (1, 2) or measured.shape[-1] != law.measurement_scale.size:
+        raise ValueError(
+            f"observation has shape {measured.shape}, but {law.name} takes {law.observes} vectors of length "
+            f"{law.measurement_scale.size}, alone or in rows"
+        )
+    return measured
+
+
+def remembered(state: Array | None, episode_start: ArrayLike | None, batch: tuple[int, ...], order: int) -> Array:
+    """The memory (*batch, order) that a decision starts from: zero without a state, and where an episode starts."""
+    if state is None:
+        return np.zeros((*batch, order))
+    if episode_start is None:
+        return state
+    begins = np.asarray(episode_start, dtype=bool).reshape(batch)
+    return np.where(begins[..., None], 0.0, state)
 
 
 def static_law(plant: Plant, name: str, gain: Array, observes: Literal["observation", "state"] = "observation") -> LinearController:

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from baselines.controller import LinearController, drive_scale
 from baselines.persistent_load import PersistentLoad, with_persistent_load
 from baselines.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
-from beamenv.plant import Plant, sample
+from beamenv.plant import Plant, SampledPlant, sample
 
 _CONVERTER_STEP = 2.0**-15
 """Of full scale: a 16-bit converter's."""
@@ -45,11 +45,17 @@ def lqg(
     return _continuous(plant)
 
 
-def _sampled(plant: Plant, load: PersistentLoad | None) -> LinearController:
+def sampled_design(plant: Plant, load: PersistentLoad | None = None) -> tuple[SampledPlant, Array, Array, Array]:
+    """The sampled plant, with the state of a load that lasts if one is given, its regulator's P and K, and its filter's L."""
     held = sample(plant) if load is None else with_persistent_load(sample(plant), load)
     E = held.disturbance_input
-    _, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+    P, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
     _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, _sensor_noise(plant) / held.interval)
+    return held, P, K, L
+
+
+def _sampled(plant: Plant, load: PersistentLoad | None) -> LinearController:
+    held, _, K, L = sampled_design(plant, load)
     correct = np.eye(len(held.A)) - L @ held.C
     name = "LQG" if load is None else "LQG with load estimate"
     return _observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)

@@ -8,7 +8,8 @@ independent; from rest (Pⱼ = 0) a small voltage acts with the gain w₀, a ful
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,10 @@ class Hysteresis:
     """w₀"""
     weight: float
     """w of every play."""
+
+    def convert(self, to_array: Callable[[Any], Any]) -> Hysteresis:
+        """The same operator with its radii passed through ``to_array``."""
+        return replace(self, radii=to_array(self.radii))
 
     def step(self, voltages: Any, plays: Any) -> tuple[Any, Any]:
         """Effective voltages (N, m) and the plays' outputs (N, m, J), from voltages (N, m) and the plays' last outputs."""

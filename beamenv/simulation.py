@@ -90,7 +90,7 @@ class Blades:
     def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
         self.plant, self.scenario, self.count = self.bank.plant, scenario, count
-        self._shape = _shape(count)
+        self.shape = self._shape = _shape(count)
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
@@ -228,8 +228,7 @@ class Blades:
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = 0.5 * row_dot(self._state, self._state)
         effort = self._effort()
-        if self.bank.runs:
-            self.index = np.minimum(self.index + 1, len(self.bank) - 1)
+        self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
         return Motion(
@@ -242,6 +241,17 @@ class Blades:
             effort,
             increment,
         )
+
+    def elapse(self) -> None:
+        """One control interval later: where plants follow one another, the next is on."""
+        if self.bank.runs:
+            self.index = np.minimum(self.index + 1, len(self.bank) - 1)
+
+    @property
+    def disturbances(self) -> SharedDisturbances | SeededDisturbances:
+        """Loads and noise, from the first ``begin`` on."""
+        assert self._disturbances is not None
+        return self._disturbances
 
     def _operators(self) -> Operators:
         """One plant's operators for the whole batch where all blades have the same now, else gathered blade by blade."""

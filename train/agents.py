@@ -34,4 +34,4 @@ def train_agent(name: str, environment: Mapping[str, Any], budget: float, seed: 
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=1, **environment)
         task = envs.unwrapped.task
         envs.close()
-        return train_gradient(task.design_plant, task.scenario, task.steps, budget, seed, report)
+        return train_gradient(task, seed, report, seconds=budget)[0]

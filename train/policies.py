@@ -110,20 +110,52 @@ class RecurrentPolicy(Policy):
         units = self.weights["weight_hh"].shape[1]
         hidden, voltages = memory[:, :units], memory[:, units:]
         inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages])
-        from_input = np.split(inputs @ self.weights["weight_ih"].T + self.weights["bias_ih"], 3, axis=1)
-        from_hidden = np.split(hidden @ self.weights["weight_hh"].T + self.weights["bias_hh"], 3, axis=1)
-        reset, update = (_sigmoid(a + b) for a, b in zip(from_input[:2], from_hidden[:2], strict=True))
-        candidate = np.tanh(from_input[2] + reset * from_hidden[2])
-        hidden = (1.0 - update) * candidate + update * hidden
-        action = np.tanh(hidden @ self.weights["weight_out"].T + self.weights["bias_out"])
+        hidden, action = gated_unit(self.weights, inputs, hidden)
         return action, np.hstack([hidden, np.zeros_like(action)])
+
+
+class ResidualPolicy(Policy):
+    """Adds to a linear controller and weighs it: u = clip((1 + g) ∘ u_lin + r), [g, r] the tanh output of a gated recurrent unit.
+
+    Its memory is [hidden units | the controller's | voltages].
+    """
+
+    __slots__ = ()
+    kind = "residual"
+
+    @property
+    def memory_size(self) -> int:
+        """Hidden units, the controller's memory and the last voltages."""
+        return int(self.weights["weight_hh"].shape[1]) + int(self.weights["feedback"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """The controller, the unit, and what both ask for."""
+        units, order = self.weights["weight_hh"].shape[1], self.weights["feedback"].shape[1]
+        hidden, linear, voltages = memory[:, :units], memory[:, units : units + order], memory[:, units + order :]
+        product = np.hstack([linear, readings]) @ self.weights["fused"]
+        asked = np.clip(product[:, order:], self.lowest, self.highest)
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked])
+        hidden, output = gated_unit(self.weights, inputs, hidden)
+        weight, added = np.split(output, 2, axis=1)
+        action = np.clip((1.0 + weight) * asked + added, self.lowest, self.highest)
+        return action, np.hstack([hidden, product[:, :order] + action @ self.weights["feedback"], action])
+
+
+def gated_unit(weights: Mapping[str, Array], inputs: Array, hidden: Array) -> tuple[Array, Array]:
+    """Hidden units (N, units) and tanh outputs of a gated recurrent unit, as torch's ``GRUCell`` and a linear layer have them."""
+    from_input = np.split(inputs @ weights["weight_ih"].T + weights["bias_ih"], 3, axis=1)
+    from_hidden = np.split(hidden @ weights["weight_hh"].T + weights["bias_hh"], 3, axis=1)
+    reset, update = (_sigmoid(a + b) for a, b in zip(from_input[:2], from_hidden[:2], strict=True))
+    candidate = np.tanh(from_input[2] + reset * from_hidden[2])
+    hidden = (1.0 - update) * candidate + update * hidden
+    return hidden, np.tanh(hidden @ weights["weight_out"].T + weights["bias_out"])
 
 
 def _sigmoid(values: Array) -> Array:
     return np.asarray(0.5 * (1.0 + np.tanh(0.5 * values)))
 
 
-KINDS: Mapping[str, type[Policy]] = {"history": HistoryPolicy, "recurrent": RecurrentPolicy}
+KINDS: Mapping[str, type[Policy]] = {"history": HistoryPolicy, "recurrent": RecurrentPolicy, "residual": ResidualPolicy}
 
 
 def save_policy(policy: Policy, folder: Path) -> None:

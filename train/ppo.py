@@ -109,7 +109,7 @@ class Clock(BaseCallback):
         super().__init__()
         task = envs.blades.task
         self._budget, self._report, self._steps = budget, report, task.steps
-        self._reference = uncontrolled_cost(task.plant, task.scenario, task.steps)
+        self._reference = uncontrolled_cost(task)
         self._begin = self._cost = 0.0
         self._envs, self._held = envs, envs.held
 

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from beamenv.plant import Plant
-from beamenv.scenarios import Scenario
 from beamenv.simulation import Blades
+from beamenv.task import Task
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +28,12 @@ class Progress:
 Report = Callable[[Progress], None]
 
 
-def uncontrolled_cost(plant: Plant, scenario: Scenario, steps: int, episodes: int = 512) -> float:
+def uncontrolled_cost(task: Task, episodes: int = 512) -> float:
     """Mean J (J s) of episodes without control: what running costs are relative to."""
-    blades, generator = Blades(plant, scenario, episodes), np.random.default_rng(0)
+    blades, generator = Blades(task.bank, task.scenario, episodes), np.random.default_rng(0)
     blades.begin(generator)
-    idle = np.zeros((episodes, plant.B.shape[1]))
-    return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(steps)))
+    idle = np.zeros((episodes, task.plant.B.shape[1]))
+    return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(task.steps)))
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from baselines import lqg, lqr, no_control, velocity_feedback
+from baselines import lqg, lqr, mpc, no_control, velocity_feedback
 from baselines.controller import Controller
 from baselines.persistent_load import PersistentLoad, with_persistent_load
 from baselines.riccati import sampled_kalman_filter, sampled_regulator
@@ -18,6 +18,8 @@ LAWS = {
     "LQG": lqg,
     "LQG (thesis)": lambda plant: lqg(plant, "continuous"),
     "LQG with load estimate": lambda plant: lqg(plant, persistent_load=PersistentLoad()),
+    "MPC": mpc,
+    "MPC with load estimate": lambda plant: mpc(plant, PersistentLoad()),
 }
 
 

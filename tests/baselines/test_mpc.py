@@ -1,0 +1,176 @@
+"""Model-predictive control: LQG while no limit is in sight, else the optimum within the limits, found by other means."""
+
+import gymnasium
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+import beamenv
+from baselines import PersistentLoad, evaluate, lqg, mpc
+from baselines.lqg import sampled_design
+from baselines.mpc import doubling_blocks
+
+LOADS = {"no load estimate": None, "load estimate": PersistentLoad()}
+BLOCKS = {"every interval": [1] * 6, "blocks": [1, 1, 2, 3], "one move held": [4]}
+
+
+@pytest.fixture(params=LOADS, name="load")
+def _load(request):
+    return LOADS[request.param]
+
+
+@pytest.fixture(params=BLOCKS, name="blocks")
+def _blocks(request):
+    return BLOCKS[request.param]
+
+
+def states(count, order, size=0.004):
+    """(count, order), √J, that ask the small plant's regulator for 800 and 2800 V (median); then line loads of some 3 N/m."""
+    return np.random.default_rng(1).normal(size=(count, order)) * np.where(np.arange(order) < 6, size, 3.0)
+
+
+def decide(law, state):
+    """Voltage (N, m) when the filter's estimate is ``state`` (N, s): the reading is what the filter expects."""
+    expected = np.clip(state @ law.output.T, -law.sensor_full_scale, law.sensor_full_scale)
+    return law.predict(expected / law.measurement_scale, state)[0] * law.voltage_scale
+
+
+def square_root(weight):
+    """Matrix with rootᵀ root = weight."""
+    values, vectors = np.linalg.eigh(weight)
+    assert values[0] > -1e-12 * values[-1]
+    return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+
+
+def least_squares(held, P, state, blocks):
+    """Matrix and offset whose |matrix u + offset|² is the cost of the moves u, instant by instant from the sampled cost itself."""
+    n, m = held.B.shape
+    unit = np.concatenate([np.ones(n), np.full(m, 1500.0)])
+    stage = square_root(held.cost[: n + m, : n + m] * np.outer(unit, unit)) / unit
+    free, forced, matrix, offset = state, np.zeros((n, m * len(blocks))), [], []
+    for move, length in enumerate(blocks):
+        voltage = np.zeros((m, m * len(blocks)))
+        voltage[:, m * move : m * (move + 1)] = np.eye(m)
+        for _ in range(length):
+            matrix.append(stage @ np.vstack([forced, voltage]))
+            offset.append(stage @ np.concatenate([free, np.zeros(m)]))
+            free, forced = held.A @ free, held.A @ forced + held.B @ voltage
+    root = square_root(P)
+    return np.vstack([*matrix, root @ forced]), np.concatenate([*offset, root @ free])
+
+
+def test_without_a_limit_in_sight_it_is_lqg(small_plant, load):
+    plant = small_plant(voltage_limits=np.array([[-1e6, -1e6], [1e6, 1e6]]))
+    law, reference = mpc(plant, load), lqg(plant, persistent_load=load)
+    memory = reference_memory = None
+    for observation in 0.05 * np.random.default_rng(0).normal(size=(200, 3, 2)):
+        action, memory = law.predict(observation, memory)
+        expected, reference_memory = reference.predict(observation, reference_memory)
+        np.testing.assert_allclose(action, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+def test_one_move_of_one_voltage_is_lqg_clipped(scalar_plant):
+    """Least (u + Kx)² (R + BᵀPB) on an interval."""
+    plant = scalar_plant()
+    held, _, K, _ = sampled_design(plant)
+    state = np.linspace(-3.0, 3.0, 13)[:, None]
+    voltage = decide(mpc(plant, move_blocks=[1]), state)
+    np.testing.assert_allclose(voltage, np.clip(-state @ K.T, -1500.0, 1500.0), rtol=1e-9)
+    assert np.abs(state @ K.T).max() > 1500.0 > np.abs(state @ K.T)[5]
+
+
+def test_one_move_of_two_voltages_lets_the_free_one_help_the_bound_one(small_plant):
+    """With S = R + BᵀPB: u₂ = −(Kx)₂ − S₂₁/S₂₂ (u₁ + (Kx)₁), where u₁ is at its limit and u₂ is not."""
+    plant = small_plant(voltage_limits=np.array([[-500.0, -1e5], [1500.0, 1e5]]))
+    held, P, K, _ = sampled_design(plant)
+    S = held.input_weight + held.B.T @ P @ held.B
+    state = states(20, 6)
+    wanted, voltage = -state @ K.T, decide(mpc(plant, move_blocks=[1]), state)
+    first = np.clip(wanted[:, 0], -500.0, 1500.0)
+    assert (first != wanted[:, 0]).sum() > 5
+    np.testing.assert_allclose(voltage[:, 0], first, rtol=1e-9)
+    np.testing.assert_allclose(voltage[:, 1], wanted[:, 1] - S[1, 0] / S[1, 1] * (first - wanted[:, 0]), rtol=1e-9)
+
+
+def test_moves_are_the_bounded_least_squares_solution(small_plant, load, blocks):
+    plant = small_plant()
+    law, (held, P, _, _) = mpc(plant, load, blocks), sampled_design(plant, load)
+    drive, bounds = 1500.0, (np.tile([-1 / 3, -1 / 3], len(blocks)), np.ones(2 * len(blocks)))
+    bound = free = 0
+    for state in states(20, len(held.A)):
+        matrix, offset = least_squares(held, P, state, blocks)
+        scale = np.linalg.norm(matrix * drive)
+        best = lsq_linear(matrix * drive / scale, -offset / scale, bounds, method="bvls", tol=1e-14)
+        moves = law.program.minimise((law.program_gradient @ state)[None])[0] / drive
+        np.testing.assert_allclose(moves, best.x, atol=1e-6)
+        np.testing.assert_allclose(decide(law, state[None])[0] / drive, best.x[:2], atol=1e-6)
+        bound += np.count_nonzero(best.active_mask)
+        free += np.count_nonzero(best.active_mask == 0)
+    assert bound > 5
+    assert free > 5
+    assert law.solver_failures == 0
+
+
+def test_moves_fulfil_the_conditions_of_karush_kuhn_and_tucker(small_plant, load):
+    """Uphill at a lower limit, downhill at an upper one, level between: the asymmetric limits are all met."""
+    law = mpc(small_plant(), load)
+    gradient = states(200, len(law.transition)) @ law.program_gradient.T
+    moves = law.program.minimise(gradient)
+    slope = (moves @ law.program.hessian + gradient) / np.abs(gradient).max()
+    low, high = moves < -500.0 + 1e-9, moves > 1500.0 - 1e-9
+    assert low.any(axis=0).all()
+    assert high.any(axis=0).all()
+    assert moves.min() == -500.0
+    assert moves.max() == 1500.0
+    assert slope[low].min() > -1e-12
+    assert slope[high].max() < 1e-12
+    assert np.abs(slope[~low & ~high]).max() < 1e-12
+
+
+def test_a_reading_at_full_scale_tells_nothing_to_a_filter_that_expects_more(small_plant):
+    law = mpc(small_plant())
+    state = 3.0 * law.sensor_full_scale @ np.linalg.pinv(law.output).T
+    action, memory = law.predict(np.ones(2), state)
+    np.testing.assert_allclose(memory, law.transition @ state + law.voltage_input @ (1500.0 * action), rtol=1e-12)
+    _, surprised = law.predict(np.array([0.9, 1.0]), state)
+    assert np.abs(surprised - memory).max() > 1e-3 * np.abs(memory).max()
+
+
+def test_the_solver_is_left_alone_while_the_plan_keeps_within_the_limits(small_plant, monkeypatch):
+    law = mpc(small_plant())
+    solved = []
+    monkeypatch.setattr(type(law.program), "minimise", lambda self, f: solved.append(len(f)) or np.zeros_like(f))
+    state = np.vstack([1e-3 * states(4, 6), states(1, 6)])
+    decide(law, state)
+    assert solved == [1]
+
+
+def test_where_the_solver_gives_up_the_voltage_is_lqgs_clipped_and_counted(small_plant):
+    plant = small_plant()
+    law, (_, _, K, _) = mpc(plant), sampled_design(plant)
+    law.program._model.settings = {**law.program._model.settings, "iter_limit": 1}
+    state = states(10, 6, size=0.5)
+    np.testing.assert_allclose(decide(law, state), np.clip(-state @ K.T, -500.0, 1500.0), rtol=1e-9)
+    assert law.solver_failures == 10
+
+
+def test_moves_double_in_length_up_to_one_period_of_the_slowest_mode(small_plant):
+    assert doubling_blocks(small_plant()) == [1, 1, 2, 2, 4, 4, 8, 8, 16, 16, 8]  # 2π / (180 rad/s × 0.5 ms) = 69.8
+    assert doubling_blocks(small_plant(natural_frequencies=np.array([1e5]))) == [1]
+
+
+@pytest.mark.parametrize("blocks", [[], [1, 0], [2.0], [True]])
+def test_blocks_that_are_not_positive_whole_numbers_are_refused(small_plant, blocks):
+    with pytest.raises(ValueError, match="move_blocks = .* positive whole number"):
+        mpc(small_plant(), move_blocks=blocks)
+
+
+def test_under_deep_saturation_it_costs_less_than_lqg_clipped(load):
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, scenario={"preset": "deflection", "magnitude": 300.0})
+    plant = envs.unwrapped.design_plant
+    clipped = evaluate(lqg(plant, persistent_load=load), envs, range(8))
+    law = mpc(plant, load)
+    planned = evaluate(law, envs, range(8), reference=clipped.reference)
+    assert clipped.saturation.value > 0.3
+    assert planned.cost.value < clipped.cost.value
+    assert law.solver_failures == 0
