@@ -77,15 +77,19 @@ def benchmark(
 
 def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
     """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
-    known, refused = {}, {}
-    for name in dict.fromkeys(beamenv.BENCHMARK_SCENARIOS if names is None else names):
-        try:
-            known[Path(name).stem if name.endswith(".toml") else name] = scenario(name)
-        except ValueError as error:
-            refused[name] = str(error)
+    read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
+    known = {Path(name).stem if name.endswith(".toml") else name: each for name, each in read.items() if isinstance(each, Scenario)}
+    refused = {name: each for name, each in read.items() if isinstance(each, str)}
     if not known:
         raise ValueError(" ".join(refused.values()) or "scenarios is empty, but a benchmark needs at least one.")
     return known, refused
+
+
+def _read(name: str) -> Scenario | str:
+    try:
+        return scenario(name)
+    except ValueError as error:
+        return str(error)
 
 
 def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progress) -> list[Cell]:

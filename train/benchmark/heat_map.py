@@ -13,8 +13,8 @@ from train.figures import STYLE
 
 Array = NDArray[np.float64]
 
-RANGE = (0.25, 4.0)
-"""J / J₀ between which shades differ; symmetric about 1 on a logarithmic scale."""
+RANGE = (0.35, 2.0)
+"""J / J₀ between which shades differ, on a logarithmic scale: twice no control and worse is all the same dark."""
 
 SHADES = "cividis_r"
 """Its lightness falls steadily: dark is bad in greyscale too, and for those who are colour-blind."""
@@ -53,7 +53,7 @@ def heat_map(table: BenchmarkTable) -> Any:
             for column, name in enumerate(names):
                 _write(axis, column, line, table.row(scenario, name), name == best)
         _label(axis, table, names)
-        ticks = [0.25, 0.5, 1.0, 2.0, 4.0]
+        ticks = [0.35, 0.5, 0.7, 1.0, 1.4, 2.0]
         bar = figure.colorbar(image, ax=axis, extend="both", ticks=ticks, pad=0.01)
         bar.ax.minorticks_off()
         bar.ax.set_yticklabels([f"{tick:g}" for tick in ticks])
@@ -71,12 +71,10 @@ def _write(axis: Any, column: int, line: int, row: Row | None, bold: bool) -> No
         return
     cost, unstable = row.estimates["relative_cost"].value, row.estimates["unstable"].value
     ink = "white" if cost > 1.0 else "black"
-    weight = "bold" if bold else "normal"
-    axis.text(
-        column, line - (0.16 if unstable else 0.0), number(cost, "{:.2f}"), ha="center", va="center", color=ink, weight=weight
-    )
+    middle = {"ha": "center", "va": "center", "color": ink}
+    axis.text(column, line - (0.16 if unstable else 0.0), number(cost, "{:.2f}"), weight="bold" if bold else "normal", **middle)
     if unstable:
-        axis.text(column, line + 0.24, f"▲ {share(unstable)}", ha="center", va="center", color=ink, fontsize=6.5)
+        axis.text(column, line + 0.24, f"▲ {share(unstable)}", fontsize=6.5, **middle)
 
 
 def _label(axis: Any, table: BenchmarkTable, names: tuple[str, ...]) -> None:

@@ -88,7 +88,7 @@ def overview(table: BenchmarkTable) -> str:
 
 
 def overview_cell(row: Row | None) -> str:
-    """ "–" where a controller has nothing to do, "failed" where nothing could be measured."""
+    """A dash where a controller has nothing to do, "failed" where nothing could be measured."""
     if row is None:
         return "–"
     if not row.measured:
@@ -104,10 +104,8 @@ def share(value: float) -> str:
 
 def scenario_table(rows: Sequence[Row]) -> str:
     """Every estimate, the least J first."""
-    table = [
-        ["controller", "kind", "runs", *(heading for _, heading, *_ in COLUMNS)],
-        ["---", "---", *["---:"] * (1 + len(COLUMNS))],
-    ]
+    headings = ["controller", "kind", "runs", *(heading for _, heading, *_ in COLUMNS)]
+    table = [headings, ["---", "---", *["---:"] * (len(headings) - 2)]]
     for row in sorted(rows, key=lambda each: each.mean_cost):
         cells = [text(row.estimates.get(name), factor, form, wide) for name, _, factor, form, wide in COLUMNS]
         table.append([row.title, row.kind, str(row.runs), *cells])
@@ -136,12 +134,12 @@ def lines(rows: Sequence[Sequence[str]]) -> str:
 
 def legend(table: BenchmarkTable) -> str:
     """What the numbers are, and by which rules."""
-    seeds = table.configuration["seeds"]
+    first, last = table.configuration["seeds"]
     return (
-        f"J₀ is J without control on the same episodes: {seeds[1] - seeds[0] + 1} held-out seeds, {seeds[0]} to {seeds[1]}, equal for "
-        "every controller. J / J₀: ratio of the means over seeds and training runs. IQM: interquartile mean of J / J₀, seed by seed. "
-        f"Brackets: {100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
-        "P(J < LQG's): probability of improvement, ties half. "
-        f"An episode is unstable if the blade fails, which makes J infinite, or if J > {UNSTABLE:g} J₀; none is left out. "
-        "Settling, peaks and effort are means over episodes. Controllers of the kind “bound” see the true state, which no sensor shows."
+        f"J₀ is J without control on the same episodes: {last - first + 1} held-out seeds, {first} to {last}, equal for every "
+        "controller. J / J₀: ratio of the means over seeds and training runs. IQM: interquartile mean of J / J₀, seed by seed and "
+        f"run by run. Brackets: {100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
+        "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails, which makes J infinite, "
+        f"or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort are means over episodes. Controllers of the kind "
+        "“bound” see the true state, which no sensor shows."
     )

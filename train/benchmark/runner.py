@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from multiprocessing import get_context
 
 from train.benchmark.cells import Cell, Job, measured
+from train.benchmark.sources import Source
 from train.speed import ONE_THREAD
 
 
@@ -32,9 +33,7 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
             for future in as_completed(futures):
                 finished(futures[future], future.result())
         except BrokenProcessPool:
-            raise ChildProcessError(
-                "a process of the benchmark died: what was finished is kept, and the same command goes on."
-            ) from None
+            raise ChildProcessError("a process died: what was finished is kept, and the same command goes on.") from None
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
@@ -61,7 +60,13 @@ def one_thread_each() -> Iterator[None]:
 
 def _check_that_they_travel(jobs: Sequence[Job]) -> None:
     for job in {job.controller: job for job in jobs}.values():
-        try:
-            pickle.dumps(job.source)
-        except Exception:  # noqa: BLE001 - pickle raises whatever the object does
-            raise ValueError(f"controller {job.controller!r} cannot be sent to another process: take jobs=1.") from None
+        if not _travels(job.source):
+            raise ValueError(f"controller {job.controller!r} cannot be sent to another process: take jobs=1.")
+
+
+def _travels(source: Source) -> bool:
+    try:
+        pickle.dumps(source)
+    except Exception:  # noqa: BLE001 - pickle raises whatever the object does
+        return False
+    return True

@@ -29,10 +29,8 @@ def findings(table: BenchmarkTable) -> list[Finding]:
     contests = [contest for name in others if (contest := _contest(table.within(name)))]
     if contests:
         ahead = [agent.scenario for agent, _, gap in contests if gap.high < 0.0]
-        sentence = (
-            f"The best agent is ahead of the best fixed controller in {len(ahead)} of {len(contests)} scenarios besides nominal"
-        )
-        found.append(Finding(f"{sentence}{': ' if ahead else ''}{', '.join(ahead)}."))
+        where = f"{len(ahead)} of {len(contests)} scenarios besides nominal{': ' if ahead else ''}{', '.join(ahead)}"
+        found.append(Finding(f"The best agent is ahead of the best fixed controller in {where}."))
         found += [Finding(_told(*contest)) for contest in contests]
     return found + [Finding(sentence) for name in table.scenarios if (sentence := winner(table.within(name)))]
 
