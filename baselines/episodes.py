@@ -84,7 +84,7 @@ def roll_out(controller: Controller, env: Environment, seeds: Sequence[int], pro
 
 
 def _run(controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None) -> tuple[Array, ...]:
-    """Cost and effort (T, N), tip (T, N, 2), voltages (T, N, m), failures (T, N) of one episode of each blade, NaN once it is over."""
+    """Cost, effort (T, N), tip (T, N, 2), voltages (T, N, m) and failures (T, N) of one episode each, NaN once it is over."""
     observes = getattr(controller, "observes", "observation")
     observation, memory = _reset(env, seeds, options), None
     begins, running = np.ones(len(seeds), dtype=bool), np.ones(len(seeds), dtype=bool)

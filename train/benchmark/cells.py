@@ -109,6 +109,9 @@ def measured(job: Job) -> Cell:
 def _measured(job: Job) -> Cell:
     blades = opened(job.setting)
     controller = job.source.build(blades.envs.unwrapped.task)
+    uncontrolled = np.nansum(blades.reference.cost, axis=0)
+    if not uncontrolled.all():
+        raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")
     episodes = roll_out(controller, blades.envs, held_out(job.setting.seeds))
     metrics = measure(episodes, blades.band)
     gave_up = getattr(controller, "solver_failures", 0)
@@ -118,7 +121,7 @@ def _measured(job: Job) -> Cell:
         job.run,
         title=getattr(controller, "name", type(controller).__name__),
         sentence=f"the solver gave up at {gave_up} instants; the law's substitute was applied there." if gave_up else "",
-        uncontrolled=np.nansum(blades.reference.cost, axis=0),
+        uncontrolled=uncontrolled,
         metrics={name: getattr(metrics, name) for name in SERIES},
     )
 
