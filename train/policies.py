@@ -5,13 +5,15 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Self
 
+from beamenv.plant import Plant, normalised
 from train.storage import write_json, write_whole
 
 Array = NDArray[np.floating[Any]]
@@ -52,6 +54,11 @@ class Policy:
         action = np.clip(action, self.lowest, self.highest)
         following[:, -action.shape[1] :] = action
         return (action[0] if single else action), following
+
+    def behind(self, plant: Plant) -> Self:
+        """The policy behind the drive of another plant, which may have other limits."""
+        lowest, highest = normalised(plant).voltage_limits.astype(np.float32)
+        return replace(self, lowest=lowest, highest=highest)
 
     @property
     def memory_size(self) -> int:

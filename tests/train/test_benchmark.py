@@ -105,7 +105,7 @@ def test_what_fails_leaves_its_sentence_and_the_rest_goes_on(finished):
 def test_every_piece_is_written(finished):
     folder, table = finished
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-    assert {"table.csv", "table.md", "benchmark.json", "heat_map.png", "cells/nominal/lqg.json"} <= written
+    assert {"table.csv", "table.md", "benchmark.json", "heat_map.png", "report.html", "cells/nominal/lqg.json"} <= written
     with (folder / "table.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [(row["scenario"], row["controller"]) for row in rows] == [(row.scenario, row.controller) for row in table.rows]

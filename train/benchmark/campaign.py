@@ -133,11 +133,9 @@ def versions() -> dict[str, str]:
 def write_all(folder: Path, table: BenchmarkTable) -> None:
     """Tables, heat map and page."""
     from train.benchmark.heat_map import heat_map
+    from train.benchmark.page import write_report
     from train.figures import save
 
     write_files(folder, table)
     save(heat_map(table), folder / "heat_map.png")
-    if find_spec("train.page"):
-        from train.benchmark.page import write_report
-
-        write_report(folder / "report.html", table)
+    write_report(folder / "report.html", table)

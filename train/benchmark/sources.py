@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-import numpy as np
-
 from baselines import Controller
-from beamenv.plant import normalised
 from beamenv.task import Task
 from train.benchmark.models import fitted, load_model
 from train.contenders import Contender
@@ -54,12 +51,10 @@ class Trained:
     def build(self, task: Task) -> Controller:
         """The agent, knowing the drive limits of this task as every contender does."""
         policy = load_policy(self.folder)
-        lowest, highest = normalised(task.design_plant).voltage_limits.astype(np.float32)
-        if len(policy.lowest) != len(lowest):
-            raise ValueError(
-                f"agent {policy.name!r} drives {len(policy.lowest)} actuators, but must drive the blade's {len(lowest)}."
-            )
-        return replace(policy, lowest=lowest, highest=highest)
+        drives, blade = len(policy.lowest), task.design_plant
+        if drives != blade.B.shape[1]:
+            raise ValueError(f"agent {policy.name!r} drives {drives} actuators, but must drive the blade's {blade.B.shape[1]}.")
+        return policy.behind(blade)
 
     def fingerprint(self) -> str:
         """Of its weights and what is said of them."""
