@@ -4,11 +4,12 @@ import csv
 import json
 import re
 
+import gymnasium
 import numpy as np
 import pytest
 
+import beamenv
 import train.compare
-from beamenv.configuration import THESIS, build_plant
 from train.agents import train_agent
 from train.compare import CLASSICAL, Comparison, Listener, compare, read_curve
 from train.comparison_page import shown_pair
@@ -79,8 +80,8 @@ def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished
 
 def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
     _, evaluations, _ = finished
-    plant = build_plant(THESIS)
-    laws = {name: classical(name, plant) for name in CLASSICAL}
+    task = gymnasium.make(beamenv.ENV_ID).unwrapped.task
+    laws = {name: contender(name).build(task) for name in CLASSICAL}
     left, right = shown_pair(evaluations[: len(laws)], laws)
     assert left is laws["none"]
     assert right.observes == "observation" and right is not left
