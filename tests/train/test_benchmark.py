@@ -250,6 +250,7 @@ def test_where_nothing_moves_no_cost_is_relative_to_it():
         ({"own": {"mine": 3}}, "controller 'mine' is a int"),
         ({"own": {"lqg": Still()}}, "'lqg' is there twice"),
         ({"scenarios": []}, "scenarios is empty"),
+        ({"scenarios": ["delay", "mine/delay.toml"]}, "scenarios delay and mine/delay.toml have the same name"),
     ],
 )
 def test_what_makes_no_sense_is_refused_at_once(arguments, sentence):

@@ -78,8 +78,11 @@ def benchmark(
 def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
     """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
     read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
-    known = {Path(name).stem if name.endswith(".toml") else name: each for name, each in read.items() if isinstance(each, Scenario)}
+    titles = {name: Path(name).stem if name.endswith(".toml") else name for name in read}
+    known = {titles[name]: each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}
+    if doubled := [name for name in read if list(titles.values()).count(titles[name]) > 1]:
+        raise ValueError(f"scenarios {' and '.join(doubled)} have the same name: rename the file.")
     if not known:
         raise ValueError(" ".join(refused.values()) or "scenarios is empty, but a benchmark needs at least one.")
     return known, refused
