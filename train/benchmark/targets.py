@@ -57,6 +57,8 @@ def winner(rows: Sequence[Row]) -> str:
     gap = first.estimates.get("difference_to_lqg") if first else None
     if first is None or gap is None:
         return ""
+    if first.mean_cost == float("inf"):
+        return f"{first.scenario}: every controller breaks blades."
     unstable = first.estimates["unstable"].value
     doubt = f"; unstable in {100.0 * unstable:.0f} % of its episodes" if unstable else ""
     return f"{first.scenario}: least J has {first.controller} ({first.kind}), {_gap(gap)} beside LQG{doubt}."
