@@ -118,7 +118,9 @@ def seen_from(config: BladeConfig, beam: RotatingBeam, design: BladeConfig) -> A
     if beam.space != other.space:
         return None
     true, modal = truncate(beam, config.speed, config.modes), truncate(other, design.speed, design.modes)
-    return coordinates(true.mode_shapes / true.natural_frequencies, true.mode_shapes, other, modal.mode_shapes, modal.natural_frequencies)
+    return coordinates(
+        true.mode_shapes / true.natural_frequencies, true.mode_shapes, other, modal.mode_shapes, modal.natural_frequencies
+    )
 
 
 def coordinates(displacing: Array, moving: Array, design: RotatingBeam, shapes: Array, frequencies: Array) -> Array:

@@ -143,7 +143,9 @@ class Rotor:
                 raise ValueError(f"scenario: rotor has {value!r} N/m, but loads must be zero or positive numbers.")
         object.__setattr__(self, "harmonics", tuple(float(value) for value in self.harmonics))
         if not (_is_number(self.turbulence_time) and self.turbulence_time > 0.0):
-            raise ValueError(f"scenario: rotor.turbulence_time is {self.turbulence_time!r}, but must be a positive number of seconds.")
+            raise ValueError(
+                f"scenario: rotor.turbulence_time is {self.turbulence_time!r}, but must be a positive number of seconds."
+            )
 
 
 def checked_range(name: str, value: Any, least: float, most: float) -> Range:

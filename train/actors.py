@@ -72,7 +72,7 @@ class Layer(nn.Module):
         self.bias = nn.Parameter(gain * bound * (2.0 * torch.rand(runs, 1, outputs) - 1.0) * float(bias), requires_grad=bias)
 
     def forward(self, rows: Tensor) -> Tensor:
-        """(rows, outputs)"""
+        """Rows (rows, outputs)."""
         runs = len(self.weight)
         return torch.baddbmm(self.bias, rows.view(runs, -1, rows.shape[1]), self.weight).view(len(rows), -1)
 

@@ -8,13 +8,11 @@ unrolled; the energy left at a window's end, times the time it would take to dec
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 import torch
-from torch import nn
 
 from baselines import PersistentLoad, lqg
 from beamenv.plant import Plant

@@ -35,7 +35,7 @@ class Acting(Protocol):
 
 
 class Windows:
-    """A batch of episodes of one task, cut into windows that are unrolled one after the other; blades are spread over the windows."""
+    """A batch of episodes of one task, cut into windows unrolled one after the other; blades are spread over the windows."""
 
     def __init__(self, task: Task, episodes: int, window: int, generator: np.random.Generator) -> None:
         self.length = min(window, task.steps)

@@ -198,8 +198,9 @@ def test_a_contender_that_lacks_something_is_named(content, sentence, tmp_path, 
 def test_every_contender_is_built_from_the_design_alone(name):
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=2, scenario="spillover", **SHORT)
     law = contender(name).build(envs.unwrapped.task)
-    shown = len(envs.unwrapped.design_plant.A) if law.observes == "state" else 4
-    action, _ = law.predict(np.zeros((2, shown)))
+    seen = {"state": np.zeros((2, len(envs.unwrapped.design_plant.A))), "observation": np.zeros((2, 4))}
+    seen["observation and speed"] = np.hstack([seen["observation"], np.full((2, 1), 200.0)])
+    action, _ = law.predict(seen[law.observes])
     assert np.array_equal(action, np.zeros((2, 4)))
 
 

@@ -8,22 +8,25 @@ import pytest
 import torch
 
 from beamenv.configuration import blade_config, build_plant
-from train.gradient import Actor, GradientSettings
+from train.actors import ActorSettings
+from train.gradient import new_actor
 from train.policies import HistoryPolicy, load_policy, save_policy
 
 
 @pytest.fixture(scope="module")
 def actor():
     torch.manual_seed(3)
-    actor = Actor(build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)})), GradientSettings(output_gain=3.0))
+    actor = new_actor(
+        "recurrent", build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)})), ActorSettings(output_gain=3.0)
+    )
     with torch.no_grad():
-        actor.head.bias.copy_(torch.tensor([0.3, -0.4, 0.0, 0.1]))
+        actor.unit.out.bias[0, 0] = torch.tensor([0.3, -0.4, 0.0, 0.1])
     return actor
 
 
 @pytest.fixture(scope="module")
 def recurrent(actor):
-    return actor.policy(GradientSettings(output_gain=3.0))
+    return actor.policy(0)
 
 
 @pytest.fixture(scope="module")
@@ -46,10 +49,10 @@ def readings(steps=12, count=3):
 
 
 def test_numpy_repeats_the_training_time_network(actor, recurrent):
-    hidden, voltages, memory = torch.zeros(3, 48), torch.zeros(3, 4), None
+    remembered, memory = actor.start(3), None
     for observed in readings(50):
         with torch.no_grad():
-            voltages, hidden = actor(torch.as_tensor(observed, dtype=torch.float32), hidden, voltages)
+            voltages, remembered = actor(torch.as_tensor(observed, dtype=torch.float32), remembered)
         action, memory = recurrent.predict(observed, memory)
         np.testing.assert_allclose(action, voltages.numpy(), atol=2e-6)
     assert np.abs(action).max() > 0.05

@@ -70,7 +70,7 @@ def _write(axis: Any, column: int, line: int, row: Row | None, bold: bool) -> No
         axis.text(column, line, "✕", ha="center", va="center", color="black")
         return
     cost, unstable = row.estimates["relative_cost"].value, row.estimates["unstable"].value
-    ink = "white" if cost > 1.0 else "black"
+    ink = "white" if cost > 0.85 else "black"
     middle = {"ha": "center", "va": "center", "color": ink}
     axis.text(column, line - (0.16 if unstable else 0.0), number(cost, "{:.2f}"), weight="bold" if bold else "normal", **middle)
     if unstable:

@@ -95,7 +95,7 @@ def magnification(largest: float, span: float) -> float:
 def motions(episode: RecordedEpisode) -> tuple[list[Motion], float]:
     """The pair with the deflections that are drawn, and their common magnification."""
     blade, times = episode.blade, frame_times(episode)
-    operator = displacement_operator(blade, _stations(blade))
+    operator = displacement_operator(blade, _stations(blade))[:2]
     rows = [np.searchsorted(recording.time, times).clip(max=len(recording.time) - 1) for recording in episode.pair]
     true = [np.einsum("dkn,fn->fdk", operator, each.states[row]) for each, row in zip(episode.pair, rows, strict=True)]
     factor = magnification(max(float(np.linalg.norm(each, axis=1).max()) for each in true), blade.beam.length)
