@@ -247,8 +247,8 @@ def test_where_nothing_moves_no_cost_is_relative_to_it():
     ("arguments", "sentence"),
     [
         ({"seeds": 1}, "seeds = 1 must be a whole number, at least 2"),
-        ({"controllers": ["pid"]}, "controller = 'pid' must be one of lqg"),
-        ({"own": {"mine": 3}}, "controller 'mine' is a int"),
+        ({"controllers": ["pid"]}, "controller = 'pid' must be one of .*lqg, lqg-load"),
+        ({"own": {"mine": 3}}, "controller 'mine' is of type int"),
         ({"own": {"lqg": Still()}}, "'lqg' is there twice"),
         ({"scenarios": []}, "scenarios is empty"),
         ({"scenarios": ["delay", "mine/delay.toml"]}, "scenarios delay and mine/delay.toml have the same name"),

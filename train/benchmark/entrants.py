@@ -65,7 +65,7 @@ def entrants(
 
 def _given(name: str, controller: Any) -> Given:
     if not callable(getattr(controller, "predict", None)):
-        raise ValueError(f"controller {name!r} is a {type(controller).__name__}, but must have Stable-Baselines3's predict.")
+        raise ValueError(f"controller {name!r} is of type {type(controller).__name__}, but must have Stable-Baselines3's predict.")
     return Given(controller)
 
 
