@@ -13,7 +13,7 @@ from rich.console import Console
 from train.options import JsonOption, one_sentence, print_json
 
 if TYPE_CHECKING:
-    from train.benchmark.table import BenchmarkTable
+    from train.benchmark.table import BenchmarkTable, Row
 
 
 def benchmark(
@@ -94,18 +94,29 @@ class _Bar:
 
 
 def _show(table: BenchmarkTable, folder: Path) -> None:
+    """Two digits of each cell, so that ten scenarios fit a terminal; the files hold the rest."""
+    from rich import box
     from rich.table import Table
 
-    from train.benchmark.report import overview_cell
     from train.benchmark.targets import findings
 
-    shown = Table(title="J / J without control", caption=f"written to {folder}")
-    shown.add_column("controller")
+    caption = f"▲ some episodes unstable. Written to {folder}"
+    shown = Table(title="J / J without control", caption=caption, box=box.SIMPLE, padding=(0, 1, 0, 0))
+    shown.add_column("controller", no_wrap=True)
     for name in table.scenarios:
-        shown.add_column(name, justify="right")
+        shown.add_column(name, justify="right", overflow="fold", min_width=5)
     for name in table.controllers:
-        shown.add_row(name, *(overview_cell(table.row(scenario, name)) for scenario in table.scenarios))
+        shown.add_row(name, *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
     console = Console()
     console.print(shown)
     for each in findings(table):
         console.print(each.sentence, highlight=False, markup=False)
+
+
+def _brief(row: Row | None) -> str:
+    from train.benchmark.report import number
+
+    if row is None or not row.measured:
+        return "–" if row is None else "✕"
+    value = row.estimates["relative_cost"].value
+    return number(value, "{:.2f}" if value < 10.0 else "{:.0f}") + ("▲" if row.estimates["unstable"].value else "")
