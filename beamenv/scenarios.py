@@ -152,7 +152,7 @@ designed for); nothing at all; and the benchmark's, a file each."""
 
 
 def scenario(given: Scenario | Mapping[str, Any] | str | None = None) -> Scenario:
-    """The scenario meant by a name in ``SCENARIOS``, the path of a TOML file, a dictionary of fields, or by itself; None is "default".
+    """The scenario meant by a name in ``SCENARIOS``, the path of a TOML file, a dictionary of fields or itself; None: "default".
 
     A dictionary or file may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
     or field and for a value out of range.
@@ -174,7 +174,7 @@ def load_scenario(path: str | Path) -> Scenario:
     """The scenario in a TOML file; ``ValueError`` if it cannot be read or holds what no scenario has."""
     try:
         content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ValueError(f"scenario file {str(path)!r} cannot be read: {error}.") from None
     return scenario(content)
 

@@ -136,7 +136,8 @@ class Rotor:
     sampled exactly."""
 
     def __post_init__(self) -> None:
-        if not isinstance(self.harmonics, Sequence) or isinstance(self.harmonics, str):
+        harmonics: Any = self.harmonics
+        if not isinstance(harmonics, Sequence) or isinstance(harmonics, str):
             raise ValueError(f"scenario: rotor.harmonics is {self.harmonics!r}, but must be a list of amplitudes in N/m.")
         for value in (*self.harmonics, self.turbulence):
             if not _is_number(value) or value < 0.0:

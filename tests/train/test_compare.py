@@ -14,7 +14,8 @@ from train.agents import train_agent
 from train.compare import CLASSICAL, Comparison, Listener, compare, read_curve
 from train.comparison_page import shown_pair
 from train.contenders import contender
-from train.policies import HistoryPolicy, load_policy
+from train.policies import HistoryPolicy
+from train.policy_files import load_policy
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
 
@@ -154,7 +155,7 @@ def test_another_comparison_does_not_overwrite_a_folder(finished):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"budget": {"sac": 1.0}}, "agent 'sac', but must name only gradient, ppo"),
+        ({"budget": {"dreamer": 1.0}}, "agent 'dreamer', but must name only gradient, ppo"),
         ({"budget": {"ppo": -1.0}}, "budget of ppo = -1.0 must be a positive number"),
         ({"seeds": 1}, "seeds = 1 must be at least 2"),
     ],
@@ -165,8 +166,8 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 
 
 def test_unknown_names_are_refused():
-    with pytest.raises(ValueError, match="agent = 'sac' must be one of gradient, ppo"):
-        train_agent("sac", {}, 1.0, 0, lambda progress: None)
+    with pytest.raises(ValueError, match="agent = 'dreamer' must be one of gradient, ppo"):
+        train_agent("dreamer", {}, 1.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="seconds = 0.0 must be a positive number"):
         train_agent("ppo", {}, 0.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="controller = 'pid' must be one of .*lqg, lqg-load"):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from train.page import Cell, HeatMap, PageContent, Table, write_page
-
 from train.benchmark.heat_map import columns, relative_costs, unstable_shares
 from train.benchmark.report import COLUMNS, legend, text
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
+from train.page import Cell, HeatMap, PageContent, Table, write_page
 
 
 def write_report(path: Path, table: BenchmarkTable) -> None:

@@ -12,7 +12,7 @@ from baselines import Controller
 from beamenv.task import Task
 from train.benchmark.models import fitted, load_model
 from train.contenders import Contender
-from train.policies import load_policy
+from train.policy_files import load_policy
 
 
 class Source(Protocol):
@@ -49,12 +49,8 @@ class Trained:
     folder: Path
 
     def build(self, task: Task) -> Controller:
-        """The agent, knowing the drive limits of this task as every contender does."""
-        policy = load_policy(self.folder)
-        drives, blade = len(policy.lowest), task.design_plant
-        if drives != blade.B.shape[1]:
-            raise ValueError(f"agent {policy.name!r} drives {drives} actuators, but must drive the blade's {blade.B.shape[1]}.")
-        return policy.behind(blade)
+        """The agent, within the drive limits of this task; refused if it was trained on other plants."""
+        return load_policy(self.folder, task.design_plant)
 
     def fingerprint(self) -> str:
         """Of its weights and what is said of them."""
