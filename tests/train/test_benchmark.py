@@ -11,7 +11,6 @@ import pytest
 import beamenv
 from baselines import evaluate, lqg
 from beamenv.plant import fingerprint
-from beamenv.task import resolve_task
 from train import contenders
 from train.benchmark import benchmark
 from train.benchmark.entrants import agents
@@ -28,9 +27,6 @@ LIMITS = (-np.ones(4, np.float32), np.ones(4, np.float32))
 IDLE = HistoryPolicy(
     "idle", {"weight0": np.zeros((4, 24), np.float32), "bias0": np.zeros(4, np.float32)}, {"input_gain": 1.0, "held": 1}, *LIMITS
 )
-PLANTS = {
-    name: fingerprint(resolve_task("thesis", None, None, None, name, 0.5, False).design_plant) for name in SMALL["scenarios"]
-}
 
 
 class Notes:
@@ -210,9 +206,13 @@ def test_every_contender_is_built_from_the_design_alone(name):
     assert np.array_equal(action, np.zeros((2, 4)))
 
 
+def design_fingerprint(scenario):
+    return fingerprint(gymnasium.make(beamenv.ENV_ID, scenario=scenario).unwrapped.design_plant)
+
+
 def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
     for run in ("generalist/0", "generalist/1", "nominal/0"):
-        save_policy(IDLE, tmp_path / "ppo" / run, {"plants": PLANTS})
+        save_policy(IDLE, tmp_path / "ppo" / run, {"plants": {name: design_fingerprint(name) for name in SMALL["scenarios"]}})
     assert [each.name for each in agents(tmp_path)] == ["ppo-generalist", "ppo-specialist"]
     chosen = {**SMALL, "controllers": ["ppo-generalist", "ppo-specialist"]}
     table = benchmark(trained=tmp_path, **chosen)
@@ -231,10 +231,10 @@ def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
 
 
 def test_an_agent_for_another_blade_is_told_in_one_sentence(tmp_path):
-    save_policy(IDLE, tmp_path / "ppo" / "generalist" / "0", {"plants": {"spillover": PLANTS["spillover"]}})
+    save_policy(IDLE, tmp_path / "ppo" / "generalist" / "0", {"plants": {"elsewhere": "0" * 64}})
     row = benchmark(trained=tmp_path, **{**SMALL, "controllers": ["ppo-generalist"]}).row("nominal", "ppo-generalist")
-    (sentence,) = row.sentences
-    assert sentence.startswith(f"plant with the fingerprint {PLANTS['nominal'][:12]}… is none of those")
+    assert "is none of those the agent" in row.sentences[0]
+    assert not row.measured
 
 
 def test_episodes_that_a_controller_makes_twice_as_bad_count_as_unstable():
