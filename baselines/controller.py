@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from beamenv.plant import Plant
 
 Array = NDArray[np.float64]
+Observes = Literal["observation", "state", "observation and speed"]
+"""What ``predict`` wants: the sensors' readings, the true state, or the readings (p,) with the rotor speed in rad/s behind them."""
 
 
 @runtime_checkable

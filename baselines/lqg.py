@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import add
 from typing import Literal
 
 import numpy as np
 from scipy.linalg import expm
 
 from baselines.controller import LinearController, drive_scale
-from baselines.persistent_load import PersistentLoad, with_persistent_load
+from baselines.load_model import Load, with_load
+from baselines.persistent_load import PersistentLoad
 from baselines.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
 from beamenv.plant import Plant, SampledPlant, sample
 
@@ -37,7 +40,7 @@ def lqg(
     Raises ValueError for another design, or for a persistent load with the continuous one.
     """
     if design == "sampled":
-        return _sampled(plant, persistent_load)
+        return sampled_lqg(plant, "LQG" if persistent_load is None else "LQG with load estimate", persistent_load)
     if design != "continuous":
         raise ValueError(f'design = {design!r} is not an LQG design: allowed are "sampled" and "continuous"')
     if persistent_load is not None:
@@ -45,42 +48,44 @@ def lqg(
     return _continuous(plant)
 
 
-def sampled_design(plant: Plant, load: PersistentLoad | None = None) -> tuple[SampledPlant, Array, Array, Array]:
-    """The sampled plant, with the state of a load that lasts if one is given, its regulator's P and K, and its filter's L."""
-    held = sample(plant) if load is None else with_persistent_load(sample(plant), load)
+def sampled_lqg(plant: Plant, name: str = "LQG", *loads: Load | None) -> LinearController:
+    """The sampled optimum, with the states of the ``loads`` behind those of the blade in its memory."""
+    held, _, K, L = sampled_design(plant, *loads)
+    correct = np.eye(len(held.A)) - L @ held.C
+    return observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
+
+
+def sampled_design(plant: Plant, *loads: Load | None) -> tuple[SampledPlant, Array, Array, Array]:
+    """The sampled plant, with the states of whatever ``loads`` are given, its regulator's P and K, and its filter's L."""
+    models = [load.model(plant.control_interval) for load in loads if load is not None]
+    held = with_load(sample(plant), reduce(add, models)) if models else sample(plant)
     E = held.disturbance_input
     P, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, _sensor_noise(plant) / held.interval)
+    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
     return held, P, K, L
-
-
-def _sampled(plant: Plant, load: PersistentLoad | None) -> LinearController:
-    held, _, K, L = sampled_design(plant, load)
-    correct = np.eye(len(held.A)) - L @ held.C
-    name = "LQG" if load is None else "LQG with load estimate"
-    return _observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
 
 
 def _continuous(plant: Plant) -> LinearController:
     E, n, p = plant.disturbance_input, len(plant.A), len(plant.C)
     _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
-    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, _sensor_noise(plant))
+    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
     dynamics = np.zeros((n + p + plant.B.shape[1],) * 2)
     scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_scale(plant)])  # keeps the exponential well scaled
     dynamics[:n] = np.hstack([plant.A - plant.B @ K - L @ plant.C, L, plant.B]) * scale
     F, G, H = np.split(expm(dynamics * plant.control_interval)[:n] / scale, [n, n + p], axis=1)
     onward = F + H @ K
-    return _observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
+    return observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
 
 
-def _sensor_noise(plant: Plant) -> Array:
+def known_sensor_noise(plant: Plant) -> Array:
     """V (p, p), A² s. Without any noise the filter's equation has no solution, so at least the converter's steps count."""
     converter = np.diag((_CONVERTER_STEP * plant.sensor_full_scale) ** 2 / 12.0) * plant.control_interval
     silent = np.diag(plant.sensor_noise) < np.diag(converter)
     return plant.sensor_noise + np.where(silent, converter, 0.0)
 
 
-def _observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
+def observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
+    """The law ξ⁺ = F ξ + G y + H u, u = clip(M ξ + T y) behind the plant's own instruments and drive."""
     return LinearController(
         name=name,
         transition=F,

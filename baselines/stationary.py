@@ -16,7 +16,7 @@ def stationary_cost(plant: Plant, controller: LinearController) -> float:
     is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable.
     """
     held = sample(plant)
-    transition, noise_input, state_map, noise_map, covariance = _closed_loop(held, controller)
+    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, controller)
     if np.abs(np.linalg.eigvals(transition)).max() >= 1.0:
         return float("inf")
     spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T)
@@ -30,13 +30,13 @@ def closed_loop_poles(plant: Plant, controller: LinearController) -> Array:
     Poles of the sampled loop at z = 0 have no continuous equivalent and are left out.
     """
     held = sample(plant)
-    poles = np.linalg.eigvals(_closed_loop(held, controller)[0])
+    poles = np.linalg.eigvals(closed_loop(held, controller)[0])
     poles = np.log(poles[np.abs(poles) > 1e-12].astype(complex)) / held.interval
     return np.asarray(poles[np.argsort(-poles.real)])
 
 
-def _closed_loop(held: SampledPlant, law: LinearController) -> tuple[Array, Array, Array, Array, Array]:
-    """Φ, Γ, Z_x, Z_n and the noise covariance N; the voltage is u = T C x + M ξ + T v."""
+def closed_loop(held: SampledPlant, law: LinearController) -> tuple[Array, Array, Array, Array, Array]:
+    """Φ, Γ, Z_x, Z_n of X⁺ = Φ X + Γ n, z = Z_x X + Z_n n and the covariance N of n = [d; v]; u = T C x + M ξ + T v."""
     (n, m), s, k = held.B.shape, len(law.transition), held.disturbance_input.shape[1]
     C, V = (held.C, held.sensor_noise) if law.observes == "observation" else (np.eye(n), np.zeros((n, n)))
     p = len(C)

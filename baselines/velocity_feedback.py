@@ -23,39 +23,42 @@ def velocity_feedback(plant: Plant, gain: ArrayLike | None = None) -> LinearCont
     gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between them. Raises
     ValueError when sensors and actuators cannot be paired, or for a gain of another shape.
     """
-    pairing = _pairing(plant)
-    gains = _least_cost_gains(plant, pairing) if gain is None else np.asarray(gain, dtype=np.float64)
-    if gains.shape not in ((), (len(pairing),)) or not np.isfinite(gains).all():
-        raise ValueError(f"gain = {gain!r} must be a finite number, or {len(pairing)} of them, one for each actuator")
-    return _law(plant, "velocity feedback", pairing, gains)
+    pairs = pairing(plant, "velocity feedback")
+    gains = _least_cost_gains(plant, pairs) if gain is None else np.asarray(gain, dtype=np.float64)
+    if gains.shape not in ((), (len(pairs),)) or not np.isfinite(gains).all():
+        raise ValueError(f"gain = {gain!r} must be a finite number, or {len(pairs)} of them, one for each actuator")
+    return _law(plant, "velocity feedback", pairs, gains)
 
 
-def _law(plant: Plant, name: str, pairing: Array, gains: Array) -> LinearController:
-    return static_law(plant, name, -np.broadcast_to(gains, len(pairing))[:, None] * pairing)
+def _law(plant: Plant, name: str, pairs: Array, gains: Array) -> LinearController:
+    return static_law(plant, name, -np.broadcast_to(gains, len(pairs))[:, None] * pairs)
 
 
-def _pairing(plant: Plant) -> Array:
-    """(m, p): which sensor each actuator answers, signed so that a positive gain takes energy out."""
+def pairing(plant: Plant, name: str) -> Array:
+    """(m, p): which sensor each actuator answers, signed so that −(its current) takes energy out.
+
+    Raises ValueError, with the ``name`` of the law, for a plant whose sensors and actuators do not make pairs.
+    """
     m, p = plant.B.shape[1], len(plant.C)
     if m not in (1, p):
         raise ValueError(
-            f"plant has {m} actuators and {p} sensors, which velocity feedback cannot pair: "
+            f"plant has {m} actuators and {p} sensors, which {name} cannot pair: "
             "it needs one sensor to each actuator, or one ganged actuator"
         )
-    pairing = np.eye(p) if m == p else np.full((1, p), 1.0 / p)
-    return pairing * np.sign(np.diag(pairing @ plant.C @ plant.B))[:, None]
+    pairs = np.eye(p) if m == p else np.full((1, p), 1.0 / p)
+    return pairs * np.sign(np.diag(pairs @ plant.C @ plant.B))[:, None]
 
 
-def _least_cost_gains(plant: Plant, pairing: Array) -> Array:
+def _least_cost_gains(plant: Plant, pairs: Array) -> Array:
     """(m,): first the best common gain, by decades, then each for itself from there (Nelder and Mead's simplex)."""
-    collocated = np.abs(np.diag(pairing @ plant.C @ plant.B)).max()
+    collocated = np.abs(np.diag(pairs @ plant.C @ plant.B)).max()
     unit = float(plant.natural_frequencies[0] / collocated)  # damps at about the first mode's own rate
 
     def cost(gains: Array) -> float:
-        return stationary_cost(plant, _law(plant, "trial", pairing, unit * gains))
+        return stationary_cost(plant, _law(plant, "trial", pairs, unit * gains))
 
     common = min((10.0**decade for decade in _DECADES), key=lambda gain: cost(np.asarray(gain)))
-    start = np.full(len(pairing), common)
+    start = np.full(len(pairs), common)
     simplex = np.vstack([start, start + common * np.eye(len(start))])
     found = minimize(
         cost, start, method="Nelder-Mead", options={"initial_simplex": simplex, "fatol": 1e-6 * cost(start), "maxiter": 800}

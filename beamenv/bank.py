@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import BladeConfig, build_beam, build_plant, changed_blade, plant_of
+from beamenv.configuration import BeamConfig, BladeConfig, build_beam, build_plant, changed_blade, plant_of
 from beamenv.kernel import Operators
 from beamenv.loads import static_deflection
 from beamenv.plant import Plant, normalised
@@ -77,22 +77,30 @@ class Bank:
         )
 
 
-@lru_cache(maxsize=16)
 def build_bank(config: BladeConfig, design: BladeConfig, variation: PlantVariation, steps: int) -> Bank:
-    """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals."""
-    plant = build_plant(config)
+    """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals; built once and cached."""
     if variation.spin_up is not None:
         from beamenv.spin_up import spin_up_bank
 
         return spin_up_bank(config, design, variation.spin_up, steps)
+    return drawn_bank(config, design, variation)
+
+
+@lru_cache(maxsize=16)
+def drawn_bank(config: BladeConfig, design: BladeConfig, variation: PlantVariation) -> Bank:
+    """The bank that each episode draws its plant from; of one plant where nothing varies."""
+    plant = build_plant(config)
     if not variation.varies:
         return Bank.single(plant, config.speed, seen_from(config, build_beam(config), design))
     ranged = replace(config, sensor_full_scale=float(plant.sensor_full_scale[0]))
     configs = [changed_blade(ranged, *row) for row in varied(variation, config)]
-    built = {each: each.build(config.patches) for each in {each.beam for each in configs}}
-    beams = [built[each.beam] for each in configs]
-    plants = [plant_of(each, beam) for each, beam in zip(configs, beams, strict=True)]
-    views = [seen_from(each, beam, design) for each, beam in zip(configs, beams, strict=True)]
+    built: dict[BeamConfig, RotatingBeam] = {}
+    plants, views = [], []
+    for each in configs:
+        if each.beam not in built:
+            built[each.beam] = each.beam.build(each.patches)
+        plants.append(plant_of(each, built[each.beam]))
+        views.append(seen_from(each, built[each.beam], design))
     to_design = None if any(view is None for view in views) else np.stack(views)  # type: ignore[arg-type]
     return Bank.gather(plant, plants, np.array([each.speed for each in configs]), to_design)
 
@@ -117,8 +125,9 @@ def seen_from(config: BladeConfig, beam: RotatingBeam, design: BladeConfig) -> A
     other = build_beam(design)
     if beam.space != other.space:
         return None
-    true, modal = truncate(beam, config.speed, config.modes), truncate(other, design.speed, design.modes)
-    return coordinates(true.mode_shapes / true.natural_frequencies, true.mode_shapes, other, modal.mode_shapes, modal.natural_frequencies)
+    true, modal = (truncate(blade, of.speed, of.modes, of.gyroscopic) for blade, of in ((beam, config), (other, design)))
+    displacing = true.mode_shapes / true.natural_frequencies
+    return coordinates(displacing, true.mode_shapes, other, modal.mode_shapes, modal.natural_frequencies)
 
 
 def coordinates(displacing: Array, moving: Array, design: RotatingBeam, shapes: Array, frequencies: Array) -> Array:

@@ -285,9 +285,9 @@ def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
 
 
 def displacement_operator(config: BladeConfig, stations: Sequence[float] | Array) -> Array:
-    """(2, k, n): lag and flap displacement (m) at k stations (m from the root) per unit of each state of the plant."""
+    """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
     beam = build_beam(config)
     modal = truncate(beam, config.speed, config.modes, config.gyroscopic)
     rows = beam.displacements(np.asarray(stations, dtype=float))
-    displaced = np.stack([rows["u"], rows["v"]]) @ (modal.mode_shapes / modal.natural_frequencies)
+    displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (modal.mode_shapes / modal.natural_frequencies)
     return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)

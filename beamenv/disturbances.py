@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.batch_memory import columns_first, place
 from beamenv.loads import LoadCases
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario
@@ -215,19 +216,6 @@ class SeededDisturbances:
             gusts = np.where(begins, instant[:, -2:], following) if k == 0 else following
             instant[:, :2] += gusts
         self._gusts[rows] = gusts
-
-
-def columns_first(shape: tuple[int, ...], columns: int) -> tuple[Array, Array]:
-    """Zeros that lie in memory as (blocks, column, blade), and the same seen as (blocks, blade, column): fast for large
-    batches, since every column is contiguous. Both (column,) for the shape () of a single blade.
-    """
-    memory = np.zeros((*shape[:-1], columns, *shape[-1:]))
-    return memory, memory.swapaxes(-2, -1) if shape else memory
-
-
-def place(rows: Rows, shape: tuple[int, ...]) -> tuple[Rows, ...]:
-    """Index of ``rows`` in arrays of the batch's shape."""
-    return np.divmod(rows, shape[-1]) if shape else ()
 
 
 def merged(cases: LoadCases | None, rows: Rows, others: LoadCases) -> LoadCases:

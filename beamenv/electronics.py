@@ -39,6 +39,10 @@ class Faults:
             values[rows] = getattr(others, name)
         return Faults(**exchanged)
 
+    def rows(self, rows: Any) -> Faults:
+        """The faults of some of the blades."""
+        return self.convert(lambda values: values[rows])
+
     def convert(self, to_array: Callable[[Any], Any]) -> Faults:
         """The same faults with each array passed through ``to_array``."""
         return replace(self, **{each.name: to_array(getattr(self, each.name)) for each in fields(self)})

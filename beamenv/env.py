@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from beamenv.configuration import BladeConfig
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario
-from beamenv.simulation import Blades
+from beamenv.simulation import Blades, Motion
 from beamenv.task import Task, checked_action, information, reset_options, resolve_task
 
 if TYPE_CHECKING:
-    from beamenv.rendering import BladeRenderer
+    from beamenv.rendering import BladeRenderer, Instant
 
 Array = NDArray[np.float64]
 
@@ -118,8 +118,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
       40 % of it.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
-    - `render_mode`: None or `"rgb_array"` (needs matplotlib): 50 pictures a second, one for each step, are 40 times slower
-      than life.
+    - `render_mode`: None, `"rgb_array"` (pictures 540 × 960 from `render`) or `"human"` (a window that shows every step); both
+      need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life.
 
     The control interval is 0.5 ms, a field of the configuration: more than four samples a period of the 11th mode
     (2.7 krad/s), the last one retained.
@@ -145,7 +145,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     * v0: Initial version.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 50}
+    _renderer: BladeRenderer | None = None
 
     def __init__(
         self,
@@ -173,6 +174,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         self._steps = task.steps
         self._elapsed = 0
         self._generators: list[np.random.Generator] | None = None
+        self.close()
         self._renderer = None if self.render_mode is None else self._make_renderer()
 
     @property
@@ -208,7 +210,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         self._elapsed = 0
         motion = self._blade.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._renderer is not None:
-            self._renderer.begin(self.state)
+            self._renderer.begin(self._instant(motion))
         return motion.observation, information(motion)
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
@@ -218,19 +220,41 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         motion = self._blade.step(checked_action(action, self._action_shape), self._generators)
         self._elapsed += 1
         if self._renderer is not None:
-            self._renderer.record(self.state, motion.volts)
+            self._renderer.record(self._instant(motion))
         return motion.observation, float(motion.reward), bool(motion.failed), self._elapsed >= self._steps, information(motion)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """A picture (600, 960, 3) of the blade, deflection drawn larger, with its voltages and the course of the episode."""
+        """A picture (540, 960, 3) of the blade, deflection magnified, with its patches and the last 0.2 s of the episode.
+
+        None with `"human"`, whose window shows every step by itself.
+        """
         if self._renderer is None:
             gymnasium.logger.warn('render was called without a render_mode: make the environment with render_mode="rgb_array".')
             return None
         if self._generators is None:
             raise gymnasium.error.ResetNeeded("Call reset before render.")
-        return self._renderer.draw()
+        return None if self.render_mode == "human" else self._renderer.draw()
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._renderer is not None:
+            self._renderer.close()
 
     def _make_renderer(self) -> BladeRenderer:
         from beamenv.rendering import BladeRenderer
 
-        return BladeRenderer(self.task.config, self.task.steps * self.plant.control_interval)
+        return BladeRenderer(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)
+
+    def _instant(self, motion: Motion) -> Instant:
+        from beamenv.rendering import Instant
+
+        reading = motion.observation / self.plant.sensor_full_scale if self.task.physical_units else motion.observation
+        return Instant(
+            state=self.state,
+            plant=int(self._blade.index[0]),
+            speed=float(self.rotor_speed),
+            tip_displacement=motion.tip_displacement,
+            volts=motion.volts,
+            reading=reading,
+            cost_increment=float(motion.cost_increment),
+        )

@@ -3,7 +3,7 @@
     v = w₀ u + w Σⱼ Pⱼ[u],        Pⱼ[u](k) = max(u(k) − rⱼ, min(u(k) + rⱼ, Pⱼ(k−1)))
 
 with J plays of equally spaced radii rⱼ = j R/(J+1), R being half of the drive's range, and one weight for them all. Rate
-independent; from rest (Pⱼ = 0) a small voltage acts with the gain w₀, a full sweep has the gain 1.
+independent; from rest (Pⱼ = 0) a small voltage acts with the gain w₀, the larger limit with the gain 1.
 """
 
 from __future__ import annotations
@@ -46,10 +46,12 @@ class Hysteresis:
 def prandtl_ishlinskii(loop: float, lowest: float, highest: float, plays: int = PLAYS) -> Hysteresis:
     """The operator whose loop, swept from ``lowest`` to ``highest``, is ``loop`` times its stroke wide at mid-range.
 
-    At mid-range a play's branches are 2 min(r, R − r) apart, and its stroke is 2(R − r).
+    With R half the range and M the larger limit: at mid-range a play's branches are 2 min(r, R − r) apart, its stroke is
+    2(R − r), and w₀ M + w Σ (M − r) = M. No voltage within the limits so acts with a gain above 1.
     """
-    half = 0.5 * (highest - lowest)
+    half, larger = 0.5 * (highest - lowest), max(-lowest, highest)
     radii: NDArray[np.float64] = half * np.arange(1, plays + 1) / (plays + 1)
-    weight = loop * 2.0 * half / float(np.sum(2.0 * np.minimum(radii, half - radii)))
-    direct = 1.0 - weight * float(np.sum(half - radii)) / half
+    lost = 2.0 * (1.0 - half / larger) * float(np.sum(radii))  # of the stroke, per weight, where the limits are not symmetric
+    weight = loop * 2.0 * half / (float(np.sum(2.0 * np.minimum(radii, half - radii))) + loop * lost)
+    direct = 1.0 - weight * float(np.sum(larger - radii)) / larger
     return Hysteresis(radii, direct, weight)

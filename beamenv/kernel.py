@@ -16,7 +16,8 @@ from beamenv.plant import Plant, sample
 class Operators:
     """What one step needs, fused into one product; arrays of NumPy or of torch.
 
-    One plant for all blades, or one for each: ``fused`` then has their leading axes. With z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
+    One plant for all blades, or one for each: ``fused`` then has their leading axes. With z = [state, voltages, loads] (row
+    vectors, size s = n + m + 2) ``z @ fused`` is
     [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost (s)].
     """
 
@@ -39,7 +40,7 @@ class Operators:
 
     def pick(self, index: Any) -> Operators:
         """The operators of one plant of several, or of one for each blade."""
-        return replace(self, fused=self.fused[index])
+        return Operators(self.fused[index], self.states, self.outputs)
 
 
 def advance(operators: Operators, joined: Any, out: Any = None) -> tuple[Any, Any, Any, Any]:
@@ -47,21 +48,23 @@ def advance(operators: Operators, joined: Any, out: Any = None) -> tuple[Any, An
 
     ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
-    increment of J over the interval (...,) in J s. With NumPy and one plant, ``out`` (..., n + m + 2 + n + p + 2) may be
-    given to hold the product, and the first three arrays are then views of it.
+    increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., n + m + 2 + n + p + 2) may be given to
+    hold the product, and the first three arrays are then views of it.
     """
     n, p = operators.states, operators.outputs
-    if operators.fused.ndim > 2:
-        product = (joined[..., None, :] @ operators.fused)[..., 0, :]
-    else:
-        product = joined @ operators.fused if out is None else product_into(out, joined, operators.fused)
+    product = row_product(joined, operators.fused, out)
     increment = row_dot(product[..., n + p + 2 :], joined)
     return product[..., :n], product[..., n : n + p], product[..., n + p : n + p + 2], increment
 
 
-def product_into(out: Any, left: Any, right: Any) -> Any:
-    """The matrix product, written to ``out``: NumPy arrays."""
-    return np.dot(left, right, out) if left.ndim == 1 else np.matmul(left, right, out)  # for one row, dot starts faster
+def row_product(rows: Any, matrix: Any, out: Any = None) -> Any:
+    """Rows (..., k) times one matrix (k, l), or each times its own (..., k, l); with NumPy, ``out`` may hold the result."""
+    if matrix.ndim > 2:
+        each = rows[..., None, :]
+        return (each @ matrix if out is None else np.matmul(each, matrix, out[..., None, :]))[..., 0, :]
+    if out is None:
+        return rows @ matrix
+    return np.dot(rows, matrix, out) if rows.ndim == 1 else np.matmul(rows, matrix, out)  # for one row, dot starts faster
 
 
 def row_dot(left: Any, right: Any) -> Any:

@@ -40,6 +40,11 @@ class MixedBlades:
         return _together([blades.design_state for blades in self._groups], self._rows)
 
     @property
+    def index(self) -> Rows:
+        """(N,) place of each blade's plant in its bank."""
+        return np.asarray(_together([blades.index for blades in self._groups], self._rows))
+
+    @property
     def speed(self) -> Array:
         """(N,) rad/s."""
         return _together([blades.speed for blades in self._groups], self._rows)

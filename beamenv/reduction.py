@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,7 @@ class ModalModel:
     """ΨᵀGΨ (r, r), 1/s."""
 
 
+@lru_cache(maxsize=16)
 def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = True) -> ModalModel:
     """The modal model of a blade; ``ValueError`` at or beyond the critical speed or for more modes than trial functions."""
     if not (np.isfinite(speed) and 0.0 <= speed < beam.critical_speed):
@@ -64,6 +66,35 @@ def surface_strain(beam: RotatingBeam) -> Array:
     return rows.reshape(-1, rows.shape[-1])
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FullModel:
+    """What acts on a blade and what is seen of it, by its N trial functions: the same at any speed."""
+
+    forces: Array
+    """F (N, m), per V."""
+    charges: Array
+    """C_s (p, N), C."""
+    line_load: Array
+    """P (N, 2), per N/m: lag, flap."""
+    tip: Array
+    """(2, N), m: lag, flap."""
+    strain: Array
+    """(k, N)."""
+
+
+@lru_cache(maxsize=8)
+def full_model(beam: RotatingBeam, layout: PatchLayout) -> FullModel:
+    """That of a blade which carries the inlays of passive patches."""
+    tip = beam.displacements(np.array([beam.length]))
+    return FullModel(
+        forces=actuation(beam, layout),
+        charges=sensing(beam, layout),
+        line_load=beam.line_load(),
+        tip=np.vstack([tip["u"], tip["v"]]),
+        strain=surface_strain(beam),
+    )
+
+
 def reduced_plant(
     beam: RotatingBeam,
     layout: PatchLayout,
@@ -80,15 +111,13 @@ def reduced_plant(
     control_interval: float,
 ) -> Plant:
     """The plant of a blade, which carries the inlays of passive patches; arguments as in ``configuration.BladeConfig``."""
-    modal = truncate(beam, speed, modes, gyroscopic)
-    omega, shapes = modal.natural_frequencies, modal.mode_shapes
-    forces = actuation(beam, layout)
+    modal, full = truncate(beam, speed, modes, gyroscopic), full_model(beam, layout)
+    omega, shapes, forces = modal.natural_frequencies, modal.mode_shapes, full.forces
     still = np.zeros((modes, modes))
     damping = modal.gyroscopic + np.diag(2.0 * damping_ratio * omega)
     dynamics = np.block([[still, np.diag(omega)], [-np.diag(omega), -damping]])
-    tip = beam.displacements(np.array([beam.length]))
-    currents = on_velocities(sensing(beam, layout) @ shapes)
-    disturbance = acting_on_velocities(shapes.T @ beam.line_load())
+    currents = on_velocities(full.charges @ shapes)
+    disturbance = acting_on_velocities(shapes.T @ full.line_load)
     if sensor_full_scale is None:
         sensor_full_scale = largest_current(dynamics, disturbance, currents, omega[0], control_interval)
     full_scale = np.full(len(currents), sensor_full_scale)
@@ -98,8 +127,8 @@ def reduced_plant(
         C=currents,
         D=np.zeros((len(currents), forces.shape[1])),
         disturbance_input=disturbance,
-        tip_displacement=on_displacements(np.vstack([tip["u"], tip["v"]]) @ shapes, omega),
-        strain=on_displacements(surface_strain(beam) @ shapes, omega),
+        tip_displacement=on_displacements(full.tip @ shapes, omega),
+        strain=on_displacements(full.strain @ shapes, omega),
         natural_frequencies=omega,
         state_weight=0.5 * np.eye(2 * modes),
         input_weight=effort_weight * stored_energy_weight(beam, speed, forces),

@@ -126,7 +126,9 @@ def _changed(base: Any, given: Mapping[str, Any], table: str = "") -> Any:
     """The scenario, or one of its tables, with the given fields changed; a table's fields change one by one."""
     known = [each.name for each in fields(base)]
     if unknown := sorted(set(given) - set(known)):
-        raise ValueError(f"scenario has no field {table + unknown[0]!r}: its fields are {', '.join(table + name for name in known)}.")
+        raise ValueError(
+            f"scenario has no field {table + unknown[0]!r}: its fields are {', '.join(table + name for name in known)}."
+        )
     changes = {}
     for name, value in given.items():
         current = getattr(base, name)
@@ -148,8 +150,9 @@ SCENARIOS: dict[str, Scenario] = {
 """Named scenarios: all four load cases in turn; each one alone; white load and sensor noise only (what an LQG is
 designed for); nothing at all; and the benchmark's, a file each."""
 
+
 def scenario(given: Scenario | Mapping[str, Any] | str | None = None) -> Scenario:
-    """The scenario meant by a name in ``SCENARIOS``, the path of a TOML file, a dictionary of fields, or by itself; None is "default".
+    """The scenario meant by a name in ``SCENARIOS``, the path of a TOML file, a dictionary of fields or itself; None: "default".
 
     A dictionary or file may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
     or field and for a value out of range.
@@ -171,14 +174,16 @@ def load_scenario(path: str | Path) -> Scenario:
     """The scenario in a TOML file; ``ValueError`` if it cannot be read or holds what no scenario has."""
     try:
         content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ValueError(f"scenario file {str(path)!r} cannot be read: {error}.") from None
     return scenario(content)
 
 
 def _named(name: Any) -> Scenario:
     if name not in SCENARIOS:
-        raise ValueError(f"scenario is {name!r}, but must be one of {', '.join(SCENARIOS)}, a .toml file, or a dictionary of fields.")
+        raise ValueError(
+            f"scenario is {name!r}, but must be one of {', '.join(SCENARIOS)}, a .toml file, or a dictionary of fields."
+        )
     return SCENARIOS[name]
 
 
@@ -227,9 +232,7 @@ def draw_load_cases(
     return _with_harmonics(cases, chosen.rotor, draw_uniforms(generators, count, 3 * orders), speeds * plant.control_interval)
 
 
-def draw_uniforms(
-    generators: np.random.Generator | Sequence[np.random.Generator], count: int, numbers: int
-) -> NDArray[np.float64]:
+def draw_uniforms(generators: np.random.Generator | Sequence[np.random.Generator], count: int, numbers: int) -> NDArray[np.float64]:
     """Uniform numbers (count, numbers) from one generator for all blades, or from a sequence of one for each."""
     if isinstance(generators, np.random.Generator):
         return generators.random((count, numbers))

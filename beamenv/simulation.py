@@ -8,28 +8,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from scipy.special import ndtri
-
+from beamenv.allotment import Allotment
 from beamenv.bank import Bank
-from beamenv.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, columns_first, noise_factor, place
-from beamenv.electronics import DRAWS, Faults, SignalMemory, acquire, draw_faults, drive
-from beamenv.hysteresis import PLAYS, prandtl_ishlinskii
-from beamenv.kernel import Operators, advance, product_into, row_dot
+from beamenv.batch_memory import batch_shape, columns_first, place
+from beamenv.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
+from beamenv.electronics import DRAWS
+from beamenv.kernel import advance, row_dot, row_product
 from beamenv.loads import static_deflection
 from beamenv.plant import Plant, drive_limit, normalised
 from beamenv.reduction import REFERENCE_LOAD
 from beamenv.scenarios import Scenario, draw_load_cases, draw_uniforms
+from beamenv.signal_path import Electronics
+from beamenv.strain_limit import FAILURE_STRAIN as FAILURE_STRAIN
+from beamenv.strain_limit import safe_energy, strained_too_much
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 Generators = np.random.Generator | Sequence[np.random.Generator]
-
-FAILURE_STRAIN = 0.0045
-"""Spanwise strain at which an episode ends: the greatest tensile strain an MFC is rated for (4500 ppm, Smart Material's data
-sheet); the laminate breaks later."""
-
-_BLOCK = 256
-"""Blades that lie together in memory: BLAS multiplies blocks of this size fastest."""
 
 _FULL, _MINUS_FULL = np.array(1.0), np.array(-1.0)
 """NumPy is quicker with these than with Python numbers, which tells with a blade alone."""
@@ -71,14 +66,6 @@ def _alike(values: Array) -> Array:
     return np.array(values[0]) if np.all(values == values[0]) else values
 
 
-def _shape(count: int | None) -> tuple[int, ...]:
-    """Shape of the batch: () for a blade alone, else (blocks, size) with size near ``_BLOCK`` where count has such a divisor."""
-    if count is None:
-        return ()
-    size = next((size for size in range(min(count, _BLOCK), _BLOCK // 4, -1) if count % size == 0), count)
-    return count // size, size
-
-
 class Blades:
     """A batch of ``count`` blades, advanced together; ``count=None`` is a blade alone, without a batch axis.
 
@@ -90,32 +77,30 @@ class Blades:
     def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
         self.plant, self.scenario, self.count = self.bank.plant, scenario, count
-        self.shape = self._shape = _shape(count)
+        self.shape = self._shape = batch_shape(count)
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
         self._reward_per_cost = -1.0 / reward_scale(self.plant)
-        self._safe_energy = _safe_energy(self.bank)
+        self._safe_energy = safe_energy(self.bank.strain)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, count or 1) if scenario.imperfect else None
-        self.index = np.zeros(count or 1, dtype=np.int64)
-        """(N,) place of each blade's plant in the bank."""
+        self.plants = Allotment(self.bank, self._shape, np.zeros(count or 1, dtype=np.int64))
         self._lay_out()
 
     def _lay_out(self) -> None:
+        """Column by column for one plant, blade by blade for several: each as BLAS likes it."""
         n, m = self.plant.B.shape
-        n = self.bank.operators.states
-        alone = len(self.bank) == 1
-        width = self.bank.operators.fused.shape[-1]
-        self._joined = columns_first(self._shape, n + m + 2)[1] if alone else np.zeros((*self._shape, n + m + 2))
-        self._product = columns_first(self._shape, width)[1]
-        _, self._weighted = columns_first(self._shape, m)
+        widths = n + m + 2, self.bank.operators.fused.shape[-1], m
+        if len(self.bank) == 1:
+            self._joined, self._product, self._weighted = (columns_first(self._shape, width)[1] for width in widths)
+        else:
+            self._joined, self._product, self._weighted = (np.zeros((*self._shape, width)) for width in widths)
         self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
-        self._gathered: Operators | None = self.bank.operators if alone else None
 
     def __getstate__(self) -> tuple[Any, ...]:
-        moving = self._joined.copy(), self._disturbances, self.electronics, self.index.copy()
+        moving = self._joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
         return self.bank, self.scenario, self.count, self._physical, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
@@ -123,12 +108,24 @@ class Blades:
         *arguments, joined, disturbances, electronics, index = state
         self.__init__(*arguments)  # type: ignore[misc]
         self._joined[...] = joined
-        self._disturbances, self.electronics, self.index = disturbances, electronics, index
+        self._disturbances, self.electronics = disturbances, electronics
+        self.plants = Allotment(self.bank, self._shape, index)
 
     @property
     def state(self) -> Array:
         """(…, n) true states in energy coordinates: ½ xᵀx is the vibration energy in joules."""
         return self._by_blade(self._state)
+
+    @property
+    def index(self) -> Rows:
+        """(N,) place of each blade's plant in the bank."""
+        return self.plants.index
+
+    @property
+    def disturbances(self) -> SharedDisturbances | SeededDisturbances:
+        """Loads and noise, from the first ``begin`` on."""
+        assert self._disturbances is not None
+        return self._disturbances
 
     @property
     def design_state(self) -> Array:
@@ -138,13 +135,13 @@ class Blades:
         state = self.state
         if len(self.bank) == 1:
             return np.asarray(state @ self.bank.to_design[0])
-        seen = (np.atleast_2d(state)[:, None, :] @ self.bank.to_design[self.index])[:, 0]
+        seen = row_product(np.atleast_2d(state), self.bank.to_design[self.plants.index])
         return np.asarray(seen if self._shape else seen[0])
 
     @property
     def speed(self) -> Array:
         """(…,) rad/s: what a tachometer shows."""
-        speeds = self.bank.speeds[self.index]
+        speeds = self.bank.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
 
     def begin(
@@ -167,9 +164,10 @@ class Blades:
         assert self._disturbances is not None
         own = generators if isinstance(generators, np.random.Generator) else [generators[row] for row in rows]
         self._draw_plants_and_faults(rows, own)
-        cases = draw_load_cases(scenario, self.plant, own, len(rows), self.bank.speeds[self.index[rows]])
+        index = self.plants.index[rows]
+        cases = draw_load_cases(scenario, self.plant, own, len(rows), self.bank.speeds[index])
         noise = self._disturbances.begin(rows, cases, generators)  # type: ignore[arg-type]
-        state = np.einsum("nk,nkj->nj", cases.deflection, self.bank.release[self.index[rows]])
+        state = row_product(cases.deflection, self.bank.release[index])
         if self.bank.start is not None:
             state += self.bank.start
         if initial_state is not None:
@@ -182,19 +180,17 @@ class Blades:
 
     def _draw_plants_and_faults(self, rows: Rows, own: Generators) -> None:
         """Which plant each blade has, and what is wrong with it; nothing is drawn where a scenario leaves nothing to chance."""
-        drawn = len(self.bank) > 1 and not self.bank.runs
+        drawn, first = self.plants.drawn, np.zeros(len(rows), dtype=np.int64)
         uniforms = draw_uniforms(own, len(rows), DRAWS) if drawn or self.electronics is not None else None
-        self.index[rows] = (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn and uniforms is not None else 0
-        if self._shape and drawn:
-            self._gathered = None
+        self.plants.allot(rows, (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn and uniforms is not None else first)
         if self.electronics is not None and uniforms is not None:
             self.electronics.begin(rows, uniforms)
 
     def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
         """Motion at the start of an episode, one row for each state (rows, n)."""
         count = len(state)
-        index = self.index[rows]
-        output, noise = np.einsum("ni,nij->nj", state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
+        index = self.plants.index[rows]
+        output, noise = row_product(state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
         if self.electronics is None:
             reading = np.clip(output + noise, -1.0, 1.0)
         else:
@@ -204,7 +200,7 @@ class Blades:
             reward=np.zeros(count),
             failed=np.zeros(count, dtype=np.bool_),
             volts=np.zeros((count, self.plant.B.shape[1])),
-            tip_displacement=np.einsum("ni,nij->nj", state, self.bank.tip[index]),
+            tip_displacement=row_product(state, self.bank.tip[index]),
             energy=0.5 * row_dot(state, state),
             effort=np.zeros(count),
             cost_increment=np.zeros(count),
@@ -221,13 +217,11 @@ class Blades:
         acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
         self._voltages[...] = acting.reshape(self._voltages.shape)
         self._disturbances.loads(self._loads)
-        operators = self._operators()
-        out = self._product if operators.fused.ndim == 2 and len(self.bank) == 1 else None
-        following, reading, tip, increment = advance(operators, self._joined, out=out)
+        following, reading, tip, increment = advance(self.plants.operators, self._joined, out=self._product)
         self._state[...] = following
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = 0.5 * row_dot(self._state, self._state)
-        effort = self._effort()
+        effort = row_dot(row_product(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
         self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
@@ -245,31 +239,7 @@ class Blades:
     def elapse(self) -> None:
         """One control interval later: where plants follow one another, the next is on."""
         if self.bank.runs:
-            self.index = np.minimum(self.index + 1, len(self.bank) - 1)
-
-    @property
-    def disturbances(self) -> SharedDisturbances | SeededDisturbances:
-        """Loads and noise, from the first ``begin`` on."""
-        assert self._disturbances is not None
-        return self._disturbances
-
-    def _operators(self) -> Operators:
-        """One plant's operators for the whole batch where all blades have the same now, else gathered blade by blade."""
-        if self._gathered is not None:
-            return self._gathered
-        if self.bank.runs or not self._shape:
-            first = self.index[0]
-            if (self.index == first).all():
-                return self.bank.operators.pick(first)
-            return self.bank.operators.pick(self.index.reshape(self._shape))
-        self._gathered = self.bank.operators.pick(self.index.reshape(self._shape))
-        return self._gathered
-
-    def _effort(self) -> Array:
-        if len(self.bank) == 1:
-            return np.asarray(row_dot(product_into(self._weighted, self._voltages, self.bank.effort_weight[0]), self._voltages))
-        weight = self.bank.effort_weight[self.index.reshape(self._shape)] if self._shape else self.bank.effort_weight[self.index[0]]
-        return np.asarray(row_dot((self._voltages[..., None, :] @ weight)[..., 0, :], self._voltages))
+            self.plants.follow()
 
     def _by_blade(self, columns: Array) -> Array:
         """A copy (…, columns) of what is laid out in blocks."""
@@ -290,68 +260,11 @@ class Blades:
         return reading * self._full_scale if self._physical else reading
 
     def _failed(self, energy: Array) -> NDArray[np.bool_]:
-        """|cᵀx| ≤ ‖c‖‖x‖: only a blade with enough energy can have failed, and only then are its strains worked out."""
+        """Only a blade with enough energy can have failed, and only then are its strains worked out."""
         failed = np.zeros(energy.shape, dtype=np.bool_)
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either
             rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
             state = np.atleast_2d(self.state)[rows]
-            strain = np.abs(np.einsum("nki,ni->nk", self.bank.strain[self.index[rows]], state)).max(axis=-1)
-            np.atleast_1d(failed)[rows] = ~(strain <= FAILURE_STRAIN)
+            np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[self.plants.index[rows]], state)
         return failed
-
-
-class Electronics:
-    """The electronics of N blades with a scenario's imperfections, and what they remember."""
-
-    def __init__(self, plant: Plant, scenario: Scenario, count: int) -> None:
-        m, p = plant.B.shape[1], len(plant.C)
-        lowest, highest = normalised(plant).voltage_limits
-        troubled = scenario.drive
-        self._scenario = scenario
-        self.hysteresis = (
-            prandtl_ishlinskii(troubled.hysteresis, float(lowest.min()), float(highest.max())) if troubled.hysteresis else None
-        )
-        self.threshold = float(ndtri(scenario.acquisition.dropout)) if scenario.acquisition.dropout else None
-        """A reading is lost where its standard normal is below."""
-        self.faults = Faults(np.zeros(count, dtype=np.int64), np.ones((count, m)), np.ones((count, p)), np.zeros((count, p)))
-        plays = np.zeros((count, m, PLAYS if self.hysteresis else 0))
-        self.memory = SignalMemory(np.zeros((count, troubled.delay[1] + 1, m)), plays, np.zeros((count, p)))
-
-    def begin(self, rows: Rows, uniforms: Array) -> None:
-        """Draw the faults of new episodes and forget the past."""
-        _, m = self.faults.actuator_gain.shape
-        _, p = self.faults.sensor_gain.shape
-        self.faults = self.faults.replace(rows, draw_faults(self._scenario.failures, self._scenario.drive.delay, uniforms, m, p))
-        self.memory = SignalMemory(*(part.copy() for part in self.memory))
-        for part in self.memory:
-            part[rows] = 0.0
-
-    def first_reading(self, rows: Rows, output: Array, noise: Array) -> Array:
-        """Readings (rows, p) at the start of episodes: none is lost."""
-        chosen = Faults(*(part[rows] for part in (self.faults.delay, self.faults.actuator_gain, *self._sensors)))
-        readings, _ = acquire(chosen, self.memory, output, noise, None)
-        self.memory.readings[rows] = readings
-        return np.asarray(readings)
-
-    @property
-    def _sensors(self) -> tuple[Array, Array]:
-        return self.faults.sensor_gain, self.faults.sensor_bias
-
-    def drive(self, held: Array) -> Array:
-        """Voltages (N, m) that act, from those held."""
-        acting, self.memory = drive(self.faults, self.hysteresis, self.memory, held)
-        return np.asarray(acting)
-
-    def acquire(self, output: Array, disturbance: Array) -> Array:
-        """Readings (N, p) from outputs (N, p) and [noise | lost | …] (N, c)."""
-        p = output.shape[1]
-        lost = None if self.threshold is None else disturbance[:, p : 2 * p] < self.threshold
-        readings, self.memory = acquire(self.faults, self.memory, output, disturbance[:, :p], lost)
-        return np.array(readings)
-
-
-def _safe_energy(bank: Bank) -> float:
-    """Vibration energy, J, below which no state can strain the blade beyond ``FAILURE_STRAIN``."""
-    steepest = float(np.sqrt((bank.strain**2).sum(axis=-1)).max(initial=0.0))
-    return np.inf if steepest == 0.0 else 0.5 * (FAILURE_STRAIN / steepest) ** 2

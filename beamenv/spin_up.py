@@ -14,13 +14,15 @@ Speed follows a cycloid, Ω = Ω₀ + ΔΩ (τ − sin(2πτ)/2π) with τ = t/T
 t = 0⁺, where the blade still stands in the static equilibrium of Ω₀. The difference is the vibration that the start excites: from
 100 to 300 rad/s in 0.5 s it is about that of a sudden 56 N/m in lag.
 
-The motion is expanded in the modes of the configured speed. The plant of an interval is that of the speed at its middle, held
+The motion is expanded in the modes of the configured speed, 200 rad/s: at 100 and 300 rad/s the frequencies of the first six
+are then 0.16 % too high at most, those of all eleven 0.6 %. The plant of an interval is that of the speed at its middle, held
 over the interval; coordinates are energy coordinates at every instant.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -28,20 +30,15 @@ from numpy.typing import NDArray
 
 from beamenv.bank import Bank, coordinates
 from beamenv.configuration import BladeConfig, build_beam, build_plant
-from beamenv.kernel import Operators
-from beamenv.loads import static_deflection
-from beamenv.plant import Plant, normalised
+from beamenv.plant import Plant
 from beamenv.reduction import truncate
 from beamenv.structure.base_motion import base_loads
 
 Array = NDArray[np.float64]
 
 NODES = 20
-"""Chebyshev nodes in time that the moving equilibrium is worked out at."""
-
-SWEEPS = 6
-"""Of the fixed-point iteration for the moving equilibrium: each gains a factor of some 30, speed changing that much more slowly
-than the blade vibrates."""
+"""Chebyshev nodes in time at which the moving equilibrium obeys the equation of motion: too few to follow vibration in 0.5 s, many
+enough for residuals of 1e-7 between them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,18 +110,24 @@ class RunUp:
         return np.asarray(speed**2 * self.centrifugal + acceleration * self.euler)
 
     def equilibrium(self) -> tuple[Array, Array]:
-        """Chebyshev coefficients (NODES, r) over [0, T] of q_s and of its rate."""
-        duration = self.course.duration
-        nodes = 0.5 * duration * (1.0 + chebyshev.chebpts1(NODES))
-        fit = np.linalg.inv(chebyshev.chebvander(2.0 * nodes / duration - 1.0, NODES - 1))
-        restoring, rates, load = self.restoring(nodes), self.rate_matrix(nodes), self.base_load(nodes)
-        at_nodes = np.linalg.solve(restoring, load[..., None])[..., 0]
-        for _ in range(SWEEPS):
-            velocity, acceleration = (_derivative(fit @ at_nodes, order, duration, nodes) for order in (1, 2))
-            inertia = np.einsum("kij,kj->ki", rates, velocity) + acceleration
-            at_nodes = np.linalg.solve(restoring, (load - inertia)[..., None])[..., 0]
-        coefficients = fit @ at_nodes
-        return coefficients, np.vstack([chebyshev.chebder(coefficients, axis=0) * 2.0 / duration, np.zeros((1, len(self.elastic)))])
+        """Chebyshev coefficients (NODES, r) over [0, T] of q_s and of its rate, by collocation.
+
+        In run-ups of a few periods, which are too quick for one smooth motion to stand out, it is the least solution found. Any
+        would do: what the blade does, q_s + vibration, is the same.
+        """
+        rate = 2.0 / self.course.duration
+        nodes = (1.0 + chebyshev.chebpts1(NODES)) / rate
+        identity = np.eye(NODES)
+        position, velocity, acceleration = (
+            chebyshev.chebval(rate * nodes - 1.0, rate**order * chebyshev.chebder(identity, order)).T for order in range(3)
+        )
+        r = len(self.elastic)
+        equations = np.einsum("kn,ij->kinj", acceleration, np.eye(r))
+        equations += np.einsum("kn,kij->kinj", velocity, self.rate_matrix(nodes))
+        equations += np.einsum("kn,kij->kinj", position, self.restoring(nodes))
+        solved = np.linalg.lstsq(equations.reshape(NODES * r, -1), self.base_load(nodes).ravel())[0]
+        coefficients = solved.reshape(NODES, r)
+        return coefficients, np.vstack([rate * chebyshev.chebder(coefficients, axis=0), np.zeros((1, r))])
 
     def initial_vibration(self) -> tuple[Array, Array]:
         """η and η̇ (r,) at t = 0: the static equilibrium of the first speed less the moving one."""
@@ -134,31 +137,34 @@ class RunUp:
         return at_rest - displaced, -np.asarray(moving)
 
 
-def _derivative(coefficients: Array, order: int, duration: float, time: Array) -> Array:
-    derived = chebyshev.chebder(coefficients, order, axis=0) * (2.0 / duration) ** order
-    return np.asarray(chebyshev.chebval(2.0 * time / duration - 1.0, derived)).T
-
-
+@lru_cache(maxsize=4)
 def spin_up_bank(config: BladeConfig, design: BladeConfig, speeds: tuple[float, float], steps: int) -> Bank:
-    """One plant for each of ``steps`` control intervals."""
+    """One plant for each of ``steps`` control intervals, built once and cached."""
     reference, interval = build_plant(config), config.control_interval
     run_up = RunUp.of(config, Cycloid(*speeds, steps * interval))
-    edges = interval * np.arange(steps + 1)
-    middles = edges[:-1] + 0.5 * interval
-    roots = np.linalg.cholesky(run_up.stiffness(edges))  # K = U Uᵀ, x = [Uᵀη; η̇]
-    mid_roots = np.linalg.cholesky(run_up.stiffness(middles))
+    edges: Array = interval * np.arange(steps + 1, dtype=np.float64)
+    middles: Array = edges[:-1] + 0.5 * interval
+    roots = _root(run_up.stiffness(edges))  # K = U Uᵀ, x = [Uᵀη; η̇]
+    mid_roots = _root(run_up.stiffness(middles))
     plants = [plant_at(reference, run_up, time, root) for time, root in zip(middles, mid_roots, strict=True)]
     bank = Bank.gather(reference, plants, run_up.course.speed(middles), None)
     incoming, outgoing = _changes(roots[:-1], mid_roots), _changes(mid_roots, roots[1:])
-    units = [_at_instants(plant, before, after) for plant, before, after in zip(plants, incoming, outgoing, strict=True)]
+    back = incoming.swapaxes(1, 2)
     return replace(
         bank,
-        operators=replace(bank.operators, fused=np.stack(units)),
+        operators=replace(bank.operators, fused=_at_instants(bank.operators.fused, incoming, outgoing)),
+        readout=back @ bank.readout,
+        tip=back @ bank.tip,
+        strain=bank.strain @ incoming,
+        release=np.asarray(np.linalg.solve(incoming, bank.release.swapaxes(1, 2)), dtype=np.float64).swapaxes(1, 2),
         start=_initial_state(run_up, roots[0]),
         runs=True,
         to_design=_views(config, design, roots[:-1]),
-        **_instantaneous(bank, incoming),
     )
+
+
+def _root(stiffness: Array) -> Array:
+    return np.asarray(np.linalg.cholesky(stiffness), dtype=np.float64)
 
 
 def plant_at(reference: Plant, run_up: RunUp, time: float, root: Array) -> Plant:
@@ -190,28 +196,20 @@ def _changes(before: Array, after: Array) -> Array:
     return change
 
 
-def _at_instants(plant: Plant, incoming: Array, outgoing: Array) -> Array:
-    """The fused operator from the energy coordinates at an interval's begin to those at its end."""
-    fused = Operators.from_plant(normalised(plant)).fused.copy()
-    n = len(plant.A)
-    joined = np.eye(len(fused))
-    joined[:n, :n] = incoming
-    fused = joined.T @ fused
-    fused[:, :n] = fused[:, :n] @ outgoing.T
-    fused[:, -len(joined) :] = fused[:, -len(joined) :] @ joined
-    return np.asarray(fused)
+def _at_instants(fused: Array, incoming: Array, outgoing: Array) -> Array:
+    """Operators (K, s, …) from the energy coordinates at each interval's begin to those at its end, from those in its middle."""
+    n, size = incoming.shape[-1], fused.shape[1]
+    joined = np.tile(np.eye(size), (len(fused), 1, 1))
+    joined[:, :n, :n] = incoming
+    moved = joined.swapaxes(1, 2) @ fused
+    moved[..., :n] = moved[..., :n] @ outgoing.swapaxes(1, 2)
+    moved[..., -size:] = moved[..., -size:] @ joined
+    return np.asarray(moved)
 
 
 def _initial_state(run_up: RunUp, root: Array) -> Array:
     displaced, moving = run_up.initial_vibration()
     return np.concatenate([root.T @ displaced, moving])
-
-
-def _instantaneous(bank: Bank, incoming: Array) -> dict[str, Array]:
-    """The bank's maps from the state at the begin of each interval instead of in its middle."""
-    back = incoming.swapaxes(1, 2)
-    release = np.linalg.solve(incoming, bank.release.swapaxes(1, 2)).swapaxes(1, 2)
-    return {"readout": back @ bank.readout, "tip": back @ bank.tip, "strain": bank.strain @ incoming, "release": release}
 
 
 def _views(config: BladeConfig, design: BladeConfig, roots: Array) -> Array | None:

@@ -15,7 +15,8 @@ from beamenv.bank import Bank, build_bank
 from beamenv.configuration import BladeConfig, blade_config, build_plant
 from beamenv.plant import Plant
 from beamenv.scenarios import Scenario, scenario, with_load
-from beamenv.simulation import FAILURE_STRAIN, Motion
+from beamenv.simulation import Motion
+from beamenv.strain_limit import FAILURE_STRAIN
 
 Array = NDArray[np.float64]
 

@@ -136,14 +136,17 @@ class Rotor:
     sampled exactly."""
 
     def __post_init__(self) -> None:
-        if not isinstance(self.harmonics, Sequence) or isinstance(self.harmonics, str):
+        harmonics: Any = self.harmonics
+        if not isinstance(harmonics, Sequence) or isinstance(harmonics, str):
             raise ValueError(f"scenario: rotor.harmonics is {self.harmonics!r}, but must be a list of amplitudes in N/m.")
         for value in (*self.harmonics, self.turbulence):
             if not _is_number(value) or value < 0.0:
                 raise ValueError(f"scenario: rotor has {value!r} N/m, but loads must be zero or positive numbers.")
         object.__setattr__(self, "harmonics", tuple(float(value) for value in self.harmonics))
         if not (_is_number(self.turbulence_time) and self.turbulence_time > 0.0):
-            raise ValueError(f"scenario: rotor.turbulence_time is {self.turbulence_time!r}, but must be a positive number of seconds.")
+            raise ValueError(
+                f"scenario: rotor.turbulence_time is {self.turbulence_time!r}, but must be a positive number of seconds."
+            )
 
 
 def checked_range(name: str, value: Any, least: float, most: float) -> Range:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 import sys
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
@@ -21,6 +21,9 @@ from beamenv.plant import Plant
 from beamenv.scenarios import Scenario
 from beamenv.simulation import Blades, Motion
 from beamenv.task import INFO, Task, checked_action, information, reset_options, resolve_task
+
+if TYPE_CHECKING:
+    from beamenv.rendering import BatchRenderer
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -48,6 +51,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
       Stable-Baselines3 expects): the last step returns the first observation and info of the next episode, and those of the
       finished one as `info["final_obs"]` and `info["final_info"]`.
     - `max_episode_steps`: a time limit in control intervals, if it is to be shorter than `duration`.
+    - `render_mode`: None or `"rgb_array"`; `render_index`: which blade is drawn, default 0, or a sequence of several. `render`
+      returns a tuple of one picture for each of them. `gymnasium.wrappers.vector.RecordVideo` wants all: `range(num_envs)`.
 
     **Seeds.** `reset(seed=7)` makes one generator for the whole batch: fast. `reset(seed=[7, 8, ...])`, one for each blade,
     gives each blade its own, and with it exactly the load cases and noise, bit for bit, that `RotatingBeamEnv` has after
@@ -57,7 +62,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     mask `_volts`, ….
     """
 
-    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 50, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
     def __init__(
         self,
@@ -72,10 +77,13 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         max_episode_steps: int | None = None,
         render_mode: str | None = None,
+        render_index: int | Sequence[int] = 0,
     ) -> None:
-        if render_mode is not None:
-            raise ValueError(f"render_mode is {render_mode!r}, but a batch draws nothing: make a single environment for pictures.")
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
+        self.render_mode = render_mode
         self.num_envs = _positive("num_envs", num_envs)
+        self._drawn = _rows("render_index", render_index, self.num_envs)
         self._time_limit = sys.maxsize if max_episode_steps is None else _positive("max_episode_steps", max_episode_steps)
         self._mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
@@ -102,6 +110,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._steps = min(self.task.steps, self._time_limit)
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
         self._over: Rows = np.arange(0)  # rows whose episode ended at the last step, with NEXT_STEP
+        self._pictures = None if self.render_mode is None else self._make_pictures(tasks)
 
     @property
     def plant(self) -> Plant:
@@ -157,6 +166,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._elapsed[:] = elapsed
         self._over = np.arange(0)
         motion = self._blades.begin(self._generators, scenario=scenario, initial_state=initial_state)
+        if self._pictures is not None:
+            self._pictures.begin(self._blades, motion)
         return motion.observation, _masked(information(motion))
 
     def _seed(self, seed: int | Sequence[int] | None) -> None:
@@ -180,6 +191,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if resting is not None:
             truncated[resting] = False
             self._begin(resting, motion)
+        if self._pictures is not None:
+            self._pictures.record(self._blades, motion, begun=resting)
         over = motion.failed | truncated
         info = information(motion)
         if over.any():
@@ -210,9 +223,26 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         reward, terminated, over = motion.reward.copy(), motion.failed.copy(), np.zeros(self.num_envs, dtype=np.bool_)
         over[rows] = True
         self._begin(rows, motion)
+        if self._pictures is not None:
+            self._pictures.begin(self._blades, motion, rows)
         info = _masked(information(motion))
         info.update(final_obs=final_obs, _final_obs=over, final_info=_masked(final, over), _final_info=over.copy())
         return motion.observation, reward, terminated, truncated, info
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Pictures (540, 960, 3) of the blades in ``render_index``, as ``RotatingBeamEnv`` draws them."""
+        if self._pictures is None:
+            gymnasium.logger.warn('render was called without a render_mode: make the environment with render_mode="rgb_array".')
+            return None
+        if self._generators is None:
+            raise gymnasium.error.ResetNeeded("Call reset before render.")
+        return self._pictures.draw()
+
+    def _make_pictures(self, tasks: Sequence[Task]) -> BatchRenderer:
+        from beamenv.rendering import BatchRenderer
+
+        drawn = {row: tasks[row % len(tasks)] for row in self._drawn}
+        return BatchRenderer(drawn, self.task.observation_space().high)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Nothing is open; but a closed environment must be reset before it is stepped."""
@@ -230,6 +260,14 @@ def _positive(name: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
         raise ValueError(f"{name} is {value!r}, but must be a positive integer.")
     return int(value)
+
+
+def _rows(name: str, value: Any, count: int) -> tuple[int, ...]:
+    """Rows of the batch, from one number or a sequence."""
+    rows = np.atleast_1d(np.asarray(value))
+    if rows.ndim != 1 or rows.dtype.kind not in "iu" or not len(rows) or not np.all((rows >= 0) & (rows < count)):
+        raise ValueError(f"{name} is {value!r}, but must be an integer from 0 to {count - 1}, or a sequence of such integers.")
+    return tuple(rows.tolist())
 
 
 def _elapsed(value: Any, steps: int, count: int) -> Rows:

@@ -67,11 +67,13 @@ class Listener:
 
 
 def compare(comparison: Comparison, folder: Path, listener: Listener | None = None) -> list[Evaluation]:
-    """Train, evaluate, write tables, models, configuration and figures to ``folder``, and return the evaluations.
+    """Train, evaluate, write tables, models, configuration, figures and a page to ``folder``, and return the evaluations.
 
     Each piece is written as soon as it is there. A folder that holds trained agents of the same comparison is gone on from;
     ``ValueError`` if it holds another comparison.
     """
+    from train.comparison_page import write_comparison_page  # plotly takes a while, and others want this module's names alone
+
     listener = listener or Listener()
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
     try:
@@ -86,7 +88,10 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
     levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
     drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "lqg-thesis", "lqg")]
-    write_figures(folder, plant, evaluations, drawn, {name: read_curve(folder, name) for name in agents}, levels)
+    curves = {name: read_curve(folder, name) for name in agents}
+    write_figures(folder, plant, evaluations, drawn, curves, levels)
+    configuration = json.loads((folder / "configuration.json").read_text())
+    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, configuration)
     return evaluations
 
 

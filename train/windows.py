@@ -12,6 +12,7 @@ from torch import Tensor
 
 from beamenv.electronics import SignalMemory, acquire, drive
 from beamenv.kernel import advance
+from beamenv.plant import normalised
 from beamenv.simulation import Blades
 from beamenv.task import Task
 
@@ -20,6 +21,9 @@ Memory = tuple[Tensor, ...]
 
 class Acting(Protocol):
     """A policy in torch."""
+
+    limits: Tensor
+    """(2, m): what the drive lets through, in units of the larger limit."""
 
     def start(self, count: int) -> Memory:
         """What it remembers at the start of ``count`` episodes; the last part holds the voltages (count, m)."""
@@ -31,7 +35,7 @@ class Acting(Protocol):
 
 
 class Windows:
-    """A batch of episodes of one task, cut into windows that are unrolled one after the other; blades are spread over the windows."""
+    """A batch of episodes of one task, cut into windows unrolled one after the other; blades are spread over the windows."""
 
     def __init__(self, task: Task, episodes: int, window: int, generator: np.random.Generator) -> None:
         self.length = min(window, task.steps)
@@ -42,6 +46,7 @@ class Windows:
         self._sensors = len(task.plant.C)
         self._phase: NDArray[np.int64] = np.arange(episodes) % self.count
         self._loads = np.zeros((*self._blades.shape, 2))
+        self._limits = _float(normalised(task.plant).voltage_limits)
         self._memory: Memory | None = None
         self._signals: SignalMemory | None = None
         first = self._blades.begin(generator)
@@ -81,6 +86,7 @@ class Windows:
 
     def unroll(self, actor: Acting) -> tuple[Tensor, Tensor]:
         """Cost (B,) of a window in J s and energy (B,) left at its end in J; differentiable in the actor's weights."""
+        actor.limits = self._limits
         if self._memory is None:
             self._memory = actor.start(len(self._phase))
         state, readings, memory, signals = self._state, self._readings, self._memory, self._signals

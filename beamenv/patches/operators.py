@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,29 +35,41 @@ def patch_force(beam: RotatingBeam, patch: PatchMaterial, wall: str, start: floa
 
     ``ValueError`` for a patch that leaves the blade or does not fit its wall.
     """
-    check_fit(beam, patch.inlay(wall, start, length, width))
-    end = start + length
+    return patch_forces(beam, patch, wall, (start,), length, width)[:, 0]
+
+
+def patch_forces(
+    beam: RotatingBeam, patch: PatchMaterial, wall: str, starts: Sequence[float], length: float, width: float
+) -> Array:
+    """Generalised force (N, k) per volt of each of k patches on one wall.
+
+    ``ValueError`` for a patch that leaves the blade or does not fit its wall.
+    """
+    for start in starts:
+        check_fit(beam, patch.inlay(wall, start, length, width))
+    under = [stations_under(beam, start, start + length) for start in starts]
+    per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]))
+    ends = np.cumsum([len(stations.z) for stations in under])
+    return np.column_stack([stations.weight @ part for stations, part in zip(under, np.split(per_span, ends[:-1]), strict=True)])
+
+
+def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
+    """Stations along a patch from ``start`` to ``end`` (m)."""
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length) if start < edge < end]
     breakpoints = np.unique([start, *edges, end])  # a patch on the opposite wall changes the shear flow where it ends
     apart = np.append(True, np.diff(breakpoints) > 1e-9 * beam.length)
-    stations = Stations.between(breakpoints[apart], beam.terms + EXTRA_STATIONS)
-    return np.asarray(stations.weight @ force_per_span(beam, patch, wall, width, stations.z))
+    return Stations.between(breakpoints[apart], beam.terms + EXTRA_STATIONS)
 
 
 def actuation(beam: RotatingBeam, layout: PatchLayout) -> Array:
     """F: generalised force per volt, (N, actuators), or (N, 1) when ganged; ``beam`` carries the inlays of passive patches."""
-    columns = [
-        patch_force(beam, layout.patch, ACTUATOR_WALL, start, layout.length, layout.width)
-        for start in layout.actuator_positions(beam.length)
-    ]
-    forces = np.column_stack(columns)
+    starts = layout.actuator_positions(beam.length)
+    forces = patch_forces(beam, layout.patch, ACTUATOR_WALL, starts, layout.length, layout.width)
     return forces.sum(axis=1, keepdims=True) if layout.ganged else forces
 
 
 def sensing(beam: RotatingBeam, layout: PatchLayout) -> Array:
     """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
-    rows = [
-        patch_force(beam, layout.patch, SENSOR_WALL, start, layout.length, layout.width)
-        for start in layout.sensor_positions(beam.length)
-    ]
-    return layout.patch.charge_per_reaction * np.stack(rows)
+    starts = layout.sensor_positions(beam.length)
+    forces = patch_forces(beam, layout.patch, SENSOR_WALL, starts, layout.length, layout.width)
+    return layout.patch.charge_per_reaction * forces.T

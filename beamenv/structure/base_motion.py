@@ -22,6 +22,7 @@ from beamenv.structure.wall_kinematics import DS, DTY, DU, DU1
 
 Array = NDArray[np.float64]
 
+
 @dataclass(frozen=True, slots=True, eq=False)
 class BaseLoads:
     """Generalised forces (N,) of the trial functions."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
@@ -144,6 +145,7 @@ class WallLaw:
     """(7,): moments of ρ."""
 
 
+@lru_cache(maxsize=64)
 def wall_law(laminate: Laminate) -> WallLaw:
     """Integrate a laminate through its thickness and condense out the hoop strain (N_ss = 0)."""
     angles = np.radians([ply.angle_deg for ply in laminate.plies])

@@ -238,19 +238,16 @@ def lay_out_laws(
     hosts: dict[str, Laminate], points: WallPoints, inlays: Sequence[Inlay], z: Array
 ) -> tuple[list[WallLaw], NDArray[np.intp]]:
     """The distinct wall laws and, for every station and point (S, P), which one holds there."""
-    laws: list[WallLaw] = []
     known: dict[Laminate, int] = {}
 
     def number(laminate: Laminate) -> int:
-        if laminate not in known:
-            known[laminate] = len(laws)
-            laws.append(wall_law(laminate))
-        return known[laminate]
+        return known.setdefault(laminate, len(known))
 
     index = np.empty((len(z), len(points.edges)), dtype=np.intp)
-    index[:] = [number(hosts[edge.wall]) for edge in points.edges]
+    host = {wall: number(laminate) for wall, laminate in hosts.items()}
+    index[:] = [host[edge.wall] for edge in points.edges]
     for inlay in inlays:
         law = number(hosts[inlay.wall].with_outer_layer(inlay.ply, inlay.thickness))
         under = [edge.lies_under(inlay) for edge in points.edges]
         index[np.ix_(inlay.covers(z), np.array(under))] = law
-    return laws, np.repeat(index, 2, axis=1)
+    return [wall_law(laminate) for laminate in known], np.repeat(index, 2, axis=1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -68,11 +69,10 @@ class TrialSpace:
 
 def polynomial_table(xi: Array, power: int, terms: int, length: float) -> tuple[Array, Array, Array]:
     """ξᵏ P_j(2ξ − 1) and its first two derivatives by z = ξL, each (stations, terms)."""
-    identity = np.eye(terms)
-    value, first, second = (
-        legendre.legval(2.0 * xi - 1.0, legendre.legder(identity, order) if order else identity).T * 2.0**order
-        for order in range(3)
-    )
+    value = legendre.legvander(2.0 * xi - 1.0, terms - 1)
+    derivative = 2.0 * legendre_derivative(terms)
+    first = value @ derivative
+    second = first @ derivative
     x = xi[:, None]
     root, root_first, root_second = x**power, power * x ** (power - 1), power * (power - 1) * np.ones_like(x)
     return (
@@ -80,6 +80,25 @@ def polynomial_table(xi: Array, power: int, terms: int, length: float) -> tuple[
         (root_first * value + root * first) / length,
         (root_second * value + 2.0 * root_first * first + root * second) / length**2,
     )
+
+
+@lru_cache
+def legendre_derivative(terms: int) -> Array:
+    """(terms, terms): column j has the Legendre coefficients of P_j'."""
+    padded = np.zeros((terms, terms))
+    derived = legendre.legder(np.eye(terms))
+    padded[: len(derived)] = derived
+    padded.setflags(write=False)
+    return padded
+
+
+@lru_cache
+def gauss_rule(points: int) -> tuple[Array, Array]:
+    """Nodes and weights (points,) of Gauss's rule on −1 … 1."""
+    rule = legendre.leggauss(points)
+    for values in rule:
+        values.setflags(write=False)
+    return rule
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +113,7 @@ class Stations:
     @classmethod
     def between(cls, breakpoints: Array, per_piece: int) -> Stations:
         """Stations on every piece between ascending breakpoints (m)."""
-        nodes, weights = legendre.leggauss(per_piece)
+        nodes, weights = gauss_rule(per_piece)
         half = 0.5 * np.diff(breakpoints)
         z = (breakpoints[:-1] + half)[:, None] + half[:, None] * nodes
         return cls(z.ravel(), (half[:, None] * weights).ravel(), breakpoints, per_piece)
@@ -108,9 +127,10 @@ class Stations:
         return (half[:, None] * (per_piece @ remaining_integrals(self.per_piece).T) + beyond[:, None]).ravel()
 
 
+@lru_cache
 def remaining_integrals(points: int) -> Array:
     """(points, points): ∫ from Gauss node q to 1 of the Lagrange polynomial of node j."""
-    nodes, weights = legendre.leggauss(points)
+    nodes, weights = gauss_rule(points)
     values = legendre.legvander(nodes, points)
     degree = np.arange(1, points)
     tail = np.column_stack([1.0 - nodes, (values[:, degree - 1] - values[:, degree + 1]) / (2 * degree + 1)])

@@ -3,7 +3,18 @@
 import numpy as np
 import pytest
 
-from baselines import lqg, lqr, mpc, no_control, velocity_feedback
+from baselines import (
+    RotorHarmonics,
+    clipped_lqg,
+    h_infinity,
+    lqg,
+    lqr,
+    mpc,
+    no_control,
+    positive_position_feedback,
+    rotor_lqg,
+    velocity_feedback,
+)
 from baselines.controller import Controller
 from baselines.persistent_load import PersistentLoad, with_persistent_load
 from baselines.riccati import sampled_kalman_filter, sampled_regulator
@@ -18,12 +29,16 @@ LAWS = {
     "LQG": lqg,
     "LQG (thesis)": lambda plant: lqg(plant, "continuous"),
     "LQG with load estimate": lambda plant: lqg(plant, persistent_load=PersistentLoad()),
+    "LQG with rotor harmonics": lambda plant: rotor_lqg(plant, RotorHarmonics(speed=200.0)),
+    "LQG, clipping known": clipped_lqg,
+    "H∞": h_infinity,
+    "positive position feedback": positive_position_feedback,
     "MPC": mpc,
     "MPC with load estimate": lambda plant: mpc(plant, PersistentLoad()),
 }
 
 
-@pytest.fixture(params=LAWS, name="law")
+@pytest.fixture(params=LAWS, name="law", scope="module")
 def _law(request, small_plant):
     law = LAWS[request.param](small_plant())
     assert law.name == request.param

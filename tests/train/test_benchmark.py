@@ -4,7 +4,7 @@ import gymnasium
 import pytest
 
 import beamenv
-from train.benchmark import ROWS, TARGETS, batch_run, benchmark, met, show, single_run
+from train.benchmark import ROWS, TARGETS, batch_run, benchmark, met, picture_run, show, single_run
 
 
 def test_steps_are_counted_over_the_time_they_take():
@@ -13,12 +13,18 @@ def test_steps_are_counted_over_the_time_they_take():
     assert batch_run(gymnasium.make_vec(beamenv.ENV_ID, num_envs=4), steps=40)() > 0.0
 
 
+def test_pictures_are_counted_over_the_time_they_take():
+    pytest.importorskip("pygame")
+    assert picture_run(gymnasium.make(beamenv.ENV_ID, render_mode="rgb_array"), steps=3)() > 0.0
+
+
 @pytest.mark.parametrize(
     ("name", "value", "verdict"),
     [
         ("batch_4096", 6e6, True),
         ("batch_4096", 4e6, False),
         ("single_over_cartpole", 0.4, False),
+        ("pictures", 29.0, False),
         ("import_s", 0.2, True),
         ("assembly_ms", 70.0, False),
         ("cartpole", 1.0, None),

@@ -2,13 +2,16 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
 
 import train.compare
+from beamenv.configuration import THESIS, build_plant
 from train.agents import train_agent
 from train.compare import Comparison, Listener, compare, read_curve
+from train.comparison_page import shown_pair
 from train.contenders import CLASSICAL, classical
 from train.policies import HistoryPolicy
 from train.policy_files import load_policy
@@ -44,7 +47,7 @@ def finished(tmp_path_factory, ticking):
 def test_every_piece_is_written(finished):
     folder, _, _ = finished
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-    expected = {"configuration.json", "table.csv", "table.md", "episode.png", "learning.png", "poles.png"}
+    expected = {"configuration.json", "table.csv", "table.md", "episode.png", "learning.png", "poles.png", "report.html"}
     expected |= {f"evaluations/{name}.json" for name in (*CLASSICAL, "gradient", "ppo")}
     for agent in ("gradient", "ppo"):
         expected |= {f"learning_{agent}.csv", f"agents/{agent}/weights.npz", f"agents/{agent}/agent.json"}
@@ -61,6 +64,27 @@ def test_the_table_has_every_controller_on_the_same_seeds(finished):
     assert len({evaluation.episodes.seeds for evaluation in evaluations}) == 1
     markdown = (folder / "table.md").read_text()
     assert all(row["controller"] in markdown for row in rows)
+
+
+def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished):
+    folder, evaluations, notes = finished
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    figures = dict(re.findall(r'data-figure="(.*?)">(.*?)</script>', page))
+    shown = [json.loads(figures[name])["layout"]["title"]["text"] for name in ("blade-left", "blade-right")]
+    best = sorted(evaluations, key=lambda evaluation: evaluation.relative_cost.value)
+    agents = notes.evaluated_names[len(CLASSICAL) :]
+    laws = [each.name for each in best if each.name not in agents and "true state" not in each.name]
+    assert shown == [laws[0], next(each.name for each in best if each.name in agents)]
+    assert all(evaluation.name in page for evaluation in evaluations)
+
+
+def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
+    _, evaluations, _ = finished
+    plant = build_plant(THESIS)
+    laws = {name: classical(name, plant) for name in CLASSICAL}
+    left, right = shown_pair(evaluations[: len(laws)], laws)
+    assert left is laws["none"]
+    assert right.observes == "observation" and right is not left
 
 
 def test_training_reports_its_cost_and_steps(finished):

@@ -1,0 +1,7 @@
+"""Moving pictures of a blade: matplotlib sets the page once, pygame draws on it what moves, and shows it in a window."""
+
+from beamenv.rendering.batch import BatchRenderer
+from beamenv.rendering.history import Instant
+from beamenv.rendering.renderer import BladeRenderer
+
+__all__ = ["BatchRenderer", "BladeRenderer", "Instant"]

@@ -1,0 +1,52 @@
+"""How any plant of a bank bends and twists along its span."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.bank import varied
+from beamenv.configuration import build_beam, changed_blade, displacement_operator
+from beamenv.reduction import truncate
+from beamenv.spin_up import Cycloid, RunUp
+from beamenv.task import Task
+
+Array = NDArray[np.float64]
+
+
+class Deformation:
+    """Displacements at stations (k,), m from the root, of the plants that a task's episodes have."""
+
+    def __init__(self, task: Task, stations: Array) -> None:
+        self._task, self._stations = task, stations
+        self._index, self._operator = -1, np.empty(0)
+        plants = task.scenario.plants
+        self._varied = varied(plants, task.config) if plants.varies else None
+        self._run_up: RunUp | None = None
+        if plants.spin_up is not None:
+            self._run_up = RunUp.of(task.config, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
+
+    def displacement(self, state: Array, plant: int) -> Array:
+        """(3, k): lag, flap (m) and twist (rad) of a state (n,) of the plant at this place of the bank."""
+        if plant != self._index:
+            self._index, self._operator = plant, self._operator_of(plant)
+        displaced: Array = self._operator @ state
+        return displaced
+
+    def _operator_of(self, plant: int) -> Array:
+        """(3, k, n)."""
+        if self._run_up is not None:
+            return self._running_operator(self._run_up, plant)
+        config = self._task.config
+        return displacement_operator(
+            config if self._varied is None else changed_blade(config, *self._varied[plant].tolist()), self._stations
+        )
+
+    def _running_operator(self, run_up: RunUp, plant: int) -> Array:
+        """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K."""
+        config = self._task.config
+        root = np.linalg.cholesky(run_up.stiffness(np.asarray(plant * config.control_interval)))
+        rows = build_beam(config).displacements(self._stations)
+        shapes = truncate(build_beam(config), config.speed, config.modes).mode_shapes
+        displaced = np.stack([rows[name] for name in ("u", "v", "phi")]) @ shapes @ np.linalg.inv(root).T
+        return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)

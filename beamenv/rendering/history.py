@@ -1,0 +1,93 @@
+"""What a picture tells of an episode: its last instants."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+WINDOW = 0.2
+"""s of the episode that a picture shows."""
+
+
+class Instant(NamedTuple):
+    """One blade at the end of one control interval."""
+
+    state: Array
+    """(n,) true state, in energy coordinates of its plant."""
+    plant: int
+    """Place of the plant in the bank."""
+    speed: float
+    """rad/s."""
+    tip_displacement: Array
+    """(2,), m: lag, flap."""
+    volts: Array
+    """(m,), V, held over the interval."""
+    reading: Array
+    """(p,) sensor outputs in full scales."""
+    cost_increment: float
+    """J s."""
+
+
+class History:
+    """The instants of the last ``WINDOW`` seconds, sampled every ``interval`` (s). Recording one takes a microsecond."""
+
+    def __init__(self, interval: float) -> None:
+        self._interval = interval
+        self._instants: deque[Instant] = deque(maxlen=round(WINDOW / interval) + 1)
+        self._costs: deque[float] = deque(maxlen=self._instants.maxlen)
+        self._steps = 0
+
+    def begin(self, first: Instant) -> None:
+        """Start an episode."""
+        self._instants.clear()
+        self._costs.clear()
+        self._instants.append(_copied(first))
+        self._costs.append(0.0)
+        self._steps = 0
+
+    def record(self, instant: Instant) -> None:
+        """Take down the next instant."""
+        self._instants.append(_copied(instant))
+        self._costs.append(self._costs[-1] + instant.cost_increment)
+        self._steps += 1
+
+    @property
+    def last(self) -> Instant:
+        """The latest instant."""
+        return self._instants[-1]
+
+    @property
+    def time(self) -> float:
+        """Time since the episode began, s."""
+        return self._steps * self._interval
+
+    @property
+    def ages(self) -> Array:
+        """(k,) s: how long ago each instant was, negative, oldest first; the last is 0."""
+        return self._interval * np.arange(1 - len(self._instants), 1, dtype=np.float64)
+
+    @property
+    def tips(self) -> Array:
+        """(k, 2), m: lag, flap."""
+        return np.array([instant.tip_displacement for instant in self._instants])
+
+    @property
+    def volts(self) -> Array:
+        """(k, m), V."""
+        return np.array([instant.volts for instant in self._instants])
+
+    @property
+    def costs(self) -> Array:
+        """(k,), J s: the cost of the episode up to each instant."""
+        return np.array(self._costs)
+
+
+def _copied(instant: Instant) -> Instant:
+    """An instant that lives on whatever becomes of the arrays it was told in."""
+    state, tip, volts, reading = (each.copy() for each in (instant.state, instant.tip_displacement, instant.volts, instant.reading))
+    return instant._replace(state=state, tip_displacement=tip, volts=volts, reading=reading)

@@ -1,0 +1,138 @@
+"""Draws one blade's episode."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from gymnasium.error import DependencyNotInstalled
+from numpy.typing import NDArray
+
+from beamenv.rendering.canvas import Canvas, Frame
+from beamenv.rendering.charts import Chart, draw_scale, round_above
+from beamenv.rendering.deformation import Deformation
+from beamenv.rendering.history import WINDOW, History, Instant
+from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
+from beamenv.rendering.scene import Scene
+from beamenv.rendering.window import Window
+from beamenv.simulation import reward_scale
+from beamenv.task import Task
+
+Array = NDArray[np.float64]
+
+TIP = Chart("tip displacement", Frame(682.0, 44.0, 262.0, 118.0), -1.0, 1.0)
+VOLTAGES = Chart("voltage, V", Frame(682.0, 208.0, 262.0, 118.0), -1.0, 1.0)
+COST = Chart("running cost J, mJ s", Frame(682.0, 372.0, 262.0, 118.0), 0.0, 1.0)
+VOLTAGE_KEY, OUTPUT_KEY = Frame(26.0, 494.0, 240.0, 9.0), Frame(346.0, 494.0, 240.0, 9.0)
+CLOCK = Frame(20.0, 14.0, 300.0, 26.0)
+CURVE_POINTS = 401
+"""A curve is drawn through so many instants at most: more than it has pixels."""
+
+
+class BladeRenderer:
+    """Draws one blade's episode: ``begin``, then ``record`` after every step, and ``draw`` whenever a picture is wanted.
+
+    ``rate`` (1/s) opens a window, which then shows every instant at this rate; None is for pictures as arrays alone.
+    Raises DependencyNotInstalled without pygame, which draws, or matplotlib, which lends colour scales and letters.
+    """
+
+    def __init__(self, task: Task, rate: float | None = None) -> None:
+        _check_installed()
+        self._task, self._rate = task, rate
+        config, plant = task.config, task.plant
+        self._scene = Scene(config)
+        self._deformation = Deformation(task, self._scene.solid.stations)
+        self._actuators = len(config.patches.actuator_positions(config.beam.length))
+        self._limit = float(np.abs(plant.voltage_limits).max())
+        self._colours = line_colours(plant.B.shape[1])
+        usual_cost = 0.1 * WINDOW / config.control_interval * reward_scale(plant)
+        usual_tip = self._scene.solid.reference_deflection
+        unit, self._per_metre, self._digits = ("mm", 1e3, 1) if usual_tip > 1e-3 else ("µm", 1e6, 0)
+        tip = replace(TIP, title=f"{TIP.title}, {unit}").up_to(round_above(self._per_metre * usual_tip))
+        self._least = tip, COST.up_to(round_above(1e3 * usual_cost))
+        self._history = History(config.control_interval)
+        self._stride = -(-(round(WINDOW / config.control_interval) + 1) // CURVE_POINTS)
+        self._canvas = Canvas()
+        self._window = None if rate is None else Window("beamenv", rate)
+        self._lay_out(*self._least)
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        return self._task, self._rate, self._history
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        """Surfaces and windows are made anew: they cannot be copied."""
+        task, rate, history = state
+        self.__init__(task, rate)  # type: ignore[misc]
+        self._history = history
+
+    def begin(self, first: Instant) -> None:
+        """Start an episode."""
+        self._history.begin(first)
+        self._lay_out(*self._least)
+        self._show()
+
+    def record(self, instant: Instant) -> None:
+        """Take down what one control interval brought."""
+        self._history.record(instant)
+        self._show()
+
+    def draw(self) -> NDArray[np.uint8]:
+        """The picture of the last instant recorded: (540, 960, 3)."""
+        self._paint()
+        return self._canvas.pixels()
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+
+    def _show(self) -> None:
+        if self._window is not None:
+            self._paint()
+            self._window.show(self._canvas.picture)
+
+    def _lay_out(self, tip: Chart, cost: Chart) -> None:
+        """Draw what seldom changes."""
+        canvas, self._tip, self._voltages, self._cost = self._canvas, tip, VOLTAGES.up_to(self._limit), cost
+        canvas.clear()
+        magnified = self._scene.solid.magnification
+        canvas.write(f"deflection × {magnified:,.0f}   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
+        canvas.write(
+            "actuators lie in the top wall; sensors lie in the bottom wall and are drawn below it", 24.0, 68.0, QUIET, "note"
+        )
+        draw_scale(canvas, VOLTAGE_KEY, VOLTAGE_SCALE, self._limit, "actuator voltage, V")
+        draw_scale(canvas, OUTPUT_KEY, OUTPUT_SCALE, 1.0, "sensor output, full scale")
+        for chart in (self._tip, self._voltages, self._cost):
+            chart.draw_axes(canvas, dated=chart is self._cost)
+        self._scene.draw_rest(canvas)
+        canvas.keep()
+
+    def _paint(self) -> None:
+        history, last = self._history, self._history.last
+        newest_first = slice(None, None, -self._stride)
+        ages, volts, costs = history.ages[newest_first], history.volts[newest_first], 1e3 * history.costs[newest_first, None]
+        tip = self._per_metre * history.tips[newest_first]
+        charts = self._tip.reaching(1.02 * np.abs(tip).max()), self._cost.reaching(1.02 * costs[0, 0])
+        if charts != (self._tip, self._cost):
+            self._lay_out(*charts)
+        volts_now = np.broadcast_to(last.volts, (self._actuators,))  # ganged actuators share one voltage
+        self._scene.draw(
+            self._canvas, self._deformation.displacement(last.state, last.plant), volts_now / self._limit, last.reading
+        )
+        labels = [f"{name} {value:+.{self._digits}f}" for name, value in zip(("lag", "flap"), tip[0], strict=True)]
+        self._tip.draw(self._canvas, ages, tip, [LAG, FLAP], labels)
+        self._voltages.draw(self._canvas, ages, volts, self._colours, [f"{k + 1}" for k in range(len(self._colours))])
+        self._cost.draw(self._canvas, ages, costs, [INK], [f"{costs[0, 0]:.3g}"])
+        self._canvas.open(CLOCK)
+        self._canvas.write(f"t = {1e3 * history.time:.1f} ms    Ω = {last.speed:.0f} rad/s", 24.0, 28.0, INK, "title")
+        self._canvas.develop(CLOCK)
+
+
+def _check_installed() -> None:
+    """What is drawn with must be there."""
+    try:
+        import matplotlib  # noqa: F401
+        import pygame  # noqa: F401
+    except ImportError as error:
+        raise DependencyNotInstalled(f'{error.name} is not installed, run `pip install "beamenv[render]"`') from error

@@ -1,0 +1,125 @@
+"""The blade as the camera sees it: hidden faces hidden, patches coloured."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.configuration import BladeConfig
+from beamenv.rendering.camera import Camera, faces_camera
+from beamenv.rendering.canvas import Canvas, Frame
+from beamenv.rendering.palette import INK, OUTPUT_SCALE, PALE, QUIET, VOLTAGE_SCALE, colour_table, colours_of
+from beamenv.rendering.solid import CORNERS, SHOWN_DEFLECTION, BladeSolid, Pose, quadrilaterals
+
+Array = NDArray[np.float64]
+
+PLACE = Frame(8.0, 78.0, 618.0, 386.0)
+MARGIN = 8.0
+REACH = 2.2
+"""Times ``SHOWN_DEFLECTION`` that the tip may move up or down without leaving the scene."""
+SENSOR_DROP = 0.15
+"""Share of the span by which sensors are drawn below the bottom wall they lie in: nobody could see them there."""
+TOWARDS, DISTANCE = np.array([-0.80, 0.62, -0.62]), 1.5
+"""Where the eye is from the middle of the blade, with positive pretwist: the direction (lag, flap, span) and how many spans."""
+LIGHT = np.array([0.75, 0.65, -0.45])
+"""Towards the light, with positive pretwist: it turns the top wall from it."""
+RIBS = 4
+"""Every how manieth of the even stations a line across the walls shows how they bend and twist."""
+RIB = 0.90
+"""Share of a wall's brightness that a rib has."""
+BODY = np.array([92.0, 104.0, 118.0]), np.array([205.0, 212.0, 220.0])
+HUB = np.array([40.0, 49.0, 59.0]), np.array([92.0, 104.0, 117.0])
+"""Colours in the shade and in the light."""
+DARK = 0.7
+"""Values of the colour scales beyond which white letters are read better."""
+NARROW = 8.0
+"""Height, px, below which a patch has no room for its number."""
+
+
+class Scene:
+    """Draws a ``BladeSolid`` on a canvas."""
+
+    def __init__(self, config: BladeConfig) -> None:
+        self.solid = BladeSolid(config)
+        length = config.beam.length
+        self._drop = np.array([0.0, -SENSOR_DROP * length, 0.0])
+        self._rest = self.solid.pose(np.zeros((3, len(self.solid.stations))))
+        self._hub = _hub(self._rest.walls[0], config.beam.depth)
+        self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
+        middle = np.radians(config.beam.presetting_deg + 0.5 * config.beam.pretwist_deg)
+        side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])  # look at the side that the top wall is turned to
+        self._light = side * LIGHT / np.linalg.norm(LIGHT)
+        tip = [self._rest.walls[-1] + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]
+        points = [self._rest.walls, self._rest.sensors + self._drop, self._hub, *tip]
+        self._camera = Camera.facing(
+            np.concatenate([each.reshape(-1, 3) for each in points]),
+            towards=side * TOWARDS,
+            distance=DISTANCE * length,
+            frame=Frame(PLACE.left + MARGIN, PLACE.top + MARGIN, PLACE.width - 2.0 * MARGIN, PLACE.height - 2.0 * MARGIN),
+        )
+        self._voltage_colours, self._output_colours = colour_table(VOLTAGE_SCALE), colour_table(OUTPUT_SCALE)
+
+    def draw_rest(self, canvas: Canvas) -> None:
+        """Where the blade is when nothing moves it."""
+        lines, _ = self._camera.project(self._rest.walls[self.solid.even])
+        for line in lines.transpose(1, 0, 2):
+            for start in range(0, len(line) - 1, 2):
+                canvas.line(line[start : start + 2], PALE)
+        canvas.line(lines[-1], PALE, closed=True)
+
+    def draw(self, canvas: Canvas, displacement: Array, volts: Array, outputs: Array) -> None:
+        """The blade displaced by lag, flap (m) and twist (rad), (3, stations), with the colours of ``volts`` (a,) and ``outputs``
+        (s,), both −1 … 1.
+        """
+        canvas.open(PLACE)
+        pose = self.solid.pose(displacement)
+        self._draw_leaders(canvas, pose)
+        self._draw_patches(canvas, pose.sensors[:, ::-1] + self._drop, colours_of(self._output_colours, outputs), outputs)
+        self._draw_body(canvas, quadrilaterals(pose.walls), BODY, self._ribs)
+        self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts)
+        self._draw_body(canvas, self._hub, HUB)
+        canvas.develop(PLACE)
+
+    def _draw_leaders(self, canvas: Canvas, pose: Pose) -> None:
+        """From where sensors lie to where they are drawn."""
+        middles = pose.sensors.mean(axis=1)
+        ends, _ = self._camera.project(np.stack([middles, middles + self._drop], axis=1))
+        for leader in ends:
+            canvas.line(leader, QUIET)
+
+    def _draw_patches(self, canvas: Canvas, patches: Array, colours: list[list[int]], values: Array) -> None:
+        """Patches (k, 4, 3), those whose upper side is seen, numbered from the root."""
+        corners, _ = self._camera.project(patches)
+        for k in np.flatnonzero(faces_camera(corners)).tolist():
+            canvas.polygon(corners[k], colours[k])
+            canvas.line(corners[k], INK, closed=True)
+            if np.linalg.norm(corners[k, 3] - corners[k, 0]) > NARROW:
+                x, y = corners[k].mean(axis=0).tolist()
+                canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
+
+    def _draw_body(self, canvas: Canvas, faces: Array, colours: tuple[Array, Array], ribs: Container[int] = ()) -> None:
+        """Faces (k, 4, 3), the farthest first, those turned away left out; ``ribs`` are stations with a line across."""
+        corners, depth = self._camera.project(faces)
+        seen = np.flatnonzero(faces_camera(corners))
+        seen = seen[np.argsort(-depth[seen].mean(axis=-1))]
+        shades = self._shades(faces[seen], *colours)
+        for face, colour in zip(seen.tolist(), shades, strict=True):
+            canvas.polygon(corners[face], colour)
+            if face // len(CORNERS) + 1 in ribs:
+                canvas.line(corners[face, 1:3], [round(RIB * part) for part in colour])
+
+    def _shades(self, faces: Array, shade: Array, lit: Array) -> list[list[int]]:
+        normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
+        brightness = 0.5 + 0.5 * (normals @ self._light) / np.linalg.norm(normals, axis=-1)
+        colours: list[list[int]] = np.rint(shade + brightness[:, None] * (lit - shade)).astype(int).tolist()
+        return colours
+
+
+def _hub(root: Array, depth: float) -> Array:
+    """(6, 4, 3): faces of the block that holds the root (4, 3)."""
+    middle = root.mean(axis=0)
+    block = np.stack([middle + 1.25 * (root - middle)] * 2)
+    block[0, :, 2] = -2.5 * depth
+    return np.concatenate([quadrilaterals(block), block[0][None]])

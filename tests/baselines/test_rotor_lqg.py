@@ -1,0 +1,81 @@
+"""LQG with rotor harmonics: the internal model principle."""
+
+import numpy as np
+import pytest
+
+from baselines import PersistentLoad, lqg, stationary_cost
+from baselines.frequency_response import cost_response
+from baselines.load_model import with_load
+from baselines.rotor_lqg import RotorHarmonics, rotor_lqg
+from beamenv.plant import sample
+
+SPEED = 100.0
+
+
+def exact_plant(small_plant):
+    """Next to no noise, and voltages that cost next to nothing."""
+    plant = small_plant()
+    return small_plant(
+        voltage_limits=np.array([[-1e6, -1e6], [1e6, 1e6]]),
+        process_noise=1e-4 * plant.process_noise,
+        sensor_noise=1e-4 * plant.sensor_noise,
+        input_weight=1e-4 * plant.input_weight,
+    )
+
+
+def test_two_per_revolution_is_recognised_for_what_it_is(small_plant):
+    plant = exact_plant(small_plant)
+    law = rotor_lqg(plant, RotorHarmonics(SPEED, orders=(1, 2), duration=100.0))
+    held, lasting = sample(plant), RotorHarmonics(SPEED, orders=(1, 2)).model(plant.control_interval)
+    x, memory = np.zeros(6), None
+    for k in range(8000):
+        load = np.array([3.0, -2.0]) * np.sin(2 * SPEED * k * held.interval + np.array([0.3, 1.1]))
+        if memory is not None:
+            estimate = lasting.output @ memory[6:]
+        action, memory = law.predict(held.C @ x / plant.sensor_full_scale, memory)
+        voltage = action * law.voltage_scale
+        x = held.A @ x + held.B @ voltage + held.disturbance_input @ load
+    assert np.abs(voltage).max() < 1e6
+    np.testing.assert_allclose(estimate, load, atol=0.01 * np.hypot(3.0, 2.0))
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_loads_at_each_harmonic_cost_less_than_under_lqg(small_plant, order):
+    plant = small_plant()
+    knowing = rotor_lqg(plant, RotorHarmonics(SPEED))
+    gains = [np.linalg.norm(cost_response(plant, law, order * SPEED)[0, :, :2], ord=2) for law in (lqg(plant), knowing)]
+    assert gains[1] < 0.9 * gains[0]
+    between = [np.linalg.norm(cost_response(plant, law, (order + 0.5) * SPEED)[0, :, :2], ord=2) for law in (lqg(plant), knowing)]
+    assert between[1] / between[0] > gains[1] / gains[0]
+
+
+def test_harmonics_too_small_to_matter_leave_lqg(small_plant):
+    plant = small_plant()
+    optimum = stationary_cost(plant, lqg(plant))
+    costs = [stationary_cost(plant, rotor_lqg(plant, RotorHarmonics(SPEED, magnitude=size))) for size in (1e-3, 1.5)]
+    assert costs[0] == pytest.approx(optimum, rel=1e-5)
+    assert costs[1] > optimum * (1 + 1e-3)
+
+
+def test_a_harmonic_has_the_magnitude_and_the_frequency_it_is_said_to_have():
+    model, interval = RotorHarmonics(SPEED, orders=(3,), magnitude=5.0, duration=0.2).model(5e-4), 5e-4
+    decay = np.exp(-interval / 0.2)
+    np.testing.assert_allclose(model.noise / (1 - decay**2), 25.0 * np.eye(4))
+    poles = np.log(np.linalg.eigvals(model.transition)) / interval
+    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex([-5 - 300j, -5 - 300j, -5 + 300j, -5 + 300j]))
+
+
+def test_turbulence_stands_beside_the_harmonics(small_plant):
+    plant = small_plant()
+    both = RotorHarmonics(SPEED).model(5e-4) + PersistentLoad().model(5e-4)
+    assert with_load(sample(plant), both).A.shape == (6 + 16 + 2,) * 2
+    assert len(rotor_lqg(plant, RotorHarmonics(SPEED), PersistentLoad()).transition) == 24
+
+
+def test_impossible_harmonics_are_refused_by_name(small_plant):
+    with pytest.raises(ValueError, match="speed = 0.0 of rotor harmonics"):
+        RotorHarmonics(0.0)
+    with pytest.raises(ValueError, match=r"orders = \(1.5,\)"):
+        RotorHarmonics(SPEED, orders=(1.5,))
+    with pytest.raises(ValueError, match="order 80 at 100 rad/s.*below 6283.19 rad/s"):
+        rotor_lqg(small_plant(), RotorHarmonics(SPEED, orders=(80,)))

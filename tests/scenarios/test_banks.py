@@ -1,0 +1,137 @@
+"""True plants beside the design's: what varies does what it must, and every plant is that of its configuration."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from baselines import lqg
+from baselines.stationary import closed_loop_poles
+from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv.bank import build_bank, varied
+from beamenv.configuration import blade_config, build_plant, changed_blade
+from beamenv.kernel import Operators
+from beamenv.loads import static_deflection
+from beamenv.plant import normalised
+from beamenv.scenarios import SCENARIOS
+from beamenv.task import resolve_task
+from beamenv.troubles import PlantVariation
+
+CONFIG = blade_config()
+
+
+@pytest.mark.parametrize("name", ["off-speed", "off-model"])
+def test_a_plant_of_a_bank_is_that_of_its_configuration(name):
+    variation = replace(SCENARIOS[name].plants, bank=6)
+    bank = build_bank(CONFIG, CONFIG, variation, 1000)
+    assert len(bank) == 6
+    ranged = replace(CONFIG, sensor_full_scale=float(build_plant(CONFIG).sensor_full_scale[0]))
+    for k, row in enumerate(varied(variation, CONFIG)):
+        config = changed_blade(ranged, *row)
+        plant = build_plant(config)
+        np.testing.assert_array_equal(bank.operators.fused[k], Operators.from_plant(normalised(plant)).fused)
+        np.testing.assert_allclose(bank.release[k], static_deflection(plant, np.eye(2)), rtol=1e-12)
+        np.testing.assert_array_equal(bank.tip[k], plant.tip_displacement.T)
+        assert bank.speeds[k] == config.speed
+        assert plant.control_interval == bank.plant.control_interval
+        np.testing.assert_array_equal(plant.sensor_full_scale, bank.plant.sensor_full_scale)
+
+
+def test_patches_without_mass_and_stiffness_leave_frequencies_to_the_laminate():
+    """ω ~ √(modulus/density) of a blade at rest, for every mode."""
+    bare = replace(CONFIG, speed=0.0, patches=replace(CONFIG.patches, passive=False))
+    nominal = build_plant(bare).natural_frequencies
+    stiffer = build_plant(changed_blade(bare, 1.0, 1.0, 1.21, 1.0, 0.01)).natural_frequencies
+    heavier = build_plant(changed_blade(bare, 1.0, 1.0, 1.0, 1.44, 0.01)).natural_frequencies
+    np.testing.assert_allclose(stiffer / nominal, 1.1, rtol=1e-8)
+    np.testing.assert_allclose(heavier / nominal, 1.0 / 1.2, rtol=1e-8)
+
+
+def test_sums_of_squared_frequencies_are_concave_in_the_squared_speed():
+    """Ky Fan: K_e + Ω² K_Ω is linear in Ω², so that ω₁² + … + ω_k² lies above its chord for every k; bending stiffens."""
+    slow, design, fast = (
+        build_plant(changed_blade(CONFIG, ratio, 1.0, 1.0, 1.0, 0.01)).natural_frequencies for ratio in (0.7, 1, 1.3)
+    )
+    share = (1.0 - 0.7**2) / (1.3**2 - 0.7**2)
+    chord = (1.0 - share) * np.cumsum(slow**2) + share * np.cumsum(fast**2)
+    assert np.all(np.cumsum(design**2) > chord)
+    assert np.all(((slow < design) & (design < fast))[:6])
+
+
+def test_every_stratum_of_the_latin_hypercube_is_hit_once():
+    variation = replace(SCENARIOS["off-model"].plants, speed_ratio=(0.7, 1.3), bank=64, seed=3)
+    rows = varied(variation, CONFIG)
+    ranges = [(0.7, 1.3), (0.9, 1.1), (0.9, 1.1), (0.9, 1.1)]
+    columns = [(rows[:, k] - low) / (high - low) for k, (low, high) in enumerate(ranges)]
+    columns.append(np.log(rows[:, 4] / 0.003) / np.log(0.02 / 0.003))  # damping on a logarithmic scale
+    for column in columns:
+        assert sorted(np.floor(64 * column).astype(int)) == list(range(64))
+    assert np.abs(np.corrcoef(np.array(columns)) - np.eye(5)).max() < 0.4
+    assert not np.array_equal(rows, varied(replace(variation, seed=4), CONFIG))
+    np.testing.assert_array_equal(rows, varied(variation, CONFIG))
+
+
+def test_a_bank_of_what_does_not_vary_is_one_plant():
+    bank = build_bank(CONFIG, CONFIG, PlantVariation(), 1000)
+    assert len(bank) == 1
+    np.testing.assert_array_equal(bank.operators.fused, Operators.from_plant(normalised(build_plant(CONFIG))).fused)
+    np.testing.assert_allclose(bank.to_design[0], np.eye(22), atol=1e-9)  # its own state
+
+
+def test_the_tachometer_shows_the_speed_of_the_plant_that_moves():
+    envs = RotatingBeamVectorEnv(200, scenario="off-speed")
+    envs.reset(seed=0)
+    assert envs.rotor_speed.min() < 150.0
+    assert envs.rotor_speed.max() > 250.0
+    assert np.all((envs.rotor_speed >= 140.0) & (envs.rotor_speed <= 260.0))
+    assert envs.rotor_speed.mean() == pytest.approx(200.0, abs=4.0 * 35.0 / np.sqrt(200))
+
+
+@pytest.mark.parametrize("name", ["off-speed", "off-model", "spillover", "spin-up"])
+def test_the_design_sees_the_displacements_of_the_true_blade(name):
+    """The tip by the design's coordinates is the true tip, as far as the design's modes can tell."""
+    env = RotatingBeamEnv(scenario={"preset": name, "plants": {"bank": 6}})
+    env.reset(seed=5, options={"load": {"case": "step", "magnitude": 30.0, "onset": 0.0}})
+    seen, true = [], []
+    for _ in range(300):
+        *_, info = env.step(np.zeros(4))
+        seen.append(env.design_plant.tip_displacement @ env.design_state)
+        true.append(info["tip_displacement"])
+    assert np.abs(np.array(seen) - true).max() < 0.01 * np.abs(true).max()
+
+
+def spillover():
+    task = resolve_task("thesis", None, None, None, "spillover", 0.5, False)
+    return task.plant, task.design_plant
+
+
+def test_design_and_truth_share_their_first_modes():
+    true, design = spillover()
+    assert (len(true.A), len(design.A)) == (44, 10)
+    np.testing.assert_allclose(design.natural_frequencies, true.natural_frequencies[:5], rtol=1e-9)
+
+
+def test_five_mode_lqg_spills_over_into_the_modes_it_does_not_know():
+    """The sampled loop is stable on the plant it was designed for; on the true one poles beyond the fifth mode grow."""
+    true, design = spillover()
+    assert closed_loop_poles(design, lqg(design)).real.max() < 0.0
+    growing = [pole for pole in closed_loop_poles(true, lqg(design)) if pole.real > 10.0]
+    assert sum(abs(pole.imag) > true.natural_frequencies[4] for pole in growing) >= 4
+    assert closed_loop_poles(true, lqg(true)).real.max() < 0.0
+
+
+def test_on_the_true_blade_five_mode_lqg_is_worse_than_none():
+    """J of 16 short episodes some 20 times that of the blade left alone, LQG of all 22 modes below it."""
+    costs = {}
+    for name, controller in (("none", None), ("five", lqg(spillover()[1])), ("all", lqg(spillover()[0]))):
+        envs = RotatingBeamVectorEnv(16, scenario="spillover", duration=0.25)
+        observation, _ = envs.reset(seed=list(range(16)))
+        state, action, total = None, np.zeros((16, 4)), 0.0
+        for k in range(499):
+            if controller is not None:
+                action, state = controller.predict(observation, state, np.full(16, k == 0))
+            observation, *_, info = envs.step(action)
+            total += info["cost_increment"].sum()
+        costs[name] = total
+    assert costs["five"] > 10.0 * costs["none"]
+    assert costs["all"] < 0.7 * costs["none"]

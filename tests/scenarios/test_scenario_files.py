@@ -1,0 +1,150 @@
+"""Scenarios as TOML files, as dictionaries and as environment ids."""
+
+import builtins
+import importlib
+import sys
+import types
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.utils.env_checker import check_env
+
+import beamenv
+from beamenv import BENCHMARK_SCENARIOS, RotatingBeamEnv, scenarios
+from beamenv.scenarios import SCENARIOS, load_scenario, scenario
+
+GUST = """
+preset = "rotor"
+pulse = 1.0
+deflection = 0.0
+
+[plants]
+speed_ratio = [0.9, 1.1]
+bank = 3
+
+[rotor]
+turbulence = 8.0
+"""
+
+
+def test_the_benchmark_has_ten_scenarios():
+    assert BENCHMARK_SCENARIOS == (
+        "delay", "failure", "hysteresis", "nominal", "off-model", "off-speed", "overload", "rotor", "spillover", "spin-up",
+    )  # fmt: skip
+    assert SCENARIOS["nominal"] == SCENARIOS["default"]
+
+
+@pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
+def test_check_env_passes_without_a_warning_and_the_spec_round_trips(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = gymnasium.make(f"beamenv/RotatingBeam-{name}-v0")
+        check_env(env.unwrapped)
+    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
+    assert again.unwrapped.task == env.unwrapped.task
+    assert again.unwrapped.task.scenario == SCENARIOS[name]
+    assert np.array_equal(again.reset(seed=1)[0], env.reset(seed=1)[0])
+    assert gymnasium.make_vec(f"beamenv/RotatingBeam-{name}-v0", num_envs=2).unwrapped.task == env.unwrapped.task
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_every_scenario_comes_back_from_its_dictionary(name):
+    assert scenario(SCENARIOS[name].to_dict()) == SCENARIOS[name]
+    assert hash(scenario(SCENARIOS[name].to_dict())) == hash(SCENARIOS[name])
+
+
+def test_a_file_departs_from_the_scenario_it_names_table_by_table(tmp_path):
+    path = tmp_path / "gust.toml"
+    path.write_text(GUST, encoding="utf-8")
+    chosen = load_scenario(path)
+    assert chosen.rotor.turbulence == 8.0
+    assert chosen.rotor.harmonics == SCENARIOS["rotor"].rotor.harmonics  # what the file does not name stays
+    assert chosen.plants.speed_ratio == (0.9, 1.1)
+    assert (chosen.pulse, chosen.deflection) == (1.0, 0.0)
+    env = gymnasium.make(beamenv.ENV_ID, scenario=str(path))
+    assert env.unwrapped.task.scenario == chosen
+    env.reset(seed=0)
+    assert 180.0 <= env.unwrapped.rotor_speed <= 220.0
+
+
+def test_python_3_10_reads_toml_with_tomli(monkeypatch):
+    """Its ``tomllib`` does not exist there: ``tomli`` has the same functions."""
+    real = builtins.__import__
+
+    def without_tomllib(name, *arguments, **keywords):
+        if name == "tomllib":
+            raise ModuleNotFoundError(name)
+        return real(name, *arguments, **keywords)
+
+    source = importlib.import_module("tomllib")
+    tomli = types.ModuleType("tomli")
+    tomli.loads, tomli.TOMLDecodeError = source.loads, source.TOMLDecodeError
+    monkeypatch.setitem(sys.modules, "tomli", tomli)
+    monkeypatch.setattr(sys, "version_info", (3, 10, 0, "final", 0))
+    monkeypatch.setattr(builtins, "__import__", without_tomllib)
+    fresh = types.ModuleType("beamenv.scenarios_of_3_10")
+    monkeypatch.setitem(sys.modules, fresh.__name__, fresh)
+    with open(scenarios.__file__, encoding="utf-8") as file:
+        exec(compile(file.read(), scenarios.__file__, "exec"), fresh.__dict__)
+    assert fresh.tomllib is tomli
+    assert fresh.SCENARIOS["rotor"].to_dict() == SCENARIOS["rotor"].to_dict()
+
+
+WRONG = [
+    ({"gust": 1.0}, "scenario has no field 'gust': its fields are step, pulse"),
+    ({"plants": {"wind": 1.0}}, "scenario has no field 'plants.wind': its fields are plants.speed_ratio"),
+    ({"plants": 3.0}, "scenario: plants is 3.0, but must be a table of fields"),
+    ({"plants": {"speed_ratio": [1.2, 0.8]}}, r"scenario: plants.speed_ratio is \[1.2, 0.8\], but must be a number or a range"),
+    ({"plants": {"speed_ratio": 0.0}}, "scenario: plants.speed_ratio is 0.0, but must be .* not below 0.01 nor above 10"),
+    ({"plants": {"modulus_ratio": [0.9, float("nan")]}}, "scenario: plants.modulus_ratio"),
+    ({"plants": {"mass_ratio": "heavy"}}, "scenario: plants.mass_ratio is 'heavy'"),
+    ({"plants": {"damping_ratio": [0.0, 0.1]}}, "scenario: plants.damping_ratio"),
+    ({"plants": {"modes": 0}}, "scenario: plants.modes is 0, but must be a whole number from 1"),
+    ({"plants": {"design_modes": 2.5}}, "scenario: plants.design_modes is 2.5, but must be a whole number"),
+    ({"plants": {"bank": 0}}, "scenario: plants.bank is 0, but must be a whole number from 1"),
+    ({"plants": {"seed": -1}}, "scenario: plants.seed is -1, but must be a whole number from 0"),
+    ({"plants": {"spin_up": [300.0, 100.0]}}, "scenario: plants.spin_up"),
+    ({"plants": {"spin_up": [1.0, 2.0], "speed_ratio": [0.9, 1.1]}}, "scenario: plants.spin_up cannot be combined"),
+    ({"drive": {"hysteresis": 0.6}}, "scenario: drive.hysteresis is 0.6, but must be a number from 0 to 0.5"),
+    ({"drive": {"delay": [3, 1]}}, r"scenario: drive.delay is \[3, 1\], but a range must not fall"),
+    ({"drive": {"delay": 1.5}}, "scenario: drive.delay is 1.5, but must be a whole number from 0 to 100"),
+    ({"drive": {"delay": [1, 2, 3]}}, r"scenario: drive.delay is \[1, 2, 3\], but must be a whole number or a range of two"),
+    ({"drive": {"voltage_limits": [100.0, 200.0]}}, r"scenario: drive.voltage_limits is .*, but must enclose 0 V"),
+    ({"acquisition": {"dropout": 1.0}}, "scenario: acquisition.dropout is 1.0, but must be a number from 0 to 0.99"),
+    ({"failures": {"dead_actuators": -1}}, "scenario: failures.dead_actuators is -1, but must be a whole number"),
+    ({"failures": {"biased_share": 1.1}}, "scenario: failures.biased_share is 1.1, but must be a number from 0 to 1"),
+    ({"failures": {"bias": [0.1, 2.0]}}, "scenario: failures.bias"),
+    ({"rotor": {"harmonics": 6.0}}, "scenario: rotor.harmonics is 6.0, but must be a list of amplitudes"),
+    ({"rotor": {"harmonics": [-1.0]}}, "scenario: rotor has -1.0 N/m, but loads must be zero or positive"),
+    ({"rotor": {"turbulence": float("inf")}}, "scenario: rotor has inf N/m"),
+    ({"rotor": {"turbulence_time": 0.0}}, "scenario: rotor.turbulence_time is 0.0, but must be a positive number"),
+]
+
+
+@pytest.mark.parametrize(("given", "sentence"), WRONG)
+def test_what_a_scenario_cannot_hold_is_named_in_one_sentence(given, sentence):
+    with pytest.raises(ValueError, match=sentence) as caught:
+        RotatingBeamEnv(scenario=given)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("[plants]\nwind = 1.0\n", "scenario has no field 'plants.wind'"),
+        ("step = \n", "scenario file '.*broken.toml' cannot be read: "),
+        ('preset = "storm"\n', "scenario is 'storm', but must be one of default"),
+        (b"\xff\xfe", "scenario file '.*broken.toml' cannot be read: "),
+        (None, "scenario file '.*broken.toml' cannot be read: .*No such file"),
+    ],
+)
+def test_a_file_that_is_none_is_named_in_one_sentence(tmp_path, content, sentence):
+    path = tmp_path / "broken.toml"
+    if content is not None:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(ValueError, match=sentence) as caught:
+        scenario(str(path))
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,21 @@
+"""One self-contained page, ``report.html``, about controllers and how they did."""
+
+from train.page.heat_map import HeatMap
+from train.page.page import PageContent, write_page
+from train.page.plots import LearningCurves
+from train.page.recording import RecordedEpisode, Recording, record, record_episode
+from train.page.table import Cell, Table, comparison_table
+
+__all__ = [
+    "Cell",
+    "HeatMap",
+    "LearningCurves",
+    "PageContent",
+    "RecordedEpisode",
+    "Recording",
+    "Table",
+    "comparison_table",
+    "record",
+    "record_episode",
+    "write_page",
+]

@@ -1,0 +1,156 @@
+"""The page itself: one HTML file that needs no network."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+import plotly.graph_objects as go
+from numpy.typing import NDArray
+from plotly.offline import get_plotlyjs
+
+from train.page.blade import blade_figures, frame_times, motions
+from train.page.heat_map import HeatMap, heat_map
+from train.page.plots import LearningCurves, learning, pole_map, spectra, time_series
+from train.page.recording import RecordedEpisode
+from train.page.table import Table
+from train.page.themes import THEMES
+from train.page.versions import versions
+from train.storage import write_whole
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PageContent:
+    """What a page shows; a part that is None is left out."""
+
+    title: str
+    note: str = ""
+    """What the reader must know first."""
+    table: Table | None = None
+    heat_map: HeatMap | None = None
+    episode: RecordedEpisode | None = None
+    """The blade in motion, the course of the episode and its spectra."""
+    episode_note: str = ""
+    """Which episode that is."""
+    poles: Mapping[str, NDArray[np.complex128]] | None = None
+    """rad/s, of each loop; the first one is drawn in grey: without control."""
+    learning: LearningCurves | None = None
+    configuration: Mapping[str, Any] | None = None
+    """As JSON can hold it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plot:
+    """A figure with its place on the page."""
+
+    name: str
+    """Its id."""
+    heading: str
+    note: str
+    figure: go.Figure
+    height: int
+    """Pixels."""
+    width: int = 0
+    """Least width in pixels; narrower screens scroll it sideways."""
+
+    @property
+    def json(self) -> str:
+        """For a script element: plotly escapes what could end one."""
+        return str(self.figure.to_json())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Animation:
+    """The blade under two controllers."""
+
+    plots: tuple[Plot, Plot]
+    times: list[float]
+    """ms, of the frames."""
+    note: str
+
+
+def write_page(path: Path, content: PageContent) -> None:
+    """Write the page, whole or not at all.
+
+    A comparison gives table, episode, poles, learning curves and configuration. A benchmark over scenarios gives
+    ``PageContent(title, table=Table(...), heat_map=HeatMap.of({scenario: evaluations}), learning=LearningCurves(curves, levels),
+    configuration={...})``, and may add an episode of any scenario: ``record_episode(arguments, seed, pair)``. Versions are
+    always told.
+    """
+    write_whole(path, render(content))
+
+
+def render(content: PageContent) -> str:
+    """The page as HTML, plotly.js (4.8 MB) once inside."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("train.page", ""),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("page.html").render(
+        content=content,
+        animation=animation(content),
+        plots=plots(content),
+        themes=THEMES,
+        templates=templates(),
+        versions=versions(),
+        plotly_js=get_plotlyjs(),
+    )
+
+
+@lru_cache(maxsize=1)
+def templates() -> dict[str, Any]:
+    """Each theme as plotly takes it."""
+    return {name: theme.template() for name, theme in THEMES.items()}
+
+
+def animation(content: PageContent) -> Animation | None:
+    """The blade's pair of figures, when there is an episode."""
+    if content.episode is None:
+        return None
+    pair = blade_figures(content.episode)
+    left, right = (Plot(f"blade-{side}", "", "", figure, 440) for side, figure in zip(("left", "right"), pair, strict=True))
+    note = (
+        f"Deflections are drawn {motions(content.episode)[1]:,.0f} times larger than life; thin lines: the blade at rest. "
+        "Actuators are coloured by their voltage. Drag to turn both blades, scroll to zoom."
+    )
+    return Animation((left, right), [round(1e3 * float(time), 3) for time in frame_times(content.episode)], note)
+
+
+def plots(content: PageContent) -> list[Plot]:
+    """Every figure but the blade, in the order of the page."""
+    found = []
+    if content.heat_map is not None:
+        found.append(_heat_map(content.heat_map))
+    if content.episode is not None:
+        rows = 2 + len(content.episode.controlled)
+        note = "Panels share their time axis: zoom into one and all follow. The upright line is the instant of the blade above."
+        found.append(Plot("time-series", "Tip displacement and voltages", note, time_series(content.episode), 130 + 160 * rows))
+        note = "Spectra of the tip before and after: Hann window over the whole record, mean removed; dotted: natural frequencies."
+        found.append(Plot("spectra", "Spectra", note, spectra(content.episode), 560))
+    if content.poles:
+        note = (
+            "Continuous equivalents log(z)/Δt of the sampled loops' poles, upper half plane. "
+            "The real axis is logarithmic beyond 10 rad/s."
+        )
+        found.append(Plot("poles", "Closed-loop poles", note, pole_map(content.poles), 480))
+    if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
+        note = (
+            "Agents: running cost in training, exploration included. "
+            "Level lines: controllers that do not learn, on the held-out episodes."
+        )
+        found.append(Plot("learning", "Learning curves", note, learning(content.learning), 420))
+    return found
+
+
+def _heat_map(content: HeatMap) -> Plot:
+    note = "Blue: better than no control. ✕: share of episodes in which the blade failed. Empty: not run."
+    height, width = 180 + 44 * len(content.scenarios), 260 + 62 * len(content.controllers)
+    return Plot("heat-map", "Scenarios", note, heat_map(content), height, width)

@@ -1,0 +1,42 @@
+"""A table that is sorted by a click on its headings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from baselines import Evaluation
+from train.report import COLUMNS, caption, cells, ranked
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """What is read, and the number it is ranked by; None where the text ranks itself."""
+
+    text: str
+    value: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of one length. Raises ``ValueError`` for a row that is longer or shorter than the headings."""
+
+    headings: tuple[str, ...]
+    """With units."""
+    rows: tuple[tuple[Cell, ...], ...]
+    caption: str = ""
+
+    def __post_init__(self) -> None:
+        wrong = [row for row in self.rows if len(row) != len(self.headings)]
+        if wrong:
+            raise ValueError(f"rows has one of {len(wrong[0])} cells, but each must have {len(self.headings)}, one a heading.")
+
+
+def comparison_table(evaluations: Sequence[Evaluation]) -> Table:
+    """Controllers, best first, with the estimates of ``train.report``."""
+    rows = []
+    for evaluation in ranked(evaluations):
+        name, *texts = cells(evaluation)
+        numbers = [getattr(evaluation, column).value for column, *_ in COLUMNS]
+        rows.append((Cell(name), *(Cell(text, number) for text, number in zip(texts, numbers, strict=True))))
+    return Table(("controller", *(heading for _, heading, *_ in COLUMNS)), tuple(rows), caption(evaluations))
