@@ -1,6 +1,5 @@
-"""Soft actor-critic (Haarnoja et al. 2018) by Stable-Baselines3, truncated quantile critics (Kuznetsov et al. 2020) by sb3-contrib.
-
-Both learn from a replay buffer that a batch of blades fills, with the same actor and with critics on the true state.
+"""Soft actor-critic (Haarnoja et al. 2018) by Stable-Baselines3, and truncated quantile critics (Kuznetsov et al. 2020) by
+sb3-contrib: on a batch of blades, with the same actor, critics on the true state, and a replay buffer.
 """
 
 from __future__ import annotations
