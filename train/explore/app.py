@@ -12,6 +12,7 @@ from train.explore.figures import campbell_diagram, mode_shape, step_response
 from train.explore.layout import CONTROLS, layout
 from train.page.themes import THEMES
 
+SIDES = ("actuators", "sensors")
 SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
 """Ids of the small figures."""
 
@@ -59,11 +60,13 @@ def theme() -> str:
 def outputs() -> dict[str, Any]:
     """What the callback gives, by the names that ``redraw`` uses."""
     return {
+        "edges": [Output(f"{side}-values", "children") for side in SIDES],
         "message": Output("message", "children"),
         "results": Output("results", "hidden"),
         "campbell": Output("campbell", "figure"),
         "response": Output("response", "figure"),
         "damping": Output("damping", "children"),
+        "filter": Output("filter", "children"),
         "shapes": [Output(name, "figure") for name in SHAPES],
         "headings": [Output(f"{name}-heading", "children") for name in SHAPES],
     }
@@ -71,27 +74,29 @@ def outputs() -> dict[str, Any]:
 
 def redraw(**values: Any) -> dict[str, Any]:
     """Figures for the controls' values; for what makes no blade, one sentence in their place."""
+    edges = ["   ".join(f"{edge:.1f}" for edge in values[side]) for side in SIDES]
     try:
         seen = view(settings(**values))
     except ValueError as error:
-        kept = dict.fromkeys(("campbell", "response", "damping"), no_update)
+        kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
         rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
-        return {"message": str(error), "results": True, **kept, **rows}
+        return {"edges": edges, "message": str(error), "results": True, **kept, **rows}
     return {
+        "edges": edges,
         "message": "",
         "results": False,
         "campbell": campbell_diagram(seen),
         "response": step_response(seen),
         "damping": damping_rows(seen),
+        "filter": filter_note(seen),
         "shapes": [mode_shape(seen, mode) for mode in range(CAMPBELL_MODES)],
         "headings": [heading(seen, mode) for mode in range(CAMPBELL_MODES)],
     }
 
 
-def settings(actuators: list[float], sensors: list[float], **values: Any) -> Settings:
+def settings(**values: Any) -> Settings:
     """The controls' values, with patches in mm, as settings."""
-    in_metres = {name: tuple(round(1e-3 * edge, 9) for edge in edges) for name, edges in (("actuators", actuators), ("sensors", sensors))}
-    return Settings(**values, **in_metres)
+    return Settings(**values | {side: tuple(round(1e-3 * edge, 9) for edge in values[side]) for side in SIDES})
 
 
 def heading(seen: View, mode: int) -> str:
@@ -101,9 +106,16 @@ def heading(seen: View, mode: int) -> str:
 
 def damping_rows(seen: View) -> list[html.Tr]:
     """A row a mode: number, family, frequency, damping in per cent."""
-    columns = (seen.natural_frequencies, seen.damping.free, seen.damping.controlled, seen.damping.filter)
-    rows = zip(seen.families, *columns, strict=True)
+    rows = zip(seen.families, seen.natural_frequencies, 100.0 * seen.damping.free, 100.0 * seen.damping.controlled, strict=True)
     return [
-        html.Tr([html.Td(cell) for cell in (f"{mode} {family}", f"{frequency:.1f}", *(f"{100.0 * ratio:.2f}" for ratio in ratios))])
-        for mode, (family, frequency, *ratios) in enumerate(rows, start=1)
+        html.Tr([html.Td(cell) for cell in (f"{mode} {family}", f"{frequency:.1f}", f"{free:.2f}", f"{controlled:.2f}")])
+        for mode, (family, frequency, free, controlled) in enumerate(rows, start=1)
     ]
+
+
+def filter_note(seen: View) -> str:
+    """On the poles that the table does not hold."""
+    return (
+        "With LQG: of the regulator's poles. "
+        f"The loop's other poles are its Kalman filter's, whose error decays at {seen.damping.filter_rate:.1f} 1/s or faster."
+    )

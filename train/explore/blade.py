@@ -21,7 +21,7 @@ Direction = Literal["lag", "flap"]
 
 HIGHEST_SPEED = 400.0
 """rad/s: where the Campbell diagram ends."""
-CAMPBELL_SPEEDS = np.linspace(0.0, HIGHEST_SPEED, 26)
+CAMPBELL_SPEEDS = np.linspace(0.0, HIGHEST_SPEED, 21)
 CAMPBELL_MODES = 6
 STATIONS = 33
 MOTIONS = ("lag u", "flap v", "extension s", "twist φ·c/2")

@@ -14,7 +14,8 @@ Array = NDArray[np.float64]
 Figure = dict[str, Any]
 
 FONT = {"family": "system-ui, sans-serif", "size": 13}
-LEGEND = {"orientation": "h", "x": 0.0, "y": 1.02, "xanchor": "left", "yanchor": "bottom"}
+SMALL = {**FONT, "size": 12}
+LEGEND = {"orientation": "h", "x": 0.0, "y": 1.02, "xanchor": "left", "yanchor": "bottom", "font": SMALL}
 MARGIN = {"l": 62, "r": 16, "t": 16, "b": 48}
 PER_REV = (1, 2, 3, 4)
 QUADRATURE = 0.02
@@ -66,9 +67,9 @@ def mode_shape(view: View, mode: int) -> Figure:
     length = float(view.stations[-1])
     layout = _layout(
         {"title": {"text": "z, m", "standoff": 4}, "range": [0.0, length], "nticks": 4},
-        {"title": {"text": "over the largest", "standoff": 4}, "range": [-1.1, 1.1], "tickvals": [-1, 0, 1]},
+        {"title": {"text": "relative displacement", "standoff": 4}, "range": [-1.1, 1.1], "tickvals": [-1, 0, 1]},
     )
-    return {"data": traces, "layout": {**layout, "showlegend": False, "margin": {"l": 46, "r": 8, "t": 6, "b": 40}}}
+    return {"data": traces, "layout": {**layout, "showlegend": False, "margin": {"l": 46, "r": 8, "t": 6, "b": 40}, "font": SMALL}}
 
 
 def step_response(view: View) -> Figure:
@@ -107,11 +108,12 @@ def _layout(xaxis: dict[str, Any], yaxis: dict[str, Any]) -> dict[str, Any]:
 def _line(
     x: Array, y: Array, name: str, colour: str, dash: str = "solid", row: int = 0, shape: str = "linear"
 ) -> dict[str, Any]:
-    """A trace in a row of panels, to the five digits that a screen can show."""
+    """A trace over evenly spaced x in a row of panels, to the five digits that a screen can show."""
     return {
         "type": "scatter",
         "mode": "lines",
-        "x": np.round(x, 3).tolist(),
+        "x0": float(x[0]),
+        "dx": float(x[-1] - x[0]) / max(len(x) - 1, 1),
         "y": five_digits(y),
         "yaxis": "y" if row == 0 else f"y{row + 1}",
         "name": name,

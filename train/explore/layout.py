@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -28,15 +29,17 @@ class Range:
     step: float
     value: float | list[float]
 
-    def slider(self, name: str) -> html.Div:
-        """The slider under its label."""
+    def control(self, name: str) -> html.Div:
+        """The slider under its label, and its value beside it: to be typed in, or for several handles below."""
         limits = {"min": self.low, "max": self.high, "step": self.step, "value": self.value, "marks": None, "updatemode": "drag"}
         if isinstance(self.value, list):
-            shown = {"placement": "bottom", "always_visible": True}
-            slider = dcc.RangeSlider(id=name, **limits, pushable=1e3 * THESIS.patches.length, allow_direct_input=False, tooltip=shown)
-        else:
-            slider = dcc.Slider(id=name, **limits)
-        return html.Div([html.Label(self.label, htmlFor=name), slider], className="control")
+            slider = dcc.RangeSlider(id=name, **limits, pushable=APART, allow_direct_input=False)
+            return _control(self.label, slider, html.Div(id=f"{name}-values", className="values"))
+        return _control(self.label, dcc.Slider(id=name, **limits))
+
+
+def _control(label: str, *children: Any) -> html.Div:
+    return html.Div([html.Div(label), *children], role="group", className="control", **{"aria-label": label})
 
 
 def _millimetres(edges: tuple[float, ...]) -> list[float]:
@@ -44,15 +47,19 @@ def _millimetres(edges: tuple[float, ...]) -> list[float]:
 
 
 _LAST = round(1e3 * (OUTERMOST * THESIS.beam.length - THESIS.patches.length), 6)
+_STEP = round(_LAST / 153, 6)
+"""mm: a 51st of the spacing of the thesis' four patches, so that these lie on the grid."""
+APART = _STEP * math.ceil(1e3 * THESIS.patches.length / _STEP)
+"""mm: the least multiple of the step that keeps patches from overlapping."""
 
 RANGES: Mapping[str, Range] = MappingProxyType(
     {
-        "ply_angle_deg": Range("ply angle, ° from the span", 0.0, 90.0, 1.0, START.ply_angle_deg),
+        "ply_angle_deg": Range("ply angle, °", 0.0, 90.0, 1.0, START.ply_angle_deg),
         "speed": Range("rotor speed, rad/s", 0.0, HIGHEST_SPEED, 5.0, START.speed),
         "pretwist_deg": Range("pretwist, °", 0.0, 90.0, 1.0, START.pretwist_deg),
-        "taper": Range("taper, root over tip chord", 1.0, 3.0, 0.05, START.taper),
-        "actuators": Range("actuators on the top wall: root-side edges, mm", 0.0, _LAST, 0.1, _millimetres(START.actuators)),
-        "sensors": Range("sensors on the bottom wall: root-side edges, mm", 0.0, _LAST, 0.1, _millimetres(START.sensors)),
+        "taper": Range("taper, root chord over tip chord", 1.0, 3.0, 0.05, START.taper),
+        "actuators": Range("actuators (top wall), mm from the root", 0.0, _LAST, _STEP, _millimetres(START.actuators)),
+        "sensors": Range("sensors (bottom wall), mm from the root", 0.0, _LAST, _STEP, _millimetres(START.sensors)),
     }
 )
 CONTROLS = (*RANGES, "load")
@@ -82,8 +89,7 @@ def _introduction() -> str:
 
 def _controls() -> list[Any]:
     choice = dcc.RadioItems(id="load", options=["lag", "flap"], value=START.load, inline=True)
-    load = html.Div([html.Label(f"step load of {STEP_LOAD:g} N/m in", htmlFor="load"), choice], className="control")
-    return [*(entry.slider(name) for name, entry in RANGES.items()), load]
+    return [*(entry.control(name) for name, entry in RANGES.items()), _control(f"step load of {STEP_LOAD:g} N/m in", choice)]
 
 
 def _message() -> html.P:
@@ -91,15 +97,23 @@ def _message() -> html.P:
 
 
 def _results() -> html.Div:
-    return html.Div(
-        [
-            _section("Campbell diagram", "Dots: natural frequencies at the rotor speed. Dotted: its multiples.", _graph("campbell", 420)),
-            _section("Mode shapes", _legend(), html.Div([_small(mode) for mode in range(CAMPBELL_MODES)], className="shapes")),
-            _section("Step response", "Sudden uniform line load on the blade at rest, drive limited to ±1500 V.", _graph("response", 620)),
-            _section("Damping ratios, %", "LQG's poles are those of its regulator and those of its filter.", _table()),
-        ],
-        id="results",
-    )
+    small = html.Div([_small(mode) for mode in range(CAMPBELL_MODES)], className="shapes")
+    crossings = "Dots: natural frequencies at the rotor speed. Dotted: its multiples."
+    sudden = f"Uniform line load that sets in at once on the blade at rest. The drive is limited to {_volts()}."
+    left = [
+        _section("Campbell diagram", crossings, _graph("campbell", 430)),
+        _section("Step response of the tip", sudden, _graph("response", 660)),
+    ]
+    right = [
+        _section("Mode shapes", _legend(), small),
+        _section("Damping", html.Span(id="filter"), _table()),
+    ]
+    return html.Div([html.Div(left), html.Div(right)], id="results")
+
+
+def _volts() -> str:
+    low, high = THESIS.voltage_limits
+    return f"{low:g} … {high:g} V".replace("-", "−")
 
 
 def _section(heading: str, note: Any, content: Any) -> html.Section:
@@ -111,8 +125,8 @@ def _graph(name: str, height: int) -> dcc.Graph:
 
 
 def _legend() -> list[Any]:
-    keys = [html.Span(motion, className="key", style={"--colour": colour}) for motion, colour in zip(MOTIONS, PALETTE, strict=False)]
-    return [*keys, html.Span("Dotted: a quarter of a period later.")]
+    keys = [html.Span([html.I(style={"borderColor": colour}), motion], className="key") for motion, colour in zip(MOTIONS, PALETTE, strict=False)]
+    return [*keys, html.Span("Each over the mode's largest. Dotted: a quarter of a period later.")]
 
 
 def _small(mode: int) -> html.Div:
@@ -120,6 +134,6 @@ def _small(mode: int) -> html.Div:
 
 
 def _table() -> html.Div:
-    names = ("mode", "frequency, rad/s", "without control", "LQG", "its filter")
+    names = ("mode", "natural frequency, rad/s", "ζ without control, %", "ζ with LQG, %")
     head = html.Thead(html.Tr([html.Th(name, scope="col") for name in names]))
     return html.Div(html.Table([head, html.Tbody(id="damping")]), className="scroll", tabIndex=0)

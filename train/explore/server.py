@@ -13,7 +13,7 @@ LOOPBACK = "127.0.0.1"
 
 
 def serve(port: int, host: str = LOOPBACK) -> BaseWSGIServer:
-    """A server that is bound and waits for ``serve_forever``; port 0 takes a free one (``server.server_port``).
+    """A server that is bound and waits for ``serve_forever``; port 0 takes a free one (``server.port``).
 
     Raises ``ValueError`` for a host that is not loopback, and for a port that is none or taken.
     """
