@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.resources import files
 from typing import Any
 
-from dash import Dash, Input, Output, html, no_update
+from dash import ClientsideFunction, Dash, Input, Output, html, no_update
 
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
@@ -46,7 +46,13 @@ def create_app() -> Dash:
     app.index_string = PAGE.replace("THEME", theme())
     app.server.config["TRUSTED_HOSTS"] = ["127.0.0.1", "[::1]", "localhost"]
     app.layout = layout()
-    app.callback(output=outputs(), inputs={name: Input(name, "value") for name in CONTROLS})(redraw)
+    app.clientside_callback(
+        ClientsideFunction("explore", "newest"), Output("wanted", "data"), [Input(name, "value") for name in CONTROLS]
+    )
+    app.clientside_callback(ClientsideFunction("explore", "goOn"), Input("busy", "data"))
+    app.callback(outputs(), Input("wanted", "data"), running=[(Output("busy", "data"), True, False)], prevent_initial_call=True)(
+        lambda wanted: redraw(**dict(zip(CONTROLS, wanted, strict=True)))
+    )
     return app
 
 
@@ -116,6 +122,6 @@ def damping_rows(seen: View) -> list[html.Tr]:
 def filter_note(seen: View) -> str:
     """On the poles that the table does not hold."""
     return (
-        "With LQG: of the regulator's poles. "
+        "Natural frequencies ω, and damping ratios ζ of the blade alone and with LQG: of the regulator's poles. "
         f"The loop's other poles are its Kalman filter's, whose error decays at {seen.damping.filter_rate:.1f} 1/s or faster."
     )

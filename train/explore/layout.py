@@ -49,8 +49,8 @@ def _millimetres(edges: tuple[float, ...]) -> list[float]:
 _LAST = round(1e3 * (OUTERMOST * THESIS.beam.length - THESIS.patches.length), 6)
 _STEP = round(_LAST / 153, 6)
 """mm: a 51st of the spacing of the thesis' four patches, so that these lie on the grid."""
-APART = _STEP * math.ceil(1e3 * THESIS.patches.length / _STEP)
-"""mm: the least multiple of the step that keeps patches from overlapping."""
+APART = math.ceil(1e3 * THESIS.patches.length / _STEP)
+"""Steps that keep patches from overlapping: Dash 4 counts the distance between handles in steps, whatever it says."""
 
 RANGES: Mapping[str, Range] = MappingProxyType(
     {
@@ -74,6 +74,8 @@ def layout() -> html.Div:
         [
             html.Header([html.H1("Rotating blade"), html.P(_introduction())]),
             html.Main([html.Div(_controls(), id="controls"), html.Div([_message(), _results()], id="shown")]),
+            dcc.Store(id="wanted"),
+            dcc.Store(id="busy"),
         ]
     )
 
@@ -126,7 +128,7 @@ def _graph(name: str, height: int) -> dcc.Graph:
 
 def _legend() -> list[Any]:
     keys = [html.Span([html.I(style={"borderColor": colour}), motion], className="key") for motion, colour in zip(MOTIONS, PALETTE, strict=False)]
-    return [*keys, html.Span("Each over the mode's largest. Dotted: a quarter of a period later.")]
+    return [*keys, html.Br(), html.Span("Each over the mode's largest. Dotted: a quarter of a period later.")]
 
 
 def _small(mode: int) -> html.Div:
@@ -134,6 +136,6 @@ def _small(mode: int) -> html.Div:
 
 
 def _table() -> html.Div:
-    names = ("mode", "natural frequency, rad/s", "ζ without control, %", "ζ with LQG, %")
+    names = ("mode", "ω, rad/s", "ζ alone, %", "ζ with LQG, %")
     head = html.Thead(html.Tr([html.Th(name, scope="col") for name in names]))
     return html.Div(html.Table([head, html.Tbody(id="damping")]), className="scroll", tabIndex=0)
