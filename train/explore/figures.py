@@ -105,9 +105,7 @@ def _layout(xaxis: dict[str, Any], yaxis: dict[str, Any]) -> dict[str, Any]:
     return {**layout, "paper_bgcolor": clear, "plot_bgcolor": clear, "uirevision": "kept"}
 
 
-def _line(
-    x: Array, y: Array, name: str, colour: str, dash: str = "solid", row: int = 0, shape: str = "linear"
-) -> dict[str, Any]:
+def _line(x: Array, y: Array, name: str, colour: str, dash: str = "solid", row: int = 0, shape: str = "linear") -> dict[str, Any]:
     """A trace over evenly spaced x in a row of panels, to the five digits that a screen can show."""
     return {
         "type": "scatter",

@@ -54,7 +54,7 @@ APART = math.ceil(1e3 * THESIS.patches.length / _STEP)
 
 RANGES: Mapping[str, Range] = MappingProxyType(
     {
-        "ply_angle_deg": Range("ply angle, °", 0.0, 90.0, 1.0, START.ply_angle_deg),
+        "ply_angle_deg": Range("ply angle from the contour, °", 0.0, 90.0, 1.0, START.ply_angle_deg),
         "speed": Range("rotor speed, rad/s", 0.0, HIGHEST_SPEED, 5.0, START.speed),
         "pretwist_deg": Range("pretwist, °", 0.0, 90.0, 1.0, START.pretwist_deg),
         "taper": Range("taper, root chord over tip chord", 1.0, 3.0, 0.05, START.taper),
@@ -127,7 +127,10 @@ def _graph(name: str, height: int) -> dcc.Graph:
 
 
 def _legend() -> list[Any]:
-    keys = [html.Span([html.I(style={"borderColor": colour}), motion], className="key") for motion, colour in zip(MOTIONS, PALETTE, strict=False)]
+    keys = [
+        html.Span([html.I(style={"borderColor": colour}), motion], className="key")
+        for motion, colour in zip(MOTIONS, PALETTE, strict=False)
+    ]
     return [*keys, html.Br(), html.Span("Each over the mode's largest. Dotted: a quarter of a period later.")]
 
 
