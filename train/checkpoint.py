@@ -1,4 +1,4 @@
-"""Checkpoints of a training: written whole or not at all, and read as tensors and numbers alone, so that loading executes no code."""
+"""Checkpoints of a training: written whole or not at all, and read as tensors and numbers alone, so loading executes no code."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from train.benchmark_command import benchmark
 from train.options import (
     BladeOption,
     JsonOption,
@@ -30,6 +31,7 @@ app = typer.Typer(
 )
 app.command()(place)
 app.command()(train)
+app.command()(benchmark)
 
 
 @app.command()
@@ -76,10 +78,7 @@ def _frequency(modes: Any, mode: int) -> str:
 @app.command()
 def evaluate(
     controller: Annotated[
-        str,
-        typer.Argument(
-            help="none, velocity, lqg-thesis, lqg, lqg-load, lqr, lqr-load, an agent that ships, or a trained one's folder."
-        ),
+        str, typer.Argument(help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder.")
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
@@ -95,12 +94,12 @@ def evaluate(
 
         import baselines
         import beamenv
+        from train.choice import chosen
         from train.compare import HELD_OUT
-        from train.contenders import contender
 
         arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
-        law = contender(controller, envs.unwrapped.design_plant, scenario, trained_seed)
+        law = chosen(controller, envs.unwrapped.task, scenario, trained_seed)
         evaluation = baselines.evaluate(law, envs, range(HELD_OUT, HELD_OUT + seeds))
     if as_json:
         print_json(evaluation.to_dict())
@@ -145,10 +144,10 @@ def compare(
 
 
 @app.command()
-def benchmark(as_json: JsonOption = False) -> None:
+def speed(as_json: JsonOption = False) -> None:
     """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
-    from train.benchmark import benchmark as run
-    from train.benchmark import show
+    from train.speed import show
+    from train.speed import speed as run
 
     results = run()
     if as_json:

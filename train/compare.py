@@ -17,7 +17,7 @@ from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.configuration import to_dict
 from beamenv.plant import Plant, fingerprint
 from train.agents import AGENTS, train_agent
-from train.contenders import CLASSICAL, classical
+from train.contenders import contender
 from train.figures import write_figures
 from train.policy_files import load_policy, save_policy
 from train.report import write_tables
@@ -31,6 +31,9 @@ CURVE = ("elapsed", "steps", "cost")
 
 HELD_OUT = 1_000_000
 """First seed of the evaluation: training draws from generators of its own."""
+
+CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
+"""The contenders that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +80,10 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     listener = listener or Listener()
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
     try:
-        plant, design = envs.unwrapped.plant, envs.unwrapped.design_plant
+        plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)
-        agents = {name: trained(comparison, name, folder, design, listener) for name in comparison.budget}
-        laws = {name: classical(name, design) for name in CLASSICAL}
+        agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
+        laws: dict[str, Any] = {name: contender(name).build(envs.unwrapped.task) for name in CLASSICAL}
         evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
     finally:
         envs.close()

@@ -25,7 +25,7 @@ class LinearBase(NamedTuple):
 
 
 def linear_base(kind: str, task: Task) -> LinearBase:
-    """ "lqg", "lqg-load" (load estimate) or "lqg-rotor" (the rotor's harmonics) of a task's design plant."""
+    """LQG of a task's design plant: "lqg", "lqg-load" (with load estimate) or "lqg-rotor" (with the rotor's harmonics)."""
     plant = task.design_plant
     load, harmonics = PersistentLoad(), RotorHarmonics(task.design_config.speed) if task.design_config.speed else None
     if kind == "lqg":

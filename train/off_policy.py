@@ -1,5 +1,6 @@
 """Soft actor-critic (Haarnoja et al. 2018) by Stable-Baselines3, and truncated quantile critics (Kuznetsov et al. 2020) by
-sb3-contrib: on a batch of blades, with the same actor, critics on the true state, and a replay buffer."""
+sb3-contrib: on a batch of blades, with the same actor, critics on the true state, and a replay buffer.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What moves while episodes are unrolled, as tensors: taken for a checkpoint, and put back, so that training goes on bit for bit."""
+"""What moves while episodes are unrolled, as tensors: taken for a checkpoint, and put back, so training goes on bit for bit."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from beamenv.configuration import blade_config, build_beam
 from train.cli import app
 
-COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark")
+COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")
 
 
 def run(*arguments):

@@ -88,7 +88,7 @@ def test_a_critic_that_learns_first_leaves_the_actor_alone():
 
 
 def test_running_costs_are_relative_to_no_control():
-    """Hardly any voltage, so hardly anything but no control; from the second update on whole episodes of all ages are in the batch."""
+    """Hardly any voltage, so hardly anything but no control; from the second update whole episodes of all ages are in the batch."""
     alone = {"blades": 512, "rollout": 100, "batch": 51200, "learning_rate": 1e-9, "smoothing": 1.0}
     training = trained(PPOTraining, replace(TINY, exploration=-6.0, held=1, **alone), updates=2, environment={"duration": 0.05})
     assert training.cost == pytest.approx(1.0, abs=0.15)

@@ -1,6 +1,6 @@
 """How fast it is: environments beside Gymnasium's CartPole in the same process, imports, the beam's assembly.
 
-``python -m train.benchmark`` prints the table, with ``--json`` the numbers alone.
+``python -m train.speed`` prints the table, with ``--json`` the numbers alone.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ ROWS = (
 )
 
 
-def benchmark() -> dict[str, float]:
+def speed() -> dict[str, float]:
     """All measurements by name: the best of several rounds, on one BLAS thread, in a process of its own. About 20 s."""
     environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    command = [sys.executable, "-m", "train.benchmark", "--measure"]
+    command = [sys.executable, "-m", "train.speed", "--measure"]
     output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
     results: dict[str, float] = json.loads(output)
     results["import_s"] = min(_import_seconds(environment) for _ in range(3))
@@ -62,7 +62,7 @@ def _import_seconds(environment: dict[str, str]) -> float:
 
 
 def measure() -> dict[str, float]:
-    """What ``benchmark`` measures in its own process. Rivals take turns, so that both meet the same machine."""
+    """What ``speed`` measures in its own process. Rivals take turns, so that both meet the same machine."""
     import gymnasium
 
     import beamenv
@@ -206,9 +206,9 @@ def main() -> None:
     if "--measure" in sys.argv:
         sys.stdout.write(json.dumps(measure()))
     elif "--json" in sys.argv:
-        sys.stdout.write(json.dumps(benchmark(), indent=2) + "\n")
+        sys.stdout.write(json.dumps(speed(), indent=2) + "\n")
     else:
-        show(benchmark())
+        show(speed())
 
 
 if __name__ == "__main__":
