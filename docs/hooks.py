@@ -1,4 +1,4 @@
-"""What pages take from the package when they are built: the table of scenarios, the examples, the command line's help."""
+"""What pages take from the package when they are built: scenarios, recipes, shipped agents, examples, the command line's help."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
     """Fill in what a page asks for by a comment."""
-    for mark, make in (("<!-- scenario table -->", scenario_table), ("<!-- command line -->", command_line)):
+    for name, make in FILLED.items():
+        mark = f"<!-- {name} -->"
         if mark in markdown:
             markdown = markdown.replace(mark, make())
     return markdown
@@ -66,6 +67,30 @@ def settings(lines: list[str]) -> list[str]:
     return found
 
 
+def recipe_table() -> str:
+    """The recipes that come with the package."""
+    from train.recipe import NAMES, named_recipe
+
+    found = [(name, named_recipe(name)) for name in NAMES]
+    return "\n".join(
+        ["| recipe | what it is | updates |", "| --- | --- | --- |"]
+        + [f"| `{name}` | {recipe.title} | {recipe.updates} |" for name, recipe in found]
+    )
+
+
+def shipped_table() -> str:
+    """The policies in ``train/trained``."""
+    from train.shipped import shipped
+
+    seeds: dict[tuple[str, str], list[str]] = {}
+    for each in shipped():
+        seeds.setdefault((each.agent, each.scenario), []).append(str(each.seed))
+    if not seeds:
+        return "This copy holds no trained agent."
+    rows = [f"| `{agent}` | {scenario} | {', '.join(those)} |" for (agent, scenario), those in seeds.items()]
+    return "\n".join(["| agent | trained on | seeds |", "| --- | --- | --- |", *rows])
+
+
 def command_line() -> str:
     """Each command with its arguments and options, from the command line itself."""
     import typer.main
@@ -90,3 +115,12 @@ def command_page(name: str, command: Any) -> str:
 def shown_default(parameter: Any) -> str:
     """A parameter's default as code; nothing where there is none to tell."""
     return "required" if parameter.required else "" if parameter.default in (None, False) else f"`{parameter.default}`"
+
+
+FILLED = {
+    "scenario table": scenario_table,
+    "recipes": recipe_table,
+    "shipped agents": shipped_table,
+    "command line": command_line,
+}
+"""What a comment of that name is replaced by."""

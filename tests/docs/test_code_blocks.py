@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 BLOCK = re.compile(r"^```(\w+)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
-SLOW = {"README.md", "agents.md", "placement.md", "quick-start.md", "scenarios.md"}
+SLOW = {"README.md", "agents.md"}
 """Pages whose blocks take more than some ten seconds together."""
 
 
