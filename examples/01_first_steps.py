@@ -15,8 +15,10 @@
 # whatever the hub radius. At $\Omega^*$ the blade has no equilibrium left. For the thesis' blade that is 1428.2 rad/s.
 
 # %%
+import gymnasium as gym
 import numpy as np
 
+import beamenv
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, RotatingBeam
 
 section = BoxSection(width=0.254, depth=0.0508, thickness=0.01016)  # m, of the mid-line
@@ -54,10 +56,6 @@ assert beam.natural_frequencies(1.001 * by_hand, count=1, motions=("lag", "exten
 # The environment has a blade of the same size with plies at 30°, pretwist and patches. One episode without control:
 
 # %%
-import gymnasium as gym
-
-import beamenv
-
 env = gym.make(beamenv.ENV_ID, scenario="deflection")
 observation, info = env.reset(seed=0)
 cost, truncated = 0.0, False

@@ -11,6 +11,7 @@
 # is least. $B$, $R$ and, through the patches' mass and stiffness, $A$ depend on the positions.
 
 # %%
+import matplotlib.pyplot as plt
 import numpy as np
 from scipy.linalg import solve_continuous_are
 
@@ -50,8 +51,6 @@ assert abs(found.positions[0] - best) < everywhere[1] - everywhere[0]
 # A picture of it:
 
 # %%
-import matplotlib.pyplot as plt
-
 figure, axes = plt.subplots(figsize=(6, 3), layout="constrained")
 axes.semilogy(everywhere, indices)
 axes.plot(found.positions, [found.cost], "o")

@@ -11,6 +11,8 @@
 # Here a gated recurrent unit is trained by it, for 40 updates only. The shipped recipe makes 3000.
 
 # %%
+import gymnasium as gym
+
 import beamenv
 from baselines import evaluate, lqg
 from beamenv.task import resolve_task
@@ -25,8 +27,6 @@ print(f"J / J without control while training: {learning[0].cost:.2f} at first, {
 # Judged as every controller is: on episodes that it has not met, beside LQG, which knows the plant.
 
 # %%
-import gymnasium as gym
-
 envs = gym.make_vec(beamenv.ENV_ID, num_envs=32, scenario="deflection")
 learnt = evaluate(policy, envs, seeds=range(32))
 optimal = evaluate(lqg(envs.unwrapped.design_plant), envs, seeds=range(32), reference=learnt.reference)

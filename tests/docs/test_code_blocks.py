@@ -69,4 +69,5 @@ def test_commands_exist_with_the_options_they_are_given(page):
 
 
 def test_every_page_of_the_navigation_is_checked():
-    assert {"README.md", "quick-start.md", "lqg.md", "extending.md"} <= {name_of(page) for page in pages() if blocks(page, "python")}
+    with_python = {name_of(page) for page in pages() if blocks(page, "python")}
+    assert {"README.md", "quick-start.md", "physics.md", "lqg.md", "placement.md", "extending.md"} <= with_python
