@@ -20,7 +20,7 @@ from train.gradient import GradientSettings, train_gradient
 
 task = resolve_task("thesis", None, None, None, "deflection", 0.5, False)
 learning = []
-policy = train_gradient(task, 0, learning.append, GradientSettings(), updates=40)[0]
+policy = train_gradient(task, 0, learning.append, GradientSettings(episodes=64), updates=40)[0]
 print(f"J / J without control while training: {learning[0].cost:.2f} at first, {learning[-1].cost:.2f} at last")
 
 # %% [markdown]
