@@ -94,7 +94,7 @@ class _Bar:
 
 
 def _show(table: BenchmarkTable, folder: Path) -> None:
-    """Two digits of each cell, so that ten scenarios fit a terminal; the files hold the rest."""
+    """Two digits of each cell, never cut off however narrow the terminal is; the files hold the rest."""
     from rich import box
     from rich.table import Table
 
@@ -104,11 +104,11 @@ def _show(table: BenchmarkTable, folder: Path) -> None:
     shown = Table(title="J / J without control", caption=caption, box=box.SIMPLE, padding=(0, 1, 0, 0))
     shown.add_column("controller", no_wrap=True)
     for name in table.scenarios:
-        shown.add_column(name, justify="right", overflow="fold", min_width=5)
+        shown.add_column(name, justify="right", no_wrap=True)
     for name in table.controllers:
         shown.add_row(name, *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
     console = Console()
-    console.print(shown)
+    Console(width=max(console.width, console.measure(shown, options=console.options.update(width=1000)).maximum)).print(shown)
     for each in findings(table):
         console.print(each.sentence, highlight=False, markup=False)
 

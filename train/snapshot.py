@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from beamenv.allotment import Allotment
 from beamenv.disturbances import SharedDisturbances
 from beamenv.electronics import Faults
 from beamenv.loads import LoadCases
@@ -18,7 +19,7 @@ from train.windows import Windows
 
 MOVING: Mapping[type[Any], tuple[str, ...]] = {
     Windows: ("_phase", "_loads", "_state", "_readings", "_memory", "_signals", "_faults", "_blades"),
-    Blades: ("_joined", "index", "_disturbances", "electronics"),
+    Blades: ("_joined", "plants", "_disturbances", "electronics"),
     SharedDisturbances: ("_rows", "_amplitude", "_steps", "_gusts", "_cases"),
     Electronics: ("faults", "memory"),
     LoadCases: tuple(each.name for each in fields(LoadCases)),
@@ -31,6 +32,8 @@ def take(moving: Any) -> Any:
     """Tensors, lists and dictionaries that ``put`` makes the same again."""
     if moving is None:
         return None
+    if isinstance(moving, Allotment):
+        return take(moving.index)
     if isinstance(moving, np.ndarray):
         return torch.as_tensor(np.ascontiguousarray(moving).copy())
     if isinstance(moving, Tensor):
@@ -45,6 +48,9 @@ def put(moving: Any, saved: Any) -> Any:
     """``moving`` as it was when ``saved`` was taken; arrays in place, for others are views of them."""
     if saved is None or (moving is None and isinstance(saved, Tensor)):
         return saved
+    if isinstance(moving, Allotment):
+        moving.allot(np.arange(len(saved)), saved.numpy())
+        return moving
     if isinstance(moving, np.ndarray):
         if not moving.flags.writeable:
             return saved.numpy().astype(moving.dtype)

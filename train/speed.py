@@ -22,6 +22,7 @@ ROUNDS = 7
 TARGETS = {
     "single_over_cartpole": 0.5,
     "batch_4096": 5e6,
+    "plants_1024": 1e6,
     "pictures": 30.0,
     "assembly_ms": 60.0,
     "frequencies_ms": 8.0,
@@ -35,6 +36,7 @@ ROWS = (
     ("single_over_cartpole", "the second over the first", ""),
     ("cartpole_4096", "CartPole-v1, native batch of 4096", "steps/s"),
     *((f"batch_{size}", f"RotatingBeam-v0, native batch of {size}", "steps/s") for size in BATCHES),
+    ("plants_1024", "a batch of 1024, each blade with a plant of its own speed", "steps/s"),
     ("history_4096", "the same of 4096 with 12 instants of sensor history", "steps/s"),
     ("pictures", "RotatingBeam-v0, a picture of 960 × 540 for each step", "pictures/s"),
     ("import_s", "import beamenv", "s"),
@@ -70,6 +72,8 @@ def measure() -> dict[str, float]:
     singles = {"cartpole": gymnasium.make("CartPole-v1"), "single": gymnasium.make(beamenv.ENV_ID)}
     batches = {"cartpole_4096": gymnasium.make_vec("CartPole-v1", num_envs=4096)}
     batches.update({f"batch_{size}": gymnasium.make_vec(beamenv.ENV_ID, num_envs=size) for size in BATCHES})
+    different = {"preset": "off-speed", "plants": {"bank": 1024}}
+    batches["plants_1024"] = gymnasium.make_vec(beamenv.ENV_ID, num_envs=1024, scenario=different)
     batches["history_4096"] = beamenv.VectorSensorHistory(gymnasium.make_vec(beamenv.ENV_ID, num_envs=4096), length=12)
     runs = {name: single_run(env) for name, env in singles.items()}
     runs.update({name: batch_run(envs) for name, envs in batches.items()})

@@ -62,11 +62,14 @@ class Training(Protocol):
 
 
 def uncontrolled_cost(task: Task, episodes: int = 512) -> float:
-    """Mean J (J s) of episodes without control: what running costs are relative to."""
+    """Mean J (J s) of episodes without control: what running costs are relative to. ``ValueError`` if there is none to reduce."""
     blades, generator = Blades(task.bank, task.scenario, episodes), np.random.default_rng(0)
     blades.begin(generator)
     idle = np.zeros((episodes, task.plant.B.shape[1]))
-    return float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(task.steps)))
+    cost = float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(task.steps)))
+    if not cost > 0.0:
+        raise ValueError("scenario leaves the blade at rest: there is nothing to learn in it.")
+    return cost
 
 
 @contextmanager

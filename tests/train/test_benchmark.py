@@ -10,13 +10,15 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg
+from beamenv.plant import fingerprint
 from train import contenders
 from train.benchmark import benchmark
 from train.benchmark.entrants import agents
 from train.benchmark.targets import findings
 from train.compare import HELD_OUT
 from train.contenders import contender, discover
-from train.policies import HistoryPolicy, save_policy
+from train.policies import HistoryPolicy
+from train.policy_files import save_policy
 
 SHORT = {"duration": 0.02}
 SMALL = {"scenarios": ["nominal", "spillover"], "controllers": ["lqg-load"], "seeds": 3, "environment": SHORT}
@@ -204,9 +206,13 @@ def test_every_contender_is_built_from_the_design_alone(name):
     assert np.array_equal(action, np.zeros((2, 4)))
 
 
+def design_fingerprint(scenario):
+    return fingerprint(gymnasium.make(beamenv.ENV_ID, scenario=scenario).unwrapped.design_plant)
+
+
 def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
     for run in ("generalist/0", "generalist/1", "nominal/0"):
-        save_policy(IDLE, tmp_path / "ppo" / run)
+        save_policy(IDLE, tmp_path / "ppo" / run, {"plants": {name: design_fingerprint(name) for name in SMALL["scenarios"]}})
     assert [each.name for each in agents(tmp_path)] == ["ppo-generalist", "ppo-specialist"]
     chosen = {**SMALL, "controllers": ["ppo-generalist", "ppo-specialist"]}
     table = benchmark(trained=tmp_path, **chosen)
@@ -225,10 +231,10 @@ def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
 
 
 def test_an_agent_for_another_blade_is_told_in_one_sentence(tmp_path):
-    two = HistoryPolicy("two", IDLE.weights, IDLE.settings, LIMITS[0][:2], LIMITS[1][:2])
-    save_policy(two, tmp_path / "ppo" / "generalist" / "0")
+    save_policy(IDLE, tmp_path / "ppo" / "generalist" / "0", {"plants": {"elsewhere": "0" * 64}})
     row = benchmark(trained=tmp_path, **{**SMALL, "controllers": ["ppo-generalist"]}).row("nominal", "ppo-generalist")
-    assert row.sentences == ("agent 'two' drives 2 actuators, but must drive the blade's 4.",)
+    assert "is none of those the agent" in row.sentences[0]
+    assert not row.measured
 
 
 def test_episodes_that_a_controller_makes_twice_as_bad_count_as_unstable():

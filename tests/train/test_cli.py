@@ -79,9 +79,9 @@ def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
 def test_a_training_goes_on_where_it_stopped(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "brief.toml").write_text(BRIEF)
-    arguments = ("train", "gradient", "--recipe", "brief.toml", "--scenario", "quiet", "--seed", "7")
+    arguments = ("train", "gradient", "--recipe", "brief.toml", "--scenario", "white", "--seed", "7")
     assert run(*arguments).exit_code == 0
-    home = tmp_path / "results/agents/gradient-quiet-7"
+    home = tmp_path / "results/agents/gradient-white-7"
     weights = (home / "weights.npz").read_bytes()
     again = run(*arguments)
     assert again.exit_code == 2
@@ -113,6 +113,7 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("train", "ppo", "--updates", "0"), "updates"),
         (("train", "ppo", "--updates", "1", "--minutes", "1"), "minutes and updates"),
         (("train", "ppo", "--scenario", "storm"), "storm"),
+        (("train", "ppo", "--scenario", "quiet"), "nothing to learn"),
         (("train", "ppo", "--recipe", "absent.toml"), "absent.toml"),
         (("train", "ppo", "--from", "nowhere"), "nowhere"),
         (("train", "ppo", "--resume"), "checkpoint"),

@@ -119,8 +119,10 @@ def test_a_course_must_end(given):
         Course(**given)
 
 
-@pytest.mark.parametrize("scenario", ["nominal", "delay", "failure", "hysteresis", "rotor"])
-def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrupted_one(scenario, tmp_path):
+@pytest.mark.parametrize("scenario", ["nominal", "delay", "failure", "hysteresis", "rotor", "spin-up", "off-damping.toml"])
+def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrupted_one(scenario, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "off-damping.toml").write_text("[plants]\nbank = 4\ndamping_ratio = [0.003, 0.02]\n")
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     carry_out(assignment(GRADIENT, scenario), whole, ignore)
     carry_out(assignment(GRADIENT, scenario), broken, interrupted_after(3))

@@ -13,10 +13,11 @@ from typing import Any
 import beamenv
 from beamenv.scenarios import Scenario, scenario
 from train.benchmark.cells import Cell, Job, Setting, held_out, read_cell, write_cell
-from train.benchmark.entrants import TRAINED, Entrant, entrants
+from train.benchmark.entrants import Entrant, entrants
 from train.benchmark.report import write_files
 from train.benchmark.runner import run
 from train.benchmark.table import BenchmarkTable, tabulate
+from train.shipped import FOLDER
 from train.storage import check_folder
 
 Progress = Callable[[int, int, Cell], None]
@@ -34,7 +35,7 @@ def benchmark(
     models: Sequence[Path] = (),
     trusted: bool = False,
     jobs: int = 1,
-    trained: Path = TRAINED,
+    trained: Path = FOLDER,
     environment: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
 ) -> BenchmarkTable:

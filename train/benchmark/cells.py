@@ -137,7 +137,7 @@ def sources_digest() -> str:
     """Of the code that decides what a controller does and how it is judged, and of NumPy and SciPy."""
     code = [path for package in ("beamenv", "baselines") for path in Path(str(files(package))).rglob("*.py")]
     here = Path(__file__).parent
-    code += [here / "cells.py", here / "models.py", here.parent / "policies.py"]
+    code += [here / "cells.py", here / "models.py", *here.parent.glob("*polic*.py")]
     versions = [_version(name).encode() for name in ("numpy", "scipy")]
     return digest(*(path.read_bytes() for path in sorted(code)), *versions)
 

@@ -10,9 +10,7 @@ from typing import Any
 from train.benchmark.models import UNTRUSTED
 from train.benchmark.sources import Classical, Given, ModelFile, Source, Trained
 from train.contenders import KINDS, discover
-
-TRAINED = Path(__file__).parents[1] / "trained"
-"""Agents that come with the package: ``<agent>/<scenario, or generalist>/<training run>/``."""
+from train.shipped import FOLDER, shipped
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
@@ -41,7 +39,7 @@ class Entrant:
 
 
 def entrants(
-    controllers: Sequence[str] | None, own: Mapping[str, Any], models: Sequence[Path], trusted: bool, trained: Path = TRAINED
+    controllers: Sequence[str] | None, own: Mapping[str, Any], models: Sequence[Path], trusted: bool, trained: Path = FOLDER
 ) -> list[Entrant]:
     """Everyone named, all contenders and shipped agents if ``controllers`` is None, and what the caller brings.
 
@@ -70,21 +68,14 @@ def _given(name: str, controller: Any) -> Given:
 
 
 def agents(folder: Path) -> list[Entrant]:
-    """The trained agents in a folder: of each algorithm the generalist and the specialists, with all their training runs."""
+    """The trained agents in a folder: of each the generalist and the specialists, with all their training runs."""
+    homes: dict[str, dict[str, dict[str, Source]]] = {}
+    for each in shipped(folder):
+        homes.setdefault(each.agent, {}).setdefault(each.scenario, {})[str(each.seed)] = Trained(each.folder)
     found = []
-    for agent in _folders(folder):
-        homes = {home.name: _runs(home) for home in _folders(agent) if _runs(home)}
-        general = homes.pop(GENERALIST, {})
-        if general:
-            found.append(Entrant(f"{agent.name}-{GENERALIST}", "learned", general))
-        if homes:
-            found.append(Entrant(f"{agent.name}-specialist", "learned", only_in=homes))
+    for agent, runs in homes.items():
+        if general := runs.pop(GENERALIST, {}):
+            found.append(Entrant(f"{agent}-{GENERALIST}", "learned", general))
+        if runs:
+            found.append(Entrant(f"{agent}-specialist", "learned", only_in=runs))
     return found
-
-
-def _runs(home: Path) -> dict[str, Source]:
-    return {run.name: Trained(run) for run in _folders(home) if (run / "agent.json").is_file()}
-
-
-def _folders(folder: Path) -> list[Path]:
-    return sorted(each for each in folder.iterdir() if each.is_dir()) if folder.is_dir() else []
