@@ -6,7 +6,7 @@ ARGS ?=
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: help compare benchmark reproduce speed test slow lint format install clean
+.PHONY: help compare benchmark reproduce speed test slow lint docs format install clean
 .DELETE_ON_ERROR:
 
 help:
@@ -16,6 +16,7 @@ help:
 	@echo "make benchmark  every controller in every scenario on the same episodes"
 	@echo "make speed      measure steps per second beside Gymnasium's CartPole"
 	@echo "make lint       check style and types; make format puts the style right"
+	@echo "make docs       build the documentation into build/site, warnings being errors"
 
 compare benchmark reproduce speed: $(INSTALLED)
 	$(BIN)/beamenv $@ $(ARGS)
@@ -30,6 +31,9 @@ lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(INSTALLED)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 format: $(INSTALLED)
 	$(BIN)/ruff check --fix .
