@@ -155,7 +155,7 @@ def check_figures(shown):
     assert len(shown["damping"]) == THESIS.modes
 
 
-@pytest.mark.parametrize("ends", itertools.product("01", repeat=len(ONE_HANDLE)), ids="".join)
+@pytest.mark.parametrize("ends", list(itertools.product("01", repeat=len(ONE_HANDLE))), ids="".join)
 def test_the_sliders_ends_give_figures(ends):
     values = {name: (RANGES[name].low, RANGES[name].high)[int(end)] for name, end in zip(ONE_HANDLE, ends, strict=True)}
     check_figures(redraw(**START | values))
