@@ -157,6 +157,20 @@ def speed(as_json: JsonOption = False) -> None:
 
 
 @app.command()
+def explore(
+    port: Annotated[int, typer.Option(help="Where the page is served; 0 takes any free one.")] = 8050,
+    host: Annotated[str, typer.Option(help="A loopback address: the page is for this computer alone.")] = "127.0.0.1",
+) -> None:
+    """Serve a page whose sliders redraw a blade's frequencies, mode shapes, damping and step response. Ctrl-C ends it."""
+    with one_sentence():
+        from train.explore import serve
+
+        server = serve(port, host)
+    Console().print(f"http://{host}:{server.port} (Ctrl-C ends it)")
+    server.serve_forever()
+
+
+@app.command()
 def reproduce(
     names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
     output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),

@@ -108,7 +108,7 @@ def scenario_table(rows: Sequence[Row]) -> str:
     table = [headings, ["---", "---", *["---:"] * (len(headings) - 2)]]
     for row in sorted(rows, key=lambda each: each.mean_cost):
         cells = [text(row.estimates.get(name), factor, form, wide) for name, _, factor, form, wide in COLUMNS]
-        table.append([row.title, row.kind, str(row.runs), *cells])
+        table.append([row.controller, row.kind, str(row.runs), *cells])
     return lines(table)
 
 

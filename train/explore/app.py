@@ -1,0 +1,127 @@
+"""The page and its one callback."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import Any
+
+from dash import ClientsideFunction, Dash, Input, Output, html, no_update
+
+from train.explore.blade import CAMPBELL_MODES, Settings, View, view
+from train.explore.figures import campbell_diagram, mode_shape, step_response
+from train.explore.layout import CONTROLS, layout
+from train.page.themes import THEMES
+
+SIDES = ("actuators", "sensors")
+SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
+"""Ids of the small figures."""
+
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{%title%}</title>
+<link rel="icon" href="data:,">
+<style>THEME</style>
+{%css%}
+</head>
+<body>
+{%app_entry%}
+<footer>{%config%}{%scripts%}{%renderer%}</footer>
+</body>
+</html>"""
+
+
+def create_app() -> Dash:
+    """The page as a Flask application that asks for nothing beyond this computer."""
+    app = Dash(
+        __name__,
+        assets_folder=str(files("train.explore") / "assets"),
+        serve_locally=True,
+        title="beamenv explore",
+        update_title="",
+        compress=False,
+    )
+    app.index_string = PAGE.replace("THEME", theme())
+    app.server.config["TRUSTED_HOSTS"] = ["127.0.0.1", "[::1]", "localhost"]
+    app.layout = layout()
+    app.clientside_callback(
+        ClientsideFunction("explore", "newest"), Output("wanted", "data"), [Input(name, "value") for name in CONTROLS]
+    )
+    app.clientside_callback(ClientsideFunction("explore", "goOn"), Input("busy", "data"))
+    app.callback(outputs(), Input("wanted", "data"), running=[(Output("busy", "data"), True, False)], prevent_initial_call=True)(
+        lambda wanted: redraw(**dict(zip(CONTROLS, wanted, strict=True)))
+    )
+    return app
+
+
+def theme() -> str:
+    """Colours of both schemes as variables of the style sheet."""
+    names = ("paper", "panel", "ink", "faint", "grid")
+    light, dark = THEMES["light"], THEMES["dark"]
+    return ":root{" + "".join(f"--{name}:light-dark({getattr(light, name)},{getattr(dark, name)});" for name in names) + "}"
+
+
+def outputs() -> dict[str, Any]:
+    """What the callback gives, by the names that ``redraw`` uses."""
+    return {
+        "edges": [Output(f"{side}-values", "children") for side in SIDES],
+        "message": Output("message", "children"),
+        "results": Output("results", "hidden"),
+        "campbell": Output("campbell", "figure"),
+        "response": Output("response", "figure"),
+        "damping": Output("damping", "children"),
+        "filter": Output("filter", "children"),
+        "shapes": [Output(name, "figure") for name in SHAPES],
+        "headings": [Output(f"{name}-heading", "children") for name in SHAPES],
+    }
+
+
+def redraw(**values: Any) -> dict[str, Any]:
+    """Figures for the controls' values; for what makes no blade, one sentence in their place."""
+    edges = ["   ".join(f"{edge:.1f}" for edge in values[side]) for side in SIDES]
+    try:
+        seen = view(settings(**values))
+    except ValueError as error:
+        kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
+        rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
+        return {"edges": edges, "message": str(error), "results": True, **kept, **rows}
+    return {
+        "edges": edges,
+        "message": "",
+        "results": False,
+        "campbell": campbell_diagram(seen),
+        "response": step_response(seen),
+        "damping": damping_rows(seen),
+        "filter": filter_note(seen),
+        "shapes": [mode_shape(seen, mode) for mode in range(CAMPBELL_MODES)],
+        "headings": [heading(seen, mode) for mode in range(CAMPBELL_MODES)],
+    }
+
+
+def settings(**values: Any) -> Settings:
+    """The controls' values, with patches in mm, as settings."""
+    return Settings(**values | {side: tuple(round(1e-3 * edge, 9) for edge in values[side]) for side in SIDES})
+
+
+def heading(seen: View, mode: int) -> str:
+    """Of one mode's small figure."""
+    return f"{mode + 1} {seen.families[mode]}, {seen.natural_frequencies[mode]:.1f} rad/s"
+
+
+def damping_rows(seen: View) -> list[html.Tr]:
+    """A row a mode: number, family, frequency, damping in per cent."""
+    rows = zip(seen.families, seen.natural_frequencies, 100.0 * seen.damping.free, 100.0 * seen.damping.controlled, strict=True)
+    return [
+        html.Tr([html.Td(cell) for cell in (f"{mode} {family}", f"{frequency:.1f}", f"{free:.2f}", f"{controlled:.2f}")])
+        for mode, (family, frequency, free, controlled) in enumerate(rows, start=1)
+    ]
+
+
+def filter_note(seen: View) -> str:
+    """On the poles that the table does not hold."""
+    return (
+        "Natural frequencies ω, and damping ratios ζ of the blade alone and with LQG: of the regulator's poles. "
+        f"The loop's other poles are its Kalman filter's, whose error decays at {seen.damping.filter_rate:.1f} 1/s or faster."
+    )

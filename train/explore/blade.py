@@ -1,0 +1,136 @@
+"""From the sliders' values to everything the page shows of a blade."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.lqg import sampled_design
+from beamenv.configuration import THESIS, BeamConfig, BladeConfig, check, plant_of
+from beamenv.patches import PatchLayout
+from beamenv.structure import RotatingBeam
+from beamenv.structure.sweep import frequency_sweep
+from train.explore.loops import Damping, StepResponses, damping, step_responses
+
+Array = NDArray[np.float64]
+Direction = Literal["lag", "flap"]
+
+HIGHEST_SPEED = 400.0
+"""rad/s: where the Campbell diagram ends."""
+CAMPBELL_SPEEDS = np.linspace(0.0, HIGHEST_SPEED, 21)
+CAMPBELL_MODES = 6
+STATIONS = 33
+MOTIONS = ("lag u", "flap v", "extension s", "twist φ·c/2")
+"""Twist as the displacement of the root chord's ends, so that all four are lengths."""
+STEP_LOAD = 30.0
+"""N/m."""
+STEP_DURATION = 0.5
+"""s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the sliders say; the rest is the thesis' blade.
+
+    Raises ``ValueError`` for a value that is no number, or a load that is neither in lag nor in flap.
+    """
+
+    ply_angle_deg: float = 30.0
+    """Of all six plies of every wall, from the contour tangent."""
+    speed: float = 200.0
+    """rad/s."""
+    pretwist_deg: float = 30.0
+    taper: float = 1.0
+    """Root chord over tip chord."""
+    actuators: tuple[float, ...] = THESIS.patches.actuator_positions(THESIS.beam.length)
+    """Root-side edges, m."""
+    sensors: tuple[float, ...] = THESIS.patches.sensor_positions(THESIS.beam.length)
+    """Root-side edges, m."""
+    load: Direction = "flap"
+
+    def __post_init__(self) -> None:
+        check(self, "ply_angle_deg", "speed", "pretwist_deg", "taper", allowed="a number", valid=lambda value: True)
+        if self.load not in ("lag", "flap"):
+            raise ValueError(f'load = {self.load!r} must be "lag" or "flap".')
+
+    def config(self) -> BladeConfig:
+        """The blade."""
+        beam = replace(
+            THESIS.beam,
+            ply_angles_deg=(self.ply_angle_deg,) * 6,
+            pretwist_deg=self.pretwist_deg,
+            taper=self.taper,
+        )
+        patches = replace(THESIS.patches, actuators=self.actuators, sensors=self.sensors)
+        return replace(THESIS, beam=beam, patches=patches, speed=self.speed)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A blade with r retained modes, at one speed."""
+
+    speed: float
+    """rad/s."""
+    critical_speed: float
+    """rad/s."""
+    campbell: Array
+    """(speeds, modes), rad/s, at ``CAMPBELL_SPEEDS``."""
+    natural_frequencies: Array
+    """(r,), rad/s, with gyroscopic coupling and all trial functions."""
+    families: tuple[str, ...]
+    """(r,): lag, flap, extension or twist."""
+    stations: Array
+    """(k,), m from the root."""
+    shapes: NDArray[np.complex128]
+    """(modes, 4, k): ``MOTIONS`` of the Campbell diagram's modes over the largest; imaginary: a quarter of a period later."""
+    damping: Damping
+    response: StepResponses
+
+
+def view(settings: Settings) -> View:
+    """Everything the page shows; ``ValueError``, in one sentence, for a blade or patches that cannot be."""
+    config = settings.config()
+    beam = built(config.beam, config.patches)
+    plant = plant_of(config, beam)
+    modes = beam.modes(config.speed, config.modes)
+    stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * config.beam.width)
+    held, _, K, L = sampled_design(plant)
+    line_load = STEP_LOAD * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
+    return View(
+        speed=config.speed,
+        critical_speed=beam.critical_speed,
+        campbell=campbell(beam),
+        natural_frequencies=modes.natural_frequencies,
+        families=modes.families,
+        stations=stations,
+        shapes=shapes,
+        damping=damping(held, K, L),
+        response=step_responses(plant, held, K, L, line_load, STEP_DURATION),
+    )
+
+
+@lru_cache(maxsize=16)
+def built(beam: BeamConfig, patches: PatchLayout) -> RotatingBeam:
+    """The blade, whose matrices do for every speed."""
+    return beam.build(patches)
+
+
+@lru_cache(maxsize=16)
+def campbell(beam: RotatingBeam) -> Array:
+    """Natural frequencies (speeds, modes), rad/s."""
+    return frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES)
+
+
+def mode_shapes(beam: RotatingBeam, coefficients: Array, half_chord: float) -> tuple[Array, NDArray[np.complex128]]:
+    """Stations (k,) in m and ``MOTIONS`` (modes, 4, k) there, turned and scaled so that the largest of each mode is 1."""
+    stations = np.linspace(0.0, beam.length, STATIONS)
+    rows = beam.displacements(stations)
+    moved = np.stack([rows["u"], rows["v"], rows["s"], half_chord * rows["phi"]]) @ coefficients.astype(complex)
+    moved = np.moveaxis(moved, -1, 0)
+    flat = moved.reshape(len(moved), -1)
+    largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
+    return stations, moved / largest[:, None, None]

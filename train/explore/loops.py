@@ -1,0 +1,104 @@
+"""Damping and step response of the blade alone and under LQG: u = −K x̂ with x̂ ← x̂ + L (y − C x̂), x̂⁺ = A x̂ + B u."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant import Plant, SampledPlant
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Damping:
+    """Of a blade with r modes. By the separation principle a loop's poles are its regulator's and its filter's."""
+
+    free: Array
+    """(r,): damping ratios without control, in ascending order of the poles' magnitude."""
+    controlled: Array
+    """(r,): under LQG, likewise: of the regulator's poles."""
+    filter_rate: float
+    """1/s: at least this fast the error of the Kalman filter decays."""
+
+
+def damping(held: SampledPlant, K: Array, L: Array) -> Damping:
+    """Damping of a sampled plant without control and with gains K (m, n) and L (n, p)."""
+    free, controlled = held.A, held.A - held.B @ K
+    error = held.A - held.A @ L @ held.C
+    return Damping(
+        free=damping_ratios(poles(free, held.interval)),
+        controlled=damping_ratios(poles(controlled, held.interval)),
+        filter_rate=float(-poles(error, held.interval).real.max()),
+    )
+
+
+def poles(transition: Array, interval: float) -> NDArray[np.complex128]:
+    """Continuous equivalents log(z)/Δt (n,) of a sampled system's poles, rad/s, in ascending order of magnitude."""
+    found = np.log(np.linalg.eigvals(transition).astype(complex)) / interval
+    return found[np.argsort(np.abs(found))]
+
+
+def damping_ratios(pairs: NDArray[np.complex128]) -> Array:
+    """ζ = −Re s/|s| (r,) of 2r poles in ascending order of magnitude, so that conjugates are neighbours."""
+    return -pairs[::2].real / np.abs(pairs[::2])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StepResponses:
+    """What a line load that sets in at once does to a blade at rest."""
+
+    time: Array
+    """(K,), s."""
+    free: Array
+    """(K, 2), m: tip in lag and flap without control."""
+    controlled: Array
+    """(K, 2), m: under LQG."""
+    volts: Array
+    """(K, m): LQG's voltages, limited as the drive limits them."""
+    at_rest: Array
+    """(2,), m: where the tip comes to rest without control."""
+
+
+def step_responses(plant: Plant, held: SampledPlant, K: Array, L: Array, line_load: Array, duration: float) -> StepResponses:
+    """Exact responses, without noise, to a uniform ``line_load`` (2,) in N/m, sampled over ``duration`` s."""
+    steps, tip = round(duration / held.interval) + 1, plant.tip_displacement
+    push = held.disturbance_input @ line_load
+    at_rest = np.linalg.solve(np.eye(len(held.A)) - held.A, push)
+    states, volts = under_lqg(held, K, L, plant.voltage_limits, push, steps)
+    return StepResponses(
+        time=held.interval * np.arange(steps),
+        free=(at_rest - powers(held.A, at_rest, steps)) @ tip.T,
+        controlled=states @ tip.T,
+        volts=volts,
+        at_rest=tip @ at_rest,
+    )
+
+
+def powers(transition: Array, start: Array, steps: int) -> Array:
+    """(steps, n): Aᵏ x for k = 0, 1, …, by doubling."""
+    rows, power = start[None], transition
+    while len(rows) < steps:
+        rows, power = np.vstack([rows, rows @ power.T]), power @ power
+    return rows[:steps]
+
+
+def under_lqg(held: SampledPlant, K: Array, L: Array, limits: Array, push: Array, steps: int) -> tuple[Array, Array]:
+    """States (steps, n) and voltages (steps, m) from rest under a constant ``push`` (n,) a step.
+
+    The filter starts from zero and knows the voltages as the drive limits them.
+    """
+    n, m = held.B.shape
+    correct = np.eye(n) - L @ held.C
+    transition = np.block([[held.A, np.zeros((n, n))], [held.A - held.A @ correct, held.A @ correct]])
+    gain, drive = -np.hstack([K @ (np.eye(n) - correct), K @ correct]), np.vstack([held.B, held.B])
+    load = np.concatenate([push, np.zeros(n)])
+    states, volts = np.empty((steps, 2 * n)), np.empty((steps, m))
+    both = np.zeros(2 * n)
+    for step in range(steps):
+        states[step] = both
+        volts[step] = u = np.minimum(np.maximum(gain @ both, limits[0]), limits[1])
+        both = transition @ both + drive @ u + load
+    return states[:, :n], volts
