@@ -114,7 +114,9 @@ def command_page(name: str, command: Any) -> str:
 
 def shown_default(parameter: Any) -> str:
     """A parameter's default as code; nothing where there is none to tell."""
-    return "required" if parameter.required else "" if parameter.default in (None, False) else f"`{parameter.default}`"
+    if parameter.required:
+        return "required"
+    return "" if parameter.default is None or parameter.default is False else f"`{parameter.default}`"
 
 
 FILLED = {

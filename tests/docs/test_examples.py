@@ -6,11 +6,14 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+SLOW = {"04_train_an_agent"}
 PACKAGES = {"03_placement": "matplotlib", "04_train_an_agent": "torch"}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("script", sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py")))
+@pytest.mark.parametrize(
+    "script",
+    [pytest.param(path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else []) for path in sorted(EXAMPLES.glob("[0-9]*.py"))],
+)
 def test_example_runs_and_its_numbers_hold(script, monkeypatch):
     if script in PACKAGES:
         pytest.importorskip(PACKAGES[script])
