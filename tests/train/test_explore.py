@@ -215,7 +215,8 @@ def test_the_page_loads_nothing_from_elsewhere():
     assert [source for source in sources if not source.startswith(("/", "data:"))] == []
     for source in sources:
         if "explore" in source or "graph" in source:
-            assert client.get(source).status_code == 200
+            with client.get(source) as response:
+                assert response.status_code == 200
 
 
 def test_another_name_for_this_computer_is_not_answered():

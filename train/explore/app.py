@@ -6,6 +6,7 @@ from importlib.resources import files
 from typing import Any
 
 from dash import ClientsideFunction, Dash, Input, Output, html, no_update
+from threadpoolctl import threadpool_limits
 
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
@@ -78,8 +79,12 @@ def outputs() -> dict[str, Any]:
     }
 
 
+@threadpool_limits.wrap(limits=1)
 def redraw(**values: Any) -> dict[str, Any]:
-    """Figures for the controls' values; for what makes no blade, one sentence in their place."""
+    """Figures for the controls' values; for what makes no blade, one sentence in their place.
+
+    On one BLAS thread: matrices are so small that a second one makes it five times slower.
+    """
     edges = ["   ".join(f"{edge:.1f}" for edge in values[side]) for side in SIDES]
     try:
         seen = view(settings(**values))
