@@ -155,7 +155,7 @@ def check_figures(shown):
     assert len(shown["damping"]) == THESIS.modes
 
 
-@pytest.mark.parametrize("ends", itertools.product("01", repeat=len(ONE_HANDLE)), ids="".join)
+@pytest.mark.parametrize("ends", list(itertools.product("01", repeat=len(ONE_HANDLE))), ids="".join)
 def test_the_sliders_ends_give_figures(ends):
     values = {name: (RANGES[name].low, RANGES[name].high)[int(end)] for name, end in zip(ONE_HANDLE, ends, strict=True)}
     check_figures(redraw(**START | values))
@@ -215,7 +215,8 @@ def test_the_page_loads_nothing_from_elsewhere():
     assert [source for source in sources if not source.startswith(("/", "data:"))] == []
     for source in sources:
         if "explore" in source or "graph" in source:
-            assert client.get(source).status_code == 200
+            with client.get(source) as answer:
+                assert answer.status_code == 200
 
 
 def test_another_name_for_this_computer_is_not_answered():
