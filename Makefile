@@ -6,17 +6,19 @@ ARGS ?=
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: help compare reproduce benchmark test slow lint format install clean
+.PHONY: help compare benchmark reproduce speed test slow lint docs format install clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make compare    train the agents, compare every controller, write tables and figures"
 	@echo "make test       run the tests; make slow runs the slow ones"
 	@echo "make reproduce  regenerate the thesis' tables and figures and judge its statements"
-	@echo "make benchmark  measure steps per second beside Gymnasium's CartPole"
+	@echo "make benchmark  every controller in every scenario on the same episodes"
+	@echo "make speed      measure steps per second beside Gymnasium's CartPole"
 	@echo "make lint       check style and types; make format puts the style right"
+	@echo "make docs       build the documentation into build/site, warnings being errors"
 
-compare reproduce benchmark: $(INSTALLED)
+compare benchmark reproduce speed: $(INSTALLED)
 	$(BIN)/beamenv $@ $(ARGS)
 
 test: $(INSTALLED)
@@ -29,6 +31,9 @@ lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(INSTALLED)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 format: $(INSTALLED)
 	$(BIN)/ruff check --fix .

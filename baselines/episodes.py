@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from baselines.controller import Array, Controller
 
 Environment: TypeAlias = "gym.Env[Any, Any] | VectorEnv[Any, Any, Any]"
-_INFO = ("cost_increment", "tip_displacement", "volts")
+_INFO = ("cost_increment", "effort", "tip_displacement", "volts")
 _NO_LOAD = {"load": {"case": "none"}}
 Progress = Callable[[int, int], None]
 
@@ -26,6 +26,8 @@ class Episodes:
     seeds: tuple[int, ...]
     cost: Array
     """(T, N), J s: increments of J."""
+    effort: Array
+    """(T, N), J s: the actuators' share of them."""
     tip_displacement: Array
     """(T, N, 2), m, at the end of each interval: lag, flap."""
     load_response: Array
@@ -62,15 +64,16 @@ def roll_out(controller: Controller, env: Environment, seeds: Sequence[int], pro
         batch = seeds[first : first + width]
         padded = batch + batch[-1:] * (width - len(batch))
         loaded, unloaded = (_run(controller, env, padded, options) for options in (None, _NO_LOAD))
-        parts.append([series[:, : len(batch)] for series in (*loaded, unloaded[1])])
+        parts.append([series[:, : len(batch)] for series in (*loaded, unloaded[2])])
         if progress is not None:
             progress(first + len(batch), len(seeds))
     length = max(len(series) for part in parts for series in part)
-    cost, tip, voltages, failed, tremor = (_side_by_side(series, length) for series in zip(*parts, strict=True))
+    cost, effort, tip, voltages, failed, tremor = (_side_by_side(series, length) for series in zip(*parts, strict=True))
     plant = _attribute(env, "plant")[0]
     return Episodes(
         seeds=seeds,
         cost=cost,
+        effort=effort,
         tip_displacement=tip,
         load_response=tip - tremor,
         voltages=voltages,
@@ -80,10 +83,8 @@ def roll_out(controller: Controller, env: Environment, seeds: Sequence[int], pro
     )
 
 
-def _run(
-    controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None
-) -> tuple[Array, Array, Array, Array]:
-    """Cost (T, N), tip (T, N, 2), voltages (T, N, m) and failures (T, N) of one episode of each blade, NaN once it is over."""
+def _run(controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None) -> tuple[Array, ...]:
+    """Cost, effort (T, N), tip (T, N, 2), voltages (T, N, m) and failures (T, N) of one episode each, NaN once it is over."""
     observes = getattr(controller, "observes", "observation")
     observation, memory = _reset(env, seeds, options), None
     begins, running = np.ones(len(seeds), dtype=bool), np.ones(len(seeds), dtype=bool)
@@ -92,12 +93,11 @@ def _run(
         seen = _seen(observes, observation, env)
         action, memory = controller.predict(seen, state=memory, episode_start=begins, deterministic=True)
         observation, failed, ended, info = _step(env, action)
-        recorded = (info["cost_increment"], info["tip_displacement"], info["volts"], failed)
+        recorded = (*(info[name] for name in _INFO), failed)
         steps.append(tuple(np.where(running.reshape(-1, *[1] * (series.ndim - 1)), series, np.nan) for series in recorded))
         running &= ~ended
         begins[:] = False
-    cost, tip, voltages, failures = (np.stack(series) for series in zip(*steps, strict=True))
-    return cost, tip, voltages, failures
+    return tuple(np.stack(series) for series in zip(*steps, strict=True))
 
 
 def _seen(observes: str, observation: Any, env: Environment) -> Any:

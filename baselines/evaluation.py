@@ -38,6 +38,8 @@ class Evaluation:
     """J over J without control: ratio of the means, its interval from seeds resampled in pairs."""
     cost: Estimate
     """J, J s."""
+    effort: Estimate
+    """The actuators' share of J, J s."""
     settling_time: Estimate
     """s; an episode that does not settle counts with its whole length."""
     settled: Estimate

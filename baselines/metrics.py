@@ -22,6 +22,8 @@ class EpisodeMetrics:
 
     cost: Array
     """J, J s: vibration energy and actuator effort integrated over the episode; infinite if the blade failed."""
+    effort: Array
+    """J s: the actuators' share of J, up to the failure if there was one."""
     settling_time: Array
     """s from the reset until the tip's response to the load case last leaves a band of 5 % of its uncontrolled peak about its
     final position, which is the deflection under a load that lasts. The whole episode if it does not settle: a harmonic load
@@ -58,6 +60,7 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     settling_time = _settling_time(episodes, band)
     return EpisodeMetrics(
         cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
+        effort=np.nansum(episodes.effort, axis=0),
         settling_time=settling_time,
         settled=(settling_time <= (1.0 - REST) * episodes.time[-1]).astype(float),
         peak_tip=np.nanmax(distance, axis=0),

@@ -92,6 +92,35 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     are enough to make a difference at 30 N/m: LQG then saturates now and then, and halves the time to settle.
     `beamenv.scenarios` gives the reason of each number.
 
+    ## Scenarios
+
+    A scenario is what may happen to a blade in an episode: loads, noises, and what is wrong with it. Those of the benchmark are
+    TOML files, each an environment of its own: `beamenv/RotatingBeam-overload-v0`. What is not named is as in the default.
+
+    | Scenario     | What it has                                                                                            |
+    |--------------|--------------------------------------------------------------------------------------------------------|
+    | `nominal`    | the plant that controllers are designed for, the load cases above                                      |
+    | `off-speed`  | rotor speed 0.7 … 1.3 times the design's, one of 128 plants drawn for each episode                     |
+    | `off-model`  | ply angles, moduli and mass within 10 %, damping ratio 0.003 … 0.02: one of 128 plants                 |
+    | `spin-up`    | 100 to 300 rad/s within the episode, on a cycloid, with Euler's force; no need of a load to vibrate    |
+    | `spillover`  | 22 modes, of which the design plant has 5                                                              |
+    | `hysteresis` | free strain of the actuators with a loop of 20 % of the stroke; drive −500 … 1500 V                    |
+    | `delay`      | voltages 1 … 3 control intervals late; 5 % of the readings lost: the last one is shown again           |
+    | `failure`    | one actuator dead; one sensor dead (noise alone), or biased by 5 … 20 % of full scale                  |
+    | `rotor`      | 6, 4, 2, 1 N/m, times 0.5 … 1.5, at 1 … 4 per revolution; turbulence of 5 N/m and 20 ms; pulses, releases |
+    | `overload`   | steps of 500 N/m: the actuators saturate, the sensors clip                                             |
+
+    A file of one's own (`scenario="gusts.toml"`) or a dictionary may depart from any of them by `preset`, table by table:
+
+    ```python
+    >>> import gymnasium, beamenv
+    >>> env = gymnasium.make("beamenv/RotatingBeam-v0", scenario={"preset": "rotor", "drive": {"delay": 1}})
+
+    ```
+
+    Two attributes are for laws that know more than the sensors: `rotor_speed`, rad/s, what a tachometer shows now, and
+    `design_state`, the true state in the coordinates of the design plant, by displacements and velocities.
+
     ## Episode End
 
     1. Termination: the blade fails, that is its spanwise strain exceeds 0.45 %, what an MFC is rated for, or its state is no
@@ -113,8 +142,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     - `blade`: the true blade: changes to the preset as a (nested) dictionary, or a whole `BladeConfig`.
     - `design`: the blade that controllers are designed for: the name of a preset, changes to `preset` (at `speed`, without
       the changes in `blade`), or a whole `BladeConfig`; default: the true one.
-    - `scenario`: a name in `beamenv.SCENARIOS`, a dictionary of its fields (with "preset" to depart from a named one), or a
-      `Scenario`.
+    - `scenario`: a name in `beamenv.SCENARIOS`, the path of a `.toml` file, a dictionary of fields (with "preset" to depart from
+      a named one), or a `Scenario`.
     - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
       40 % of it.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
@@ -134,7 +163,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     | Key                | Unit | What                                                       |
     |--------------------|------|------------------------------------------------------------|
-    | `volts`            | V    | (4,) voltages that were held, after saturation             |
+    | `volts`            | V    | (4,) voltages asked for, after saturation                  |
     | `tip_displacement` | m    | (2,) lag and flap of the tip now                           |
     | `energy`           | J    | vibration energy now                                       |
     | `effort`           | J s  | the actuators' share of `cost_increment`                   |

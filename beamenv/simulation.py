@@ -40,7 +40,7 @@ class Motion(NamedTuple):
     failed: NDArray[np.bool_]
     """(…,) strained beyond ``FAILURE_STRAIN``, or no longer finite."""
     volts: Array
-    """(…, m), V, after saturation: what the patches got."""
+    """(…, m), V, asked for, after saturation: what the patches get unless delay, hysteresis or failure are between."""
     tip_displacement: Array
     """(…, 2), m: lag, flap, at the end of the interval."""
     energy: Array

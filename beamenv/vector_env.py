@@ -31,7 +31,11 @@ Rows = NDArray[np.int64]
 
 
 class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
-    """``num_envs`` blades of one plant, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
+    """``num_envs`` blades, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
+
+    In the scenarios with several plants (`off-speed`, `off-model`) every episode draws its own from one bank, in `spin-up` each
+    blade is at its own time of the run-up, and `delay` and `failure` draw faults blade by blade; ``rotor_speed`` (N,) and
+    ``design_state`` (N, d) are those of each blade.
 
     ```python
     >>> import gymnasium, beamenv
@@ -58,8 +62,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     gives each blade its own, and with it exactly the load cases and noise, bit for bit, that `RotatingBeamEnv` has after
     `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. `reset()` never re-seeds.
 
-    **Info.** `volts` (N, m), `tip_displacement` (N, 2), `energy`, `effort` and `cost_increment` (N,), each with Gymnasium's
-    mask `_volts`, ….
+    **Info.** `volts` (N, m) asked for, after saturation, `tip_displacement` (N, 2), `energy`, `effort` and `cost_increment` (N,),
+    each with Gymnasium's mask `_volts`, ….
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 50, "autoreset_mode": AutoresetMode.NEXT_STEP}

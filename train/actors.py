@@ -8,8 +8,8 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from baselines import LinearController
 from beamenv.plant import Plant, normalised
+from train.linear_base import LinearBase
 from train.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
 from train.windows import Memory
 
@@ -136,11 +136,10 @@ class ResidualActor(Actor):
     1 + g starts at one and may go to zero: where the controller's own loop is unstable it must be held back.
     """
 
-    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearController) -> None:
+    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase) -> None:
         super().__init__(plant, settings, runs)
-        fused, feedback = base.matrices
-        self.register_buffer("fused", torch.as_tensor(fused, dtype=torch.float32))
-        self.register_buffer("feedback", torch.as_tensor(feedback, dtype=torch.float32))
+        for name, matrix in base._asdict().items():
+            self.register_buffer(name, torch.as_tensor(matrix, dtype=torch.float32))
         self.unit = GatedUnit(runs, self.sensors + 2 * self.voltages, 2 * self.voltages, settings)
 
     @property
@@ -151,7 +150,9 @@ class ResidualActor(Actor):
     def forward(self, readings: Tensor, memory: Memory) -> tuple[Tensor, Memory]:
         """Voltages and memory."""
         hidden, linear, voltages = memory
-        product = torch.cat([linear, readings], dim=1) @ self.fused
+        predicted = linear @ self.readout
+        told = readings + predicted - torch.clamp(predicted, -1.0, 1.0)
+        product = torch.cat([linear, told], dim=1) @ self.fused
         order = linear.shape[1]
         asked = self._within(product[:, order:])
         hidden, output = self.unit(torch.cat([self.settings.input_gain * readings, voltages, asked], dim=1), hidden)
@@ -161,7 +162,7 @@ class ResidualActor(Actor):
 
     def policy(self, run: int) -> Policy:
         """What a run has learnt, as arrays."""
-        weights = self.unit.arrays(run) | {name: getattr(self, name).numpy().copy() for name in ("fused", "feedback")}
+        weights = self.unit.arrays(run) | {name: getattr(self, name).numpy().copy() for name in LinearBase._fields}
         return ResidualPolicy("residual (LQG + GRU)", weights, asdict(self.settings), *self._bounds())
 
 

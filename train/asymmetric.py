@@ -1,4 +1,4 @@
-"""An actor that sees what sensors show and a critic that sees the true state: the critic is not needed once training is over.
+"""An actor that sees what sensors show and critics that see the true state: critics are not needed once training is over.
 
 Asymmetric actor-critic (Pinto et al. 2017). The observation is [what the actor sees | what only the critic sees].
 """
@@ -7,8 +7,25 @@ from __future__ import annotations
 
 from typing import Any
 
+from gymnasium.spaces import Space
+from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
+from sb3_contrib.tqc.policies import TQCPolicy
 from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+from stable_baselines3.sac.policies import SACPolicy
 from torch import Tensor, nn
+
+
+class Part(BaseFeaturesExtractor):
+    """The numbers of an observation from ``begin`` to ``end``, times a gain."""
+
+    def __init__(self, observation_space: Space[Any], begin: int, end: int, gain: float = 1.0) -> None:
+        super().__init__(observation_space, features_dim=end - begin)
+        self.begin, self.end, self.gain = begin, end, gain
+
+    def forward(self, observations: Tensor) -> Tensor:
+        """(B, end − begin)."""
+        return self.gain * observations[:, self.begin : self.end]
 
 
 class AsymmetricNetworks(nn.Module):
@@ -45,6 +62,53 @@ class AsymmetricPolicy(ActorCriticPolicy):
     def _build_mlp_extractor(self) -> None:
         seen = int(self._networks["seen"])
         self.mlp_extractor = AsymmetricNetworks(hidden=self.features_dim - seen, **self._networks)  # type: ignore[assignment, arg-type]
+
+
+class AsymmetricRecurrentPolicy(RecurrentActorCriticPolicy):
+    """sb3-contrib's policy: an LSTM and one linear layer act on what is seen; a tanh network values the true state."""
+
+    def __init__(self, *args: Any, seen: int, actor_gain: float, units: int, **kwargs: Any) -> None:
+        kwargs |= {"share_features_extractor": False, "enable_critic_lstm": False, "lstm_hidden_size": units}
+        kwargs |= {"features_extractor_class": Part, "net_arch": {"pi": [], "vf": [units]}}
+        super().__init__(*args, features_extractor_kwargs={"begin": 0, "end": seen, "gain": actor_gain}, **kwargs)
+        width = int(self.observation_space.shape[0])  # type: ignore[index]
+        self.vf_features_extractor = Part(self.observation_space, seen, width)
+        self.critic = nn.Sequential(nn.Linear(width - seen, units), nn.Tanh())  # type: ignore[assignment]
+        self.optimizer = self.optimizer_class(self.parameters(), lr=self.optimizer.defaults["lr"], **self.optimizer_kwargs)
+
+
+class AsymmetricSACPolicy(SACPolicy):
+    """SB3's policy: the actor on what is seen, the critics on the true state."""
+
+    def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
+        self._seen, self._actor_gain = seen, actor_gain
+        super().__init__(*args, **kwargs)
+
+    def make_actor(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
+        """With the part it sees."""
+        return super().make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
+
+    def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
+        """With the part that is hidden from the actor."""
+        width = int(self.observation_space.shape[0])  # type: ignore[index]
+        return super().make_critic(Part(self.observation_space, self._seen, width))
+
+
+class AsymmetricTQCPolicy(TQCPolicy):
+    """sb3-contrib's policy: the actor on what is seen, the critics on the true state."""
+
+    def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
+        self._seen, self._actor_gain = seen, actor_gain
+        super().__init__(*args, **kwargs)
+
+    def make_actor(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
+        """With the part it sees."""
+        return super().make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
+
+    def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
+        """With the part that is hidden from the actor."""
+        width = int(self.observation_space.shape[0])  # type: ignore[index]
+        return super().make_critic(Part(self.observation_space, self._seen, width))
 
 
 def tanh_layers(inputs: int, units: int) -> nn.Sequential:

@@ -10,8 +10,19 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from train.options import BladeOption, JsonOption, PresetOption, ScenarioOption, SpeedOption, one_sentence, print_json
+from train.benchmark_command import benchmark
+from train.options import (
+    BladeOption,
+    JsonOption,
+    PresetOption,
+    ScenarioOption,
+    SpeedOption,
+    environment_arguments,
+    one_sentence,
+    print_json,
+)
 from train.place import place
+from train.train_command import train
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -19,18 +30,8 @@ app = typer.Typer(
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
 app.command()(place)
-
-
-def environment_arguments(preset: str, speed: float | None, blade: Path | None, scenario: str) -> dict[str, Any]:
-    """Keyword arguments of the environment that the options stand for."""
-    from beamenv.configuration import load_config, to_dict
-
-    arguments: dict[str, Any] = {"preset": preset, "scenario": scenario}
-    if speed is not None:
-        arguments["speed"] = speed
-    if blade is not None:
-        arguments["blade"] = to_dict(load_config(blade))
-    return arguments
+app.command()(train)
+app.command()(benchmark)
 
 
 @app.command()
@@ -77,13 +78,14 @@ def _frequency(modes: Any, mode: int) -> str:
 @app.command()
 def evaluate(
     controller: Annotated[
-        str, typer.Argument(help="none, velocity, lqg-thesis, lqg, lqg-load, lqr, lqr-load, or the folder of a trained agent.")
+        str, typer.Argument(help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder.")
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
     scenario: ScenarioOption = "default",
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
@@ -92,16 +94,12 @@ def evaluate(
 
         import baselines
         import beamenv
+        from train.choice import chosen
         from train.compare import HELD_OUT
-        from train.contenders import CLASSICAL, classical
 
-        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **environment_arguments(preset, speed, blade, scenario))
-        if controller not in CLASSICAL and Path(controller).is_dir():
-            from train.policies import load_policy
-
-            law: Any = load_policy(Path(controller))
-        else:
-            law = classical(controller, envs.unwrapped.design_plant)
+        arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
+        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
+        law = chosen(controller, envs.unwrapped.task, scenario, trained_seed)
         evaluation = baselines.evaluate(law, envs, range(HELD_OUT, HELD_OUT + seeds))
     if as_json:
         print_json(evaluation.to_dict())
@@ -109,32 +107,6 @@ def evaluate(
         from train.report import screen_table
 
         Console().print(screen_table([evaluation]))
-
-
-@app.command()
-def train(
-    agent: Annotated[str, typer.Argument(help="gradient (through the plant) or ppo (Stable-Baselines3).")],
-    folder: Annotated[Path, typer.Argument(help="Where the trained agent is written.")],
-    seconds: Annotated[float, typer.Option(help="Training time.")] = 120.0,
-    seed: Annotated[int, typer.Option(help="Of the training.")] = 0,
-    preset: PresetOption = "thesis",
-    speed: SpeedOption = None,
-    blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
-) -> None:
-    """Train an agent and save it; Ctrl-C keeps the best so far. `beamenv evaluate FOLDER` then tells how good it is."""
-    with one_sentence():
-        from train.agents import train_agent
-        from train.policies import save_policy
-        from train.progress import Progressbar
-        from train.storage import check_folder
-
-        check_folder(folder)
-        arguments = environment_arguments(preset, speed, blade, scenario)
-        with Progressbar({agent: seconds}) as bar:
-            trained = train_agent(agent, arguments, seconds, seed, lambda progress: bar.training(agent, seconds, progress))
-        save_policy(trained, folder)
-    Console().print(f"{agent} saved in {folder}")
 
 
 @app.command()
@@ -161,7 +133,7 @@ def compare(
         default = Comparison().budget
         share = 60.0 * minutes / sum(default.values())
         budget = {name: share * length for name, length in default.items()} if minutes else {}
-        comparison = Comparison(environment_arguments(preset, speed, blade, scenario), budget, seeds)
+        comparison = Comparison({**environment_arguments(preset, speed, blade), "scenario": scenario}, budget, seeds)
         with Progressbar(budget) as bar:
             evaluations = run(comparison, folder, bar)
     if as_json:
@@ -172,10 +144,10 @@ def compare(
 
 
 @app.command()
-def benchmark(as_json: JsonOption = False) -> None:
+def speed(as_json: JsonOption = False) -> None:
     """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
-    from train.benchmark import benchmark as run
-    from train.benchmark import show
+    from train.speed import show
+    from train.speed import speed as run
 
     results = run()
     if as_json:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +15,25 @@ from numpy.typing import NDArray
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.configuration import to_dict
+from beamenv.plant import Plant, fingerprint
 from train.agents import AGENTS, train_agent
-from train.contenders import CLASSICAL, classical
+from train.contenders import contender
 from train.figures import write_figures
-from train.policies import load_policy, save_policy
+from train.policy_files import load_policy, save_policy
 from train.report import write_tables
 from train.storage import check_folder, write_csv, write_json
 from train.training import Progress
 
 Array = NDArray[np.float64]
 
+CURVE = ("elapsed", "steps", "cost")
+"""Columns of a learning curve."""
+
 HELD_OUT = 1_000_000
 """First seed of the evaluation: training draws from generators of its own."""
+
+CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
+"""The contenders that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,10 +80,10 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     listener = listener or Listener()
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
     try:
-        plant, design = envs.unwrapped.plant, envs.unwrapped.design_plant
+        plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)
-        agents = {name: trained(comparison, name, folder, listener) for name in comparison.budget}
-        laws = {name: classical(name, design) for name in CLASSICAL}
+        agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
+        laws: dict[str, Any] = {name: contender(name).build(envs.unwrapped.task) for name in CLASSICAL}
         evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
     finally:
         envs.close()
@@ -100,7 +107,7 @@ def claim(folder: Path, comparison: Comparison, task: Any) -> None:
         "blade": to_dict(task.config),
         "design": to_dict(task.design_config),
         "scenario": task.scenario.to_dict(),
-        "agents": {name: asdict(AGENTS[name]()) for name in comparison.budget},
+        "agents": {name: asdict(AGENTS[name].settings()) for name in comparison.budget},
     }
     content = json.loads(json.dumps(content))
     if path.exists() and json.loads(path.read_text()) != content:
@@ -108,11 +115,11 @@ def claim(folder: Path, comparison: Comparison, task: Any) -> None:
     write_json(path, content)
 
 
-def trained(comparison: Comparison, name: str, folder: Path, listener: Listener) -> Controller:
+def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, listener: Listener) -> Controller:
     """The agent of an earlier run, or a freshly trained one, saved with its learning curve."""
     home = folder / "agents" / name
     if (home / "agent.json").exists():
-        return load_policy(home)
+        return load_policy(home, plant)
     curve: list[Progress] = []
 
     def report(progress: Progress) -> None:
@@ -120,9 +127,9 @@ def trained(comparison: Comparison, name: str, folder: Path, listener: Listener)
         listener.training(name, comparison.budget[name], progress)
 
     agent = train_agent(name, comparison.environment, comparison.budget[name], comparison.training_seed, report)
-    columns = [each.name for each in fields(Progress)]  # training may end before its first report
-    write_csv(folder / f"learning_{name}.csv", [asdict(progress) for progress in curve], columns)
-    save_policy(agent, home)
+    rows = [{column: getattr(progress, column) for column in CURVE} for progress in curve]
+    write_csv(folder / f"learning_{name}.csv", rows, CURVE)  # training may end before its first report
+    save_policy(agent, home, {"plants": {str(comparison.environment.get("scenario", "default")): fingerprint(plant)}})
     return agent
 
 

@@ -14,10 +14,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import torch
 
-from baselines import PersistentLoad, lqg
-from beamenv.plant import Plant
 from beamenv.task import Task
 from train.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
+from train.linear_base import linear_base
 from train.policies import Policy
 from train.training import Progress, Report, uncontrolled_cost
 from train.windows import Windows
@@ -28,7 +27,9 @@ class GradientSettings:
     """One experiment."""
 
     actor: str = "recurrent"
-    """"recurrent", "residual" (on LQG), "residual-load" (on LQG with load estimate) or "linear"."""
+    """"recurrent", "residual" or "linear"."""
+    base: str = "lqg"
+    """What a residual actor adds to: see ``train.linear_base``."""
     actor_settings: ActorSettings = field(default_factory=ActorSettings)
     runs: int = 1
     """Independent trainings side by side."""
@@ -44,16 +45,16 @@ class GradientSettings:
     """Gradients are clipped to it."""
 
 
-def new_actor(kind: str, plant: Plant, settings: ActorSettings, runs: int = 1) -> Actor:
-    """An untrained actor for a design plant; ``ValueError`` for an unknown kind."""
-    if kind == "recurrent":
-        return RecurrentActor(plant, settings, runs)
-    if kind == "linear":
-        return LinearActor(plant, settings, runs)
-    if kind in ("residual", "residual-load"):
-        load = PersistentLoad() if kind.endswith("load") else None
-        return ResidualActor(plant, settings, runs, lqg(plant, persistent_load=load))
-    raise ValueError(f"actor = {kind!r} must be one of recurrent, residual, residual-load, linear.")
+def new_actor(task: Task, settings: GradientSettings) -> Actor:
+    """An untrained actor for the design plant of a task; ``ValueError`` for an unknown kind."""
+    plant, own, runs = task.design_plant, settings.actor_settings, settings.runs
+    if settings.actor == "recurrent":
+        return RecurrentActor(plant, own, runs)
+    if settings.actor == "linear":
+        return LinearActor(plant, own, runs)
+    if settings.actor == "residual":
+        return ResidualActor(plant, own, runs, linear_base(settings.base, task))
+    raise ValueError(f"actor = {settings.actor!r} must be one of recurrent, residual, linear.")
 
 
 class GradientTraining:
@@ -62,7 +63,7 @@ class GradientTraining:
     def __init__(self, tasks: Sequence[Task], settings: GradientSettings, seed: int) -> None:
         torch.manual_seed(seed)
         self.settings, self._generator = settings, np.random.default_rng(seed)
-        self.actor = new_actor(settings.actor, tasks[0].design_plant, settings.actor_settings, settings.runs)
+        self.actor = new_actor(tasks[0], settings)
         self._parameters = [weights for weights in self.actor.parameters() if weights.requires_grad]
         self._optimiser = torch.optim.Adam(self._parameters, lr=settings.learning_rate)
         apart = [on_training_bank(task) for task in tasks]

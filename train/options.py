@@ -20,6 +20,18 @@ ScenarioOption = Annotated[str, typer.Option(help="Load cases: default, step, pu
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 
+def environment_arguments(preset: str, speed: float | None, blade: Path | None) -> dict[str, Any]:
+    """Keyword arguments of the environment that the options stand for."""
+    from beamenv.configuration import load_config, to_dict
+
+    arguments: dict[str, Any] = {"preset": preset}
+    if speed is not None:
+        arguments["speed"] = speed
+    if blade is not None:
+        arguments["blade"] = to_dict(load_config(blade))
+    return arguments
+
+
 @contextmanager
 def one_sentence() -> Iterator[None]:
     """Bad input ends with its one sentence on standard error and status 2, not with a traceback."""

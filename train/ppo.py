@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import torch
 from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import BaseCallback
+from torch import nn
 
-from beamenv.plant import Plant, normalised
+from beamenv.plant import normalised
+from beamenv.task import Task
 from train.asymmetric import AsymmetricPolicy
-from train.policies import HistoryPolicy
-from train.training import Progress, Report, uncontrolled_cost
-from train.vec_env import BladeVecEnv
+from train.cloning import Cloning, clone
+from train.policies import HistoryPolicy, Policy
+from train.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +37,7 @@ class PPOSettings:
     epochs: int = 4
     """Passes over a rollout."""
     learning_rate: float = 1e-3
-    """Adam's, falling linearly to zero over the budget."""
+    """Adam's, falling linearly to zero over the training."""
     discount: float = 0.95
     """γ: 20 actions, 40 ms."""
     trace: float = 0.8
@@ -55,25 +54,28 @@ class PPOSettings:
     """Gradients are clipped to it: hardly ever."""
     input_gain: float = 1.0
     """Readings are a few per cent of full scale most of the time."""
+    critic_first: int = 0
+    """Updates that train the critic alone, for an actor that is good already."""
+    smoothing: float = 0.2
+    """Weight of the latest rollout in the running cost."""
 
 
-def train_ppo(
-    environment: Mapping[str, Any], budget: float, seed: int, report: Report, settings: PPOSettings | None = None
-) -> HistoryPolicy:
-    """Train for ``budget`` s on batches made with ``environment``, keyword arguments of the environment; Ctrl-C ends it early."""
-    settings = settings or PPOSettings()
-    envs = BladeVecEnv(
-        settings.blades,
-        environment,
-        seed,
-        history=settings.history,
-        energy_horizon=settings.energy_horizon,
-        discount=settings.discount,
-        held=settings.held,
-        shows_state=True,
-    )
-    try:
-        model = TimedPPO(
+class PPOTraining(SB3Training):
+    """Of a tanh network on the history; with a ``teacher``, from its clone on."""
+
+    model: PPO
+
+    def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
+        envs = training_envs(
+            tasks,
+            settings.blades,
+            seed,
+            history=settings.history,
+            energy_horizon=settings.energy_horizon,
+            discount=settings.discount,
+            held=settings.held,
+        )
+        model = PPO(
             AsymmetricPolicy,
             envs,
             n_steps=settings.rollout,
@@ -94,61 +96,27 @@ def train_ppo(
             device="cpu",
         )
         model.policy.log_std.requires_grad_(False)  # exploration that fades would leave nothing to learn from under the white load
-        model.clock = Clock(envs, budget, report)
-        with suppress(KeyboardInterrupt):
-            model.learn(2**62, callback=model.clock)
-        return distilled(model, envs.blades.plant, settings)
-    finally:
-        envs.close()
+        if teacher is not None:
+            clone(nn.Sequential(*self._actor(model)), envs, teacher, settings.input_gain, Cloning(), seed)
+        super().__init__(model, envs, tasks, settings, seed)
 
+    @staticmethod
+    def _actor(model: PPO) -> list[nn.Module]:
+        policy: Any = model.policy
+        return [policy.mlp_extractor.policy_net, policy.action_net]
 
-class Clock(BaseCallback):
-    """Ends training when its time is over, anneals the learning rate by the clock and reports the running cost."""
+    def _held_back(self) -> list[nn.Parameter]:
+        return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
 
-    def __init__(self, envs: BladeVecEnv, budget: float, report: Report) -> None:
-        super().__init__()
-        task = envs.blades.task
-        self._budget, self._report, self._steps = budget, report, task.steps
-        self._reference = uncontrolled_cost(task)
-        self._begin = self._cost = 0.0
-        self._envs, self._held = envs, envs.held
+    def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
+        return {"policy": self.model.policy.optimizer}
 
-    @property
-    def remaining(self) -> float:
-        """Share of the budget that is left."""
-        return max(0.0, 1.0 - (time.monotonic() - self._begin) / self._budget)
+    def _gather_and_learn(self) -> None:
+        self.model.collect_rollouts(self.envs, self._callback, self.model.rollout_buffer, self.model.n_steps)
+        self.model.train()
 
-    def _on_training_start(self) -> None:
-        self._begin = time.monotonic()
-
-    def _on_rollout_start(self) -> None:
-        self._cost = 0.0
-
-    def _on_step(self) -> bool:
-        self._cost += self._envs.last_cost
-        return time.monotonic() - self._begin < self._budget
-
-    def _on_rollout_end(self) -> None:
-        elapsed = time.monotonic() - self._begin
-        relative = self._cost / self.model.n_steps * self._steps / self._reference
-        self._report(Progress(elapsed, self.num_timesteps * self._held, relative))
-
-
-class TimedPPO(PPO):
-    """PPO whose schedules run with the clock, not with a number of steps nobody knows."""
-
-    clock: Clock
-
-    def _update_current_progress_remaining(self, num_timesteps: int, total_timesteps: int) -> None:
-        self._current_progress_remaining = self.clock.remaining
-
-
-def distilled(model: PPO, plant: Plant, settings: PPOSettings) -> HistoryPolicy:
-    """The actor as arrays."""
-    layers = [layer for layer in model.policy.mlp_extractor.policy_net if isinstance(layer, torch.nn.Linear)]
-    weights = {}
-    for index, layer in enumerate([*layers, model.policy.action_net]):
-        weights[f"weight{index}"] = layer.weight.detach().numpy().copy()
-        weights[f"bias{index}"] = layer.bias.detach().numpy().copy()
-    lowest, highest = normalised(plant).voltage_limits.astype(np.float32)
-    return HistoryPolicy("PPO", weights, asdict(settings), lowest, highest)
+    def policy(self) -> HistoryPolicy:
+        """The actor's mean as arrays."""
+        weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
+        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
+        return HistoryPolicy("PPO", weights, asdict(self.settings), lowest, highest)

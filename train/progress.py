@@ -16,11 +16,13 @@ from train.training import Progress as TrainingProgress
 class Progressbar(Listener):
     """One bar an agent, one line a controller evaluated."""
 
-    def __init__(self, budget: Mapping[str, float]) -> None:
+    def __init__(self, budget: Mapping[str, float], unit: str = "s") -> None:
+        """Budgets in ``unit``: "s" or "updates"."""
+        self._unit = unit
         self._bars = Progress(
             TextColumn("{task.description:>10}"),
             BarColumn(),
-            TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
+            TextColumn("{task.completed:.0f} of {task.total:.0f} " + unit),
             TextColumn("J / no control {task.fields[cost]}  {task.fields[rate]}"),
             TimeRemainingColumn(),
             console=Console(stderr=True),
@@ -41,7 +43,12 @@ class Progressbar(Listener):
         task = self._tasks[name]
         self._bars.start_task(task)
         rate = f"{progress.steps / max(progress.elapsed, 1e-9) / 1e3:.0f} k steps/s"
-        self._bars.update(task, completed=min(progress.elapsed, budget), cost=f"{progress.cost:.3f}", rate=rate)
+        self._bars.update(
+            task,
+            completed=min(progress.elapsed if self._unit == "s" else progress.updates, budget),
+            cost=f"{progress.cost:.3f}",
+            rate=rate,
+        )
 
     def evaluated(self, evaluation: Evaluation) -> None:
         """Say how a controller did."""

@@ -14,14 +14,15 @@ from scipy.linalg import solve_discrete_lyapunov
 from stable_baselines3.common.vec_env import VecEnv
 
 import beamenv
-from beamenv.plant import Plant, sample
+from beamenv.plant import sample
 from beamenv.simulation import reward_scale
+from beamenv.task import Task
 
 Array = NDArray[Any]
 
 
 REWARD_UNIT = 0.01
-"""What the environment's reward is multiplied by: its values, hundreds, would take a critic long to reach."""
+"""What the environment's reward is multiplied by if not said otherwise: its values, hundreds, would take a critic long to reach."""
 
 
 class BladeVecEnv(VecEnv):
@@ -34,12 +35,15 @@ class BladeVecEnv(VecEnv):
     An action is ``held`` for so many control intervals: a step of this environment is as many of the blades'.
 
     With ``shows_state`` the true state follows the history in each observation, in units of what is typical: for a critic.
+
+    ``reference``, J s, is the cost of an episode without control. If it is given, rewards are in its units, so that those of
+    scenarios of very different loads have one size, and ``relative_cost`` is told.
     """
 
     def __init__(
         self,
         count: int,
-        environment: Mapping[str, Any],
+        environment: Mapping[str, Any] | Task,
         seed: int,
         *,
         history: int = 12,
@@ -47,18 +51,22 @@ class BladeVecEnv(VecEnv):
         discount: float = 1.0,
         shows_state: bool = False,
         held: int = 1,
+        reference: float | None = None,
+        reward_unit: float = REWARD_UNIT,
     ) -> None:
-        batch = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **environment)
+        batch = batch_of(environment, count)
         self.blades: Any = batch.unwrapped
         self.envs = beamenv.VectorSensorHistory(batch, length=history)
         actions = self.blades.single_action_space
         self.seen = int(np.prod(self.envs.single_observation_space.shape))
         """How many numbers of an observation sensors show; what follows is the state."""
-        self._state_gain = 1.0 / typical_state(self.blades.plant) if shows_state else None
+        self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
         width = self.seen + (0 if self._state_gain is None else len(self._state_gain))
         super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), Box(-1.0, 1.0, actions.shape, np.float32))
         self._seed: int | None = seed
         self._scale = reward_scale(self.blades.plant)
+        self._per_step = self.blades.task.steps / reference if reference else np.nan
+        self._unit = reward_unit * (self._scale * self._per_step if reference else 1.0)
         self.held = held
         self._discount = discount ** (1.0 / held)
         self._potential = energy_horizon / self._scale
@@ -66,8 +74,13 @@ class BladeVecEnv(VecEnv):
         self._energy = np.zeros(count)
         self.last_cost = 0.0
         """J s: mean increment of J over the batch in the last step, unshaped."""
-        self._actions: Array = np.zeros(self.action_space.shape)
+        self._actions: Array = np.zeros((count, *self.action_space.shape))
         self._unfinished: list[dict[str, Any]] = [{} for _ in range(count)]
+
+    @property
+    def relative_cost(self) -> float:
+        """``last_cost`` relative to no control; NaN without a ``reference``."""
+        return self.last_cost * self._per_step
 
     def reset(self) -> Array:
         """Begin episodes, out of step with one another."""
@@ -103,7 +116,7 @@ class BladeVecEnv(VecEnv):
             ended |= ends
             self._energy = info["energy"]
             self.last_cost -= float(rewards.mean()) * self._scale / self.held
-        return self._with_state(windows), (REWARD_UNIT * total).astype(np.float32), ended, infos
+        return self._with_state(windows), (self._unit * total).astype(np.float32), ended, infos
 
     def _infos(self, before: list[dict[str, Any]], rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
         infos = list(before)
@@ -138,9 +151,24 @@ class BladeVecEnv(VecEnv):
         return [False] * len(list(self._get_indices(indices)))
 
 
-def typical_state(plant: Plant) -> Array:
-    """(n,) standard deviations, √J, under the white load and white voltages of a fifth of the drive limit."""
-    held = sample(plant)
-    drive = held.B * (0.2 * np.abs(plant.voltage_limits).max(axis=0))
+def batch_of(environment: Mapping[str, Any] | Task, count: int) -> Any:
+    """The batched environment with the given keyword arguments, or of a task."""
+    task = environment if isinstance(environment, Task) else None
+    keywords: Mapping[str, Any] = {} if isinstance(environment, Task) else environment
+    batch: Any = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **keywords)
+    if task is not None:
+        batch.unwrapped.adopt([task])
+    return batch
+
+
+def typical_state(task: Task, reference: float | None = None) -> Array:
+    """(n,) standard deviations, √J, under the white load and white voltages of a fifth of the drive limit.
+
+    Where an episode without control costs more than these amount to, ``reference`` in J s, they are enlarged to its measure.
+    """
+    held = sample(task.plant)
+    drive = held.B * (0.2 * np.abs(task.plant.voltage_limits).max(axis=0))
     excitation = drive @ drive.T + held.disturbance_input @ held.process_noise @ held.disturbance_input.T
-    return np.sqrt(np.diag(solve_discrete_lyapunov(held.A, excitation)))
+    variance = np.diag(solve_discrete_lyapunov(held.A, excitation))
+    energy = 0.5 * float(variance.sum()) * task.steps * held.interval
+    return np.sqrt(variance * max(1.0, (reference or 0.0) / energy))

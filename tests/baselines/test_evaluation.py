@@ -173,6 +173,7 @@ def ringing(decay, volts=0.0, failed=False, level=1.0):
     return Episodes(
         seeds=(0,),
         cost=np.full((1000, 1), 2e-3),
+        effort=np.full((1000, 1), 5e-4),
         tip_displacement=tip,
         load_response=tip,
         voltages=voltages,
@@ -198,6 +199,7 @@ def test_a_vibration_that_goes_on_never_settles():
 def test_metrics_of_a_trace_known_by_hand():
     metrics = measure(ringing(20.0, volts=-500.0, level=3.0), np.array([0.05]))
     assert metrics.cost[0] == pytest.approx(2.0)
+    assert metrics.effort[0] == pytest.approx(0.5)
     assert metrics.peak_tip[0] == pytest.approx(3.0 + np.exp(-0.2), rel=1e-6)
     assert metrics.peak_voltage[0] == 500.0
     assert metrics.rms_voltage[0] == pytest.approx(250.0)

@@ -170,7 +170,6 @@ def test_an_overload_saturates_lqg_and_clips_the_sensors():
         saturated.append(np.abs(info["volts"]) == 1500.0)
         clipped.append(np.abs(observation) == 1.0)
         assert not failed.any()
-    print(np.mean(saturated), np.mean(clipped))
     assert np.mean(saturated) > 0.5
     assert np.mean(clipped) > 0.2
     assert np.abs(observation).max() <= 1.0

@@ -20,9 +20,9 @@ def ticking():
     @contextmanager
     def clock(seconds):
         with pytest.MonkeyPatch.context() as patch:
-            for trainer in ("gradient", "ppo"):
+            for timed in ("gradient", "session"):
                 readings = itertools.count()
-                patch.setattr(f"train.{trainer}.time", SimpleNamespace(monotonic=lambda kept=readings: seconds * next(kept)))
+                patch.setattr(f"train.{timed}.time", SimpleNamespace(monotonic=lambda kept=readings: seconds * next(kept)))
             yield
 
     return clock

@@ -1,48 +1,276 @@
-"""The benchmark: what it measures and how it judges."""
+"""The benchmark in small: what it measures, keeps, refuses and writes."""
+
+import csv
+import json
+import sys
 
 import gymnasium
+import numpy as np
 import pytest
 
 import beamenv
-from train.benchmark import ROWS, TARGETS, batch_run, benchmark, met, picture_run, show, single_run
+from baselines import evaluate, lqg
+from beamenv.plant import fingerprint
+from train import contenders
+from train.benchmark import benchmark
+from train.benchmark.entrants import agents
+from train.benchmark.targets import findings
+from train.compare import HELD_OUT
+from train.contenders import contender, discover
+from train.policies import HistoryPolicy
+from train.policy_files import save_policy
+
+SHORT = {"duration": 0.02}
+SMALL = {"scenarios": ["nominal", "spillover"], "controllers": ["lqg-load"], "seeds": 3, "environment": SHORT}
+
+LIMITS = (-np.ones(4, np.float32), np.ones(4, np.float32))
+IDLE = HistoryPolicy(
+    "idle", {"weight0": np.zeros((4, 24), np.float32), "bias0": np.zeros(4, np.float32)}, {"input_gain": 1.0, "held": 1}, *LIMITS
+)
 
 
-def test_steps_are_counted_over_the_time_they_take():
-    env = gymnasium.make(beamenv.ENV_ID, duration=0.01)
-    assert single_run(env, steps=50)() > 0.0
-    assert batch_run(gymnasium.make_vec(beamenv.ENV_ID, num_envs=4), steps=40)() > 0.0
+class Notes:
+    """Remembers the cells that were measured, and stops after some of them."""
+
+    def __init__(self, stop=10**6):
+        self.cells, self.stop = [], stop
+
+    def __call__(self, done, total, cell):
+        self.cells.append(f"{cell.scenario}/{cell.controller}")
+        if len(self.cells) == self.stop:
+            raise KeyboardInterrupt
 
 
-def test_pictures_are_counted_over_the_time_they_take():
-    pytest.importorskip("pygame")
-    assert picture_run(gymnasium.make(beamenv.ENV_ID, render_mode="rgb_array"), steps=3)() > 0.0
+class Still:
+    """Any object with predict: no voltage."""
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        return np.zeros((len(observation), 4)), state
+
+
+class Wild(Still):
+    """Feeds whatever vibrates."""
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        instant = state or 0
+        return np.full((len(observation), 4), 1.0 if instant % 40 < 20 else -1.0), instant + 1
+
+
+class Broken(Still):
+    """Fails."""
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        raise ZeroDivisionError("the weights sum to zero")
+
+
+class Narrow(Still):
+    """Has too few voltages."""
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        return np.zeros((len(observation), 2)), state
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("benchmark") / "small"
+    return folder, benchmark({"still": Still(), "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL)
+
+
+def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
+    _, table = finished
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, scenario="spillover", **SHORT)
+    expected = evaluate(lqg(envs.unwrapped.design_plant), envs, range(HELD_OUT, HELD_OUT + 3))
+    row = table.row("spillover", "lqg")
+    for name, estimate in expected.estimates().items():
+        assert row.estimates[name].value == pytest.approx(estimate.value, rel=1e-12), name
+
+
+def test_no_control_and_doing_nothing_cost_one_and_lqg_ties_with_itself(finished):
+    _, table = finished
+    for name in ("none", "still"):
+        relative = table.row("nominal", name).estimates["relative_cost"]
+        assert (relative.value, relative.low, relative.high) == (1.0, 1.0, 1.0)
+    itself = table.row("nominal", "lqg").estimates
+    assert itself["difference_to_lqg"].value == 0.0
+    assert itself["improvement_on_lqg"].value == 0.5
+
+
+def test_what_fails_leaves_its_sentence_and_the_rest_goes_on(finished):
+    _, table = finished
+    assert table.row("nominal", "broken").sentences == ("ZeroDivisionError: the weights sum to zero",)
+    assert "action has shape (3, 2), but must have shape (3, 4)" in table.row("spillover", "narrow").sentences[0]
+    assert not table.row("nominal", "broken").measured
+    assert table.row("spillover", "lqg-load").measured
+    assert set(table.sentences) == {f"{name} in {where}" for name in ("broken", "narrow") for where in ("nominal", "spillover")}
+
+
+def test_every_piece_is_written(finished):
+    folder, table = finished
+    written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    assert {"table.csv", "table.md", "benchmark.json", "heat_map.png", "report.html", "cells/nominal/lqg.json"} <= written
+    with (folder / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["scenario"], row["controller"]) for row in rows] == [(row.scenario, row.controller) for row in table.rows]
+    assert float(rows[0]["relative_cost"]) == table.rows[0].estimates["relative_cost"].value
+    assert (folder / "heat_map.png").read_bytes().startswith(b"\x89PNG")
+    text = (folder / "table.md").read_text()
+    assert "| broken | own | failed | failed |" in text
+    assert "- broken in nominal: ZeroDivisionError: the weights sum to zero" in text
+    kept = json.loads((folder / "benchmark.json").read_text())
+    assert kept["configuration"]["seeds"] == [HELD_OUT, HELD_OUT + 2]
+    assert {"beamenv", "numpy", "Python"} <= set(kept["configuration"]["versions"])
+
+
+def test_an_interrupted_run_goes_on_from_its_whole_cells(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        benchmark(folder=tmp_path, progress=Notes(stop=2), **SMALL)
+    rest = Notes()
+    table = benchmark(folder=tmp_path, progress=rest, **SMALL)
+    assert rest.cells == ["nominal/lqg-load", "spillover/none", "spillover/lqg", "spillover/lqg-load"]
+    again = Notes()
+    assert [row.estimates for row in benchmark(folder=tmp_path, progress=again, **SMALL).rows] == [r.estimates for r in table.rows]
+    assert again.cells == []
+
+
+@pytest.mark.parametrize("change", [{"seeds": 4}, {"environment": {"duration": 0.03}}])
+def test_cells_of_other_episodes_are_not_taken_over(change, tmp_path):
+    one = {**SMALL, "scenarios": ["nominal"]}
+    benchmark(folder=tmp_path, **one)
+    notes = Notes()
+    benchmark(folder=tmp_path, progress=notes, **{**one, **change})
+    assert len(notes.cells) == 3
+
+
+def test_cells_that_failed_and_objects_are_measured_again(tmp_path):
+    one = {**SMALL, "scenarios": ["nominal"]}
+    benchmark({"mine": Broken()}, folder=tmp_path, **one)
+    notes = Notes()
+    table = benchmark({"mine": Still()}, folder=tmp_path, progress=notes, **one)
+    assert notes.cells == ["nominal/mine"]
+    assert table.row("nominal", "mine").measured
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "verdict"),
+    ("content", "sentence"),
     [
-        ("batch_4096", 6e6, True),
-        ("batch_4096", 4e6, False),
-        ("single_over_cartpole", 0.4, False),
-        ("pictures", 29.0, False),
-        ("import_s", 0.2, True),
-        ("assembly_ms", 70.0, False),
-        ("cartpole", 1.0, None),
+        ("[plants]\nspeeed_ratio = 1.0\n", "scenario has no field 'plants.speeed_ratio'"),
+        ("[acquisition]\ndropout = 1.5\n", "acquisition.dropout is 1.5, but must be a number from 0 to 0.99"),
+        ("step = [", "cannot be read"),
     ],
 )
-def test_rates_must_reach_their_target_and_times_stay_below(name, value, verdict):
-    assert met(name, value) is verdict
+def test_a_scenario_file_that_is_wrong_is_refused_in_one_sentence(content, sentence, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(content)
+    table = benchmark(**{**SMALL, "scenarios": [str(path), "nominal"]})
+    assert sentence in table.refused[str(path)]
+    assert table.scenarios == ("nominal",)
+    with pytest.raises(ValueError, match="scenario"):
+        benchmark(**{**SMALL, "scenarios": [str(path)]})
 
 
-def test_the_table_names_every_measurement_once(capsys):
-    results = {name: 1.5 for name, _, _ in ROWS}
-    assert set(TARGETS) <= set(results)
-    show(results)
-    printed = capsys.readouterr().out
-    assert "CartPole-v1, gym.make" in printed
-    assert "missed" in printed
+def test_a_scenario_file_is_a_scenario_of_its_name(tmp_path):
+    path = tmp_path / "gusty.toml"
+    path.write_text("[rotor]\nturbulence = 10.0\n")
+    assert benchmark(**{**SMALL, "scenarios": [str(path)]}).scenarios == ("gusty",)
+
+
+def test_a_file_in_the_folder_is_a_contender(tmp_path, monkeypatch):
+    (tmp_path / "half_lqg.py").write_text(
+        "from dataclasses import replace\nfrom baselines import lqg\nKIND = 'fixed'\n\n"
+        "def build(task):\n    law = lqg(task.design_plant)\n    return replace(law, state_gain=0.5 * law.state_gain)\n"
+    )
+    monkeypatch.setattr(contenders, "__path__", [*contenders.__path__, str(tmp_path)])
+    assert contender("half-lqg").kind == "fixed"
+    table = benchmark(**{**SMALL, "scenarios": ["nominal"], "controllers": ["half-lqg"]})
+    assert table.row("nominal", "half-lqg").estimates["difference_to_lqg"].value != 0.0
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"), [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "KIND = 'fuzzy'")]
+)
+def test_a_contender_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
+    (tmp_path / "wrong.py").write_text(content)
+    monkeypatch.setattr(contenders, "__path__", [str(tmp_path)])
+    sys.modules.pop("train.contenders.wrong", None)
+    with pytest.raises(ValueError, match=sentence):
+        discover()
+
+
+@pytest.mark.parametrize("name", sorted(discover()))
+def test_every_contender_is_built_from_the_design_alone(name):
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=2, scenario="spillover", **SHORT)
+    law = contender(name).build(envs.unwrapped.task)
+    seen = {"state": np.zeros((2, len(envs.unwrapped.design_plant.A))), "observation": np.zeros((2, 4))}
+    seen["observation and speed"] = np.hstack([seen["observation"], np.full((2, 1), 200.0)])
+    action, _ = law.predict(seen[law.observes])
+    assert np.array_equal(action, np.zeros((2, 4)))
+
+
+def design_fingerprint(scenario):
+    return fingerprint(gymnasium.make(beamenv.ENV_ID, scenario=scenario).unwrapped.design_plant)
+
+
+def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
+    for run in ("generalist/0", "generalist/1", "nominal/0"):
+        save_policy(IDLE, tmp_path / "ppo" / run, {"plants": {name: design_fingerprint(name) for name in SMALL["scenarios"]}})
+    assert [each.name for each in agents(tmp_path)] == ["ppo-generalist", "ppo-specialist"]
+    chosen = {**SMALL, "controllers": ["ppo-generalist", "ppo-specialist"]}
+    table = benchmark(trained=tmp_path, **chosen)
+    assert {(row.scenario, row.controller): row.runs for row in table.rows if row.kind == "learned"} == {
+        ("nominal", "ppo-generalist"): 2,
+        ("nominal", "ppo-specialist"): 1,
+        ("spillover", "ppo-generalist"): 2,
+    }
+    sentences = [each.sentence for each in findings(table)]
+    assert sentences[0].startswith("ppo-generalist on nominal: J differs from LQG's by ")
+    assert "ahead of the best fixed controller in 0 of 1 scenarios besides nominal." in sentences[1]
+    (tmp_path / "ppo" / "generalist" / "1" / "weights.npz").write_bytes(b"")
+    row = benchmark(trained=tmp_path, **chosen).row("nominal", "ppo-generalist")
+    assert row.runs == 1
+    assert row.sentences[0] == "1 of 2 runs could not be measured:"
+
+
+def test_an_agent_for_another_blade_is_told_in_one_sentence(tmp_path):
+    save_policy(IDLE, tmp_path / "ppo" / "generalist" / "0", {"plants": {"elsewhere": "0" * 64}})
+    row = benchmark(trained=tmp_path, **{**SMALL, "controllers": ["ppo-generalist"]}).row("nominal", "ppo-generalist")
+    assert "is none of those the agent" in row.sentences[0]
+    assert not row.measured
+
+
+def test_episodes_that_a_controller_makes_twice_as_bad_count_as_unstable():
+    table = benchmark({"wild": Wild()}, **{**SMALL, "scenarios": ["white"], "environment": {"duration": 0.1}})
+    estimates = table.row("white", "wild").estimates
+    assert estimates["relative_cost"].value > 2.0
+    assert estimates["unstable"].value == 1.0
+
+
+def test_where_nothing_moves_no_cost_is_relative_to_it():
+    table = benchmark(**{**SMALL, "scenarios": ["quiet"]})
+    assert "J without control is zero" in table.row("quiet", "lqg").sentences[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"seeds": 1}, "seeds = 1 must be a whole number, at least 2"),
+        ({"controllers": ["pid"]}, "controller = 'pid' must be one of .*lqg, lqg-load"),
+        ({"own": {"mine": 3}}, "controller 'mine' is of type int"),
+        ({"own": {"lqg": Still()}}, "'lqg' is there twice"),
+        ({"scenarios": []}, "scenarios is empty"),
+        ({"scenarios": ["delay", "mine/delay.toml"]}, "scenarios delay and mine/delay.toml have the same name"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_at_once(arguments, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        benchmark(**arguments)
 
 
 @pytest.mark.slow
-def test_every_row_is_measured():
-    assert set(benchmark()) == {name for name, _, _ in ROWS}
+def test_processes_side_by_side_give_the_same_numbers(finished, tmp_path):
+    _, table = finished
+    beside = benchmark(folder=tmp_path, jobs=2, **SMALL)
+    for row in beside.rows:
+        for name, estimate in table.row(row.scenario, row.controller).estimates.items():
+            assert row.estimates[name].value == pytest.approx(estimate.value, rel=1e-9, abs=1e-12), name
+    with pytest.raises(ValueError, match="controller 'mine' cannot be sent to another process: take jobs=1"):
+        benchmark({"mine": type("Local", (Still,), {})()}, jobs=2, **SMALL)

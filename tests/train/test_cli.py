@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from beamenv.configuration import blade_config, build_beam
 from train.cli import app
 
-COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark")
+COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")
 
 
 def run(*arguments):
@@ -43,10 +43,10 @@ def test_frequencies_printed_are_the_beam_s():
     assert speeds[0]["natural_frequencies"] != speeds[1]["natural_frequencies"]
 
 
-@pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--seeds", "2"), ("train", "gradient", "--seconds", "60")])
+@pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--seeds", "2"), ("train", "gradient", "--folder")])
 def test_a_file_in_the_folder_s_place_is_told_at_once(command, tmp_path):
     (tmp_path / "note").write_text("kept")
-    result = run(command[0], *command[1:], str(tmp_path / "note"))
+    result = run(*command, str(tmp_path / "note"))
     assert result.exit_code == 2
     assert "must be a folder" in result.stderr
     assert (tmp_path / "note").read_text() == "kept"
@@ -61,11 +61,33 @@ def test_a_classical_law_is_evaluated_by_name(controller):
     assert (content["estimates"]["relative_cost"]["value"] < 1.0) is (controller == "lqg")
 
 
+BRIEF = 'agent = "gradient"\ntitle = "Brief"\nupdates = 2\n[settings]\nepisodes = 8\nwindow = 20\n'
+
+
 def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
-    assert run("train", "gradient", str(tmp_path / "agent"), "--seconds", "0.3").exit_code == 0
+    (tmp_path / "brief.toml").write_text(BRIEF)
+    trained = run("train", "gradient", "--recipe", str(tmp_path / "brief.toml"), "--folder", str(tmp_path / "agent"))
+    assert trained.exit_code == 0, trained.output
     result = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--json")
     assert result.exit_code == 0
     assert json.loads(result.stdout)["controller"].startswith("gradient")
+    refused = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--scenario", "hysteresis")
+    assert refused.exit_code == 2
+    assert "is none of those the agent" in refused.stderr
+
+
+def test_a_training_goes_on_where_it_stopped(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "brief.toml").write_text(BRIEF)
+    arguments = ("train", "gradient", "--recipe", "brief.toml", "--scenario", "white", "--seed", "7")
+    assert run(*arguments).exit_code == 0
+    home = tmp_path / "results/agents/gradient-white-7"
+    weights = (home / "weights.npz").read_bytes()
+    again = run(*arguments)
+    assert again.exit_code == 2
+    assert "holds a training already" in again.stderr
+    assert run(*arguments, "--resume").exit_code == 0
+    assert (home / "weights.npz").read_bytes() == weights
 
 
 def test_a_comparison_prints_json_alone(tmp_path):
@@ -86,8 +108,16 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("evaluate", "pid"), "pid"),
         (("evaluate", "lqg", "--speed", "-3"), "-3"),
         (("evaluate", "lqg", "--scenario", "storm"), "storm"),
-        (("train", "sac", "folder"), "sac"),
-        (("train", "ppo", "folder", "--seconds", "0"), "seconds"),
+        (("train", "dreamer"), "dreamer"),
+        (("train", "ppo", "--minutes", "0"), "seconds"),
+        (("train", "ppo", "--updates", "0"), "updates"),
+        (("train", "ppo", "--updates", "1", "--minutes", "1"), "minutes and updates"),
+        (("train", "ppo", "--scenario", "storm"), "storm"),
+        (("train", "ppo", "--scenario", "quiet"), "nothing to learn"),
+        (("train", "ppo", "--recipe", "absent.toml"), "absent.toml"),
+        (("train", "ppo", "--from", "nowhere"), "nowhere"),
+        (("train", "ppo", "--resume"), "checkpoint"),
+        (("evaluate", "lqg", "--preset", "wing"), "wing"),
         (("compare", "folder", "--minutes", "-1"), "-"),
         (("compare", "--seeds", "1"), "seeds"),
     ],

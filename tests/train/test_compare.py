@@ -4,16 +4,18 @@ import csv
 import json
 import re
 
+import gymnasium
 import numpy as np
 import pytest
 
+import beamenv
 import train.compare
-from beamenv.configuration import THESIS, build_plant
 from train.agents import train_agent
-from train.compare import Comparison, Listener, compare, read_curve
+from train.compare import CLASSICAL, Comparison, Listener, compare, read_curve
 from train.comparison_page import shown_pair
-from train.contenders import CLASSICAL, classical
-from train.policies import HistoryPolicy, load_policy
+from train.contenders import contender
+from train.policies import HistoryPolicy
+from train.policy_files import load_policy
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
 
@@ -79,8 +81,8 @@ def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished
 
 def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
     _, evaluations, _ = finished
-    plant = build_plant(THESIS)
-    laws = {name: classical(name, plant) for name in CLASSICAL}
+    task = gymnasium.make(beamenv.ENV_ID).unwrapped.task
+    laws = {name: contender(name).build(task) for name in CLASSICAL}
     left, right = shown_pair(evaluations[: len(laws)], laws)
     assert left is laws["none"]
     assert right.observes == "observation" and right is not left
@@ -153,7 +155,7 @@ def test_another_comparison_does_not_overwrite_a_folder(finished):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"budget": {"sac": 1.0}}, "agent 'sac', but must name only gradient, ppo"),
+        ({"budget": {"dreamer": 1.0}}, "agent 'dreamer', but must name only gradient, ppo"),
         ({"budget": {"ppo": -1.0}}, "budget of ppo = -1.0 must be a positive number"),
         ({"seeds": 1}, "seeds = 1 must be at least 2"),
     ],
@@ -164,9 +166,9 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 
 
 def test_unknown_names_are_refused():
-    with pytest.raises(ValueError, match="agent = 'sac' must be one of gradient, ppo"):
-        train_agent("sac", {}, 1.0, 0, lambda progress: None)
+    with pytest.raises(ValueError, match="agent = 'dreamer' must be one of gradient, ppo"):
+        train_agent("dreamer", {}, 1.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="seconds = 0.0 must be a positive number"):
         train_agent("ppo", {}, 0.0, 0, lambda progress: None)
-    with pytest.raises(ValueError, match="controller = 'pid' must be one of none, velocity"):
-        classical("pid", None)
+    with pytest.raises(ValueError, match="controller = 'pid' must be one of .*lqg, lqg-load"):
+        contender("pid")

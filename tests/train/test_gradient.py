@@ -6,7 +6,7 @@ import pytest
 import torch
 
 import beamenv
-from baselines import evaluate
+from baselines import PersistentLoad, clipped_lqg, evaluate
 from beamenv.configuration import blade_config, build_plant
 from beamenv.kernel import Operators, advance
 from beamenv.plant import normalised
@@ -54,7 +54,7 @@ def task_of(scenario="default", duration=0.5):
 
 def test_windows_follow_one_another_through_an_episode(plant):
     windows = Windows(task_of("quiet", 0.02), 4, 10, np.random.default_rng(0))
-    actor = new_actor("recurrent", plant, ActorSettings())
+    actor = new_actor(task_of(), GradientSettings())
     assert windows.count == 4
     assert windows._phase.tolist() == [0, 1, 2, 3]
     windows.unroll(actor)
@@ -85,7 +85,7 @@ def steady(**troubles):
 def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, troubles):
     """Under one load and a constant voltage, once every blade has begun an episode of its own."""
     task, episodes = task_of(steady(**troubles), 0.05), 64
-    actor = new_actor("recurrent", plant, ActorSettings())
+    actor = new_actor(task_of(), GradientSettings())
     with torch.no_grad():
         actor.unit.out.weight.zero_()
         actor.unit.out.bias.fill_(bias)
@@ -104,11 +104,13 @@ def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, troubles):
         assert uncontrolled_cost(task, episodes=2) == pytest.approx(expected.mean(), rel=1e-4)
 
 
-@pytest.mark.parametrize("kind", ["recurrent", "residual", "residual-load", "linear"])
-def test_an_actor_and_its_policy_ask_for_the_same_voltages(plant, kind):
+@pytest.mark.parametrize(
+    ("kind", "base"), [("recurrent", ""), ("residual", "lqg"), ("residual", "lqg-load"), ("residual", "lqg-rotor"), ("linear", "")]
+)
+def test_an_actor_and_its_policy_ask_for_the_same_voltages(kind, base):
     torch.manual_seed(1)
-    actor = new_actor(kind, plant, ActorSettings(output_gain=3.0), runs=2)
-    readings = 0.3 * torch.randn(20, 6, 4)
+    actor = new_actor(task_of(), GradientSettings(kind, base, ActorSettings(output_gain=3.0), runs=2))
+    readings = torch.clamp(torch.randn(20, 6, 4), -1.0, 1.0)
     memory, policy_memory = actor.start(6), None
     policy = actor.policy(1)
     for each in readings:
@@ -117,10 +119,23 @@ def test_an_actor_and_its_policy_ask_for_the_same_voltages(plant, kind):
         np.testing.assert_allclose(action, voltages[3:].detach().numpy(), atol=2e-5)
 
 
+@pytest.mark.parametrize("base", ["lqg", "lqg-load"])
+def test_a_residual_actor_that_adds_nothing_is_the_controller_it_adds_to(plant, base):
+    """With the clipping of readings known to its filter."""
+    actor = new_actor(task_of(), GradientSettings("residual", base, ActorSettings(output_gain=0.0)))
+    law, policy = clipped_lqg(plant, PersistentLoad() if base.endswith("load") else None), actor.policy(0)
+    memories = [None, None]
+    for observed in np.clip(np.random.default_rng(0).normal(0.0, 0.7, (30, 5, 4)), -1.0, 1.0):
+        action, memories[0] = law.predict(observed, memories[0])
+        other, memories[1] = policy.predict(observed, memories[1])
+        np.testing.assert_allclose(other, action, atol=2e-3)
+    assert np.abs(action).max() > 0.1
+
+
 def test_runs_side_by_side_do_not_see_one_another(plant):
     """What one run does leaves the gradients of the others alone."""
     torch.manual_seed(0)
-    actor = new_actor("recurrent", plant, ActorSettings(), runs=3)
+    actor = new_actor(task_of(), GradientSettings(runs=3))
     voltages, _ = actor(torch.randn(12, 4), actor.start(12))
     voltages[4:8].sum().backward()
     for name, weights in actor.named_parameters():

@@ -1,6 +1,5 @@
 """Trained policies run by NumPy alone: the same numbers as in training, saved as weights only."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -8,19 +7,18 @@ import pytest
 import torch
 
 from beamenv.configuration import blade_config, build_plant
-from train.actors import ActorSettings
-from train.gradient import new_actor
-from train.policies import HistoryPolicy, load_policy, save_policy
+from train.actors import ActorSettings, RecurrentActor
+from train.policies import HistoryPolicy
+from train.policy_files import load_policy, save_policy
 
 
 @pytest.fixture(scope="module")
 def actor():
     torch.manual_seed(3)
-    actor = new_actor(
-        "recurrent", build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)})), ActorSettings(output_gain=3.0)
-    )
+    plant = build_plant(blade_config(overrides={"voltage_limits": (-500.0, 1500.0)}))
+    actor = RecurrentActor(plant, ActorSettings(output_gain=3.0), 1)
     with torch.no_grad():
-        actor.unit.out.bias[0, 0] = torch.tensor([0.3, -0.4, 0.0, 0.1])
+        actor.unit.out.bias.copy_(torch.tensor([[[0.3, -0.4, 0.0, 0.1]]]))
     return actor
 
 
@@ -49,10 +47,10 @@ def readings(steps=12, count=3):
 
 
 def test_numpy_repeats_the_training_time_network(actor, recurrent):
-    remembered, memory = actor.start(3), None
+    training, memory = actor.start(3), None
     for observed in readings(50):
         with torch.no_grad():
-            voltages, remembered = actor(torch.as_tensor(observed, dtype=torch.float32), remembered)
+            voltages, training = actor(torch.as_tensor(observed, dtype=torch.float32), training)
         action, memory = recurrent.predict(observed, memory)
         np.testing.assert_allclose(action, voltages.numpy(), atol=2e-6)
     assert np.abs(action).max() > 0.05
@@ -118,20 +116,25 @@ def test_a_saved_policy_comes_back_and_acts_alike(policy, tmp_path):
         np.testing.assert_array_equal(loaded.predict(observed)[0], policy.predict(observed)[0])
 
 
-def test_loading_executes_no_code(recurrent, tmp_path):
-    save_policy(recurrent, tmp_path)
-    with np.load(tmp_path / "weights.npz", allow_pickle=False) as arrays:
-        assert all(arrays[name].dtype == np.float32 for name in arrays.files)
-    np.savez(tmp_path / "weights.npz", weight_hh=np.array([print], dtype=object))
-    with pytest.raises(ValueError, match="allow_pickle"):
-        load_policy(tmp_path)
+def test_a_rectified_and_squashed_network_is_torch_s():
+    torch.manual_seed(0)
+    network = torch.nn.Sequential(torch.nn.Linear(24, 8), torch.nn.ReLU(), torch.nn.Linear(8, 4), torch.nn.Tanh())
+    weights = {}
+    for index, layer in enumerate((network[0], network[2])):
+        weights |= {f"weight{index}": layer.weight.detach().numpy(), f"bias{index}": layer.bias.detach().numpy()}
+    settings = {"input_gain": 1.0, "held": 1, "activation": "relu", "squashed": True}
+    one = np.ones(4, np.float32)
+    policy, memory = HistoryPolicy("squashed", weights, settings, -one, one), None
+    for observed in readings(5):
+        action, memory = policy.predict(observed, memory)
+        seen = np.hstack([memory[:, :20], memory[:, 20:24]])
+        with torch.no_grad():
+            np.testing.assert_allclose(action, network(torch.as_tensor(seen)).numpy(), atol=1e-6)
 
 
-def test_a_folder_without_an_agent_is_refused(recurrent, tmp_path):
-    with pytest.raises(ValueError, match=r"agent\.json is not there"):
-        load_policy(tmp_path)
-    save_policy(recurrent, tmp_path)
-    about = json.loads((tmp_path / "agent.json").read_text())
-    (tmp_path / "agent.json").write_text(json.dumps(about | {"kind": "oracle"}))
-    with pytest.raises(ValueError, match="'oracle'.*must be one of history, recurrent"):
-        load_policy(tmp_path)
+def test_an_overruled_action_is_not_remembered(recurrent):
+    _, memory = recurrent.predict(readings()[0])
+    held = np.full((3, 4), 0.25, np.float32)
+    known = recurrent.knowing(memory, held)
+    np.testing.assert_array_equal(known[:, -4:], held)
+    np.testing.assert_array_equal(known[:, :-4], memory[:, :-4])

@@ -6,7 +6,8 @@ import os
 import numpy as np
 import pytest
 
-from train.policies import RecurrentPolicy, save_policy
+from train.policies import RecurrentPolicy
+from train.policy_files import save_policy
 from train.storage import check_folder, write_csv, write_json, write_whole
 
 
@@ -62,7 +63,7 @@ def test_a_table_without_rows_has_its_columns(tmp_path):
 
 def test_an_agent_half_saved_is_no_agent(tmp_path, monkeypatch):
     one = np.ones(1, np.float32)
-    monkeypatch.setattr("train.policies.write_json", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr("train.policy_files.write_json", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         save_policy(RecurrentPolicy("half", {"bias_out": one}, {}, -one, one), tmp_path)
     assert names(tmp_path) == ["weights.npz"]

@@ -28,7 +28,7 @@ class HeatMap:
     relative_cost: Array
     """(S, C): J over J without control; not finite where a blade failed, NaN where nothing was run."""
     failed: Array
-    """(S, C): share of episodes in which the blade failed."""
+    """(S, C): share of episodes in which the blade failed or, where that is judged, the loop was unstable."""
 
     def __post_init__(self) -> None:
         shape = (len(self.scenarios), len(self.controllers))

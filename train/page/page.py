@@ -151,6 +151,6 @@ def plots(content: PageContent) -> list[Plot]:
 
 
 def _heat_map(content: HeatMap) -> Plot:
-    note = "Blue: better than no control. ✕: share of episodes in which the blade failed. Empty: not run."
+    note = "Blue: better than no control. ✕: share of episodes in which the blade failed or the loop was unstable. Empty: not run."
     height, width = 180 + 44 * len(content.scenarios), 260 + 62 * len(content.controllers)
     return Plot("heat-map", "Scenarios", note, heat_map(content), height, width)

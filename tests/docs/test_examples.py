@@ -1,0 +1,31 @@
+"""Every example runs to its end: each asserts the numbers that it tells."""
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SLOW = {"04_train_an_agent"}
+PACKAGES = {"03_placement": "matplotlib", "04_train_an_agent": "torch"}
+
+
+@pytest.mark.parametrize(
+    "script",
+    [pytest.param(path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else []) for path in sorted(EXAMPLES.glob("[0-9]*.py"))],
+)
+def test_example_runs_and_its_numbers_hold(script, monkeypatch):
+    if script in PACKAGES:
+        pytest.importorskip(PACKAGES[script])
+    if script == "03_placement":
+        import matplotlib.pyplot as plt
+
+        monkeypatch.setattr(plt, "show", lambda: plt.close("all"))
+    runpy.run_path(str(EXAMPLES / f"{script}.py"))
+
+
+@pytest.mark.parametrize("script", sorted(EXAMPLES.glob("[0-9]*.py"), key=str), ids=lambda path: path.stem)
+def test_example_opens_with_its_title_and_an_equation(script):
+    opening = script.read_text(encoding="utf-8").partition("# %%\n")[0]
+    assert opening.startswith("# %% [markdown]\n# # ")
+    assert opening.count("# $$") == 2

@@ -1,0 +1,70 @@
+"""Recipes: those that ship all load, and what is wrong in one's own is told in a sentence."""
+
+from dataclasses import fields, is_dataclass
+
+import pytest
+
+from train.agents import AGENTS
+from train.recipe import NAMES, load_recipe, named_recipe, parsed
+
+WHOLE = 'agent = "ppo"\ntitle = "Brief"\nupdates = 3\n[settings]\nunits = 32\nlearning_rate = 1\n'
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_recipe_that_ships_names_a_known_trainer(name):
+    recipe = named_recipe(name)
+    assert recipe.agent in AGENTS
+    assert isinstance(recipe.settings, AGENTS[recipe.agent].settings)
+    assert recipe.title
+    assert recipe.updates > 0
+
+
+def test_every_trainer_has_a_recipe_of_its_name():
+    assert set(AGENTS) <= set(NAMES)
+
+
+def test_a_recipe_of_one_s_own_changes_what_it_names_and_nothing_else(tmp_path):
+    (tmp_path / "own.toml").write_text(WHOLE)
+    settings, default = load_recipe(tmp_path / "own.toml").settings, AGENTS["ppo"].settings()
+    differing = {each.name for each in fields(settings) if getattr(settings, each.name) != getattr(default, each.name)}
+    assert differing == {"units", "learning_rate"}
+    assert (settings.units, settings.learning_rate) == (32, 1.0)
+    assert isinstance(settings.learning_rate, float)
+
+
+def test_a_table_within_the_settings_is_changed_field_by_field():
+    text = 'agent = "gradient"\ntitle = "Small"\nupdates = 3\n[settings.actor_settings]\nunits = 8\n'
+    settings = parsed(text, "own").settings
+    assert is_dataclass(settings.actor_settings)
+    assert settings.actor_settings.units == 8
+    assert settings.actor_settings.input_gain == AGENTS["gradient"].settings().actor_settings.input_gain
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "sentence"),
+    [
+        ('"ppo"', '"dreamer"', "agent = 'dreamer' must be one of gradient, ppo"),
+        ('"ppo"', "[1]", "agent = .1. must be one of"),
+        ("updates = 3", "updates = 0", "updates = 0 must be a positive whole number"),
+        ("updates = 3", "updates = true", "updates = True must be a positive whole number"),
+        ('title = "Brief"\n', "", "has, or lacks, 'title'"),
+        ("updates", "upgrades", "has, or lacks, 'updates'"),
+        ("units = 32", "unit = 32", "has the unknown field 'unit'"),
+        ("units = 32", 'units = "many"', "settings.units = 'many' must be a int"),
+        ("units = 32", "units = 32.5", "settings.units = 32.5 must be a int"),
+        ("[settings]\n", "settings = 3\n#", "settings is not a table"),
+        ("units = 32", "units =", "cannot be read"),
+    ],
+)
+def test_what_is_wrong_is_told_in_a_sentence(before, after, sentence):
+    text = WHOLE.replace(before, after) if "settings = 3" not in after else WHOLE.split("[settings]")[0] + "settings = 3\n"
+    with pytest.raises(ValueError, match=sentence) as told:
+        parsed(text, "own.toml")
+    assert "\n" not in str(told.value)
+
+
+def test_unknown_names_and_files_are_told(tmp_path):
+    with pytest.raises(ValueError, match="agent = 'dreamer' must be one of gradient"):
+        named_recipe("dreamer")
+    with pytest.raises(ValueError, match="absent.toml"):
+        load_recipe(tmp_path / "absent.toml")

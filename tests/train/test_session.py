@@ -1,0 +1,236 @@
+"""A training from beginning to end: its course, its checkpoints, and going on from them."""
+
+import csv
+import json
+import pickle
+import signal
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+import torch
+
+import train.assignment
+from beamenv.plant import fingerprint
+from train.agents import task_of
+from train.assignment import Assignment, carry_out
+from train.checkpoint import NAME, read_checkpoint, write_checkpoint
+from train.policy_files import load_policy
+from train.recipe import parsed
+from train.session import Course, follow
+
+SHORT = {"duration": 0.02}  # 40 control intervals
+ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"
+GRADIENT = parsed(ROWS.format("gradient") + "episodes = 8\nwindow = 10\n[settings.actor_settings]\nunits = 6\n", "brief")
+PPO = parsed(ROWS.format("ppo") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 32\nunits = 8\n", "brief")
+SAC = parsed(
+    ROWS.format("sac") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 16\nfirst = 32\nbuffer = 256\nunits = 8\n", "brief"
+)
+
+
+def assignment(recipe, scenario="nominal", seed=0, updates=6):
+    return Assignment(recipe.agent, recipe, scenario, seed, Course(updates=updates), SHORT)
+
+
+def ignore(progress):
+    pass
+
+
+def interrupted_after(updates):
+    def report(progress):
+        if progress.updates == updates:
+            raise KeyboardInterrupt
+
+    return report
+
+
+def weights(folder):
+    with np.load(folder / "weights.npz", allow_pickle=False) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+def curve(folder):
+    with (folder / "learning.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+def assert_same(first, second):
+    assert set(first) == set(second)
+    for name, weight in first.items():
+        np.testing.assert_array_equal(weight, second[name])
+
+
+@dataclass
+class Counting:
+    """A training that only counts."""
+
+    updates: int = 0
+    steps: int = 0
+    cost: float = 1.0
+    losses: dict = field(default_factory=dict)
+    remaining: list = field(default_factory=list)
+
+    def update(self, remaining):
+        self.updates += 1
+        self.remaining.append(remaining)
+
+    def policies(self):
+        return []
+
+
+def test_by_updates_the_learning_rate_falls_with_them():
+    training = Counting()
+    follow(training, Course(updates=4), ignore)
+    assert training.remaining == [1.0, 0.75, 0.5, 0.25]
+
+
+def test_by_the_clock_it_falls_with_time(ticking):
+    training = Counting()
+    with ticking(1.0):  # every look at the clock takes a second
+        follow(training, Course(seconds=4), ignore)
+    assert training.remaining == [1.0, 0.75, 0.5, 0.25]
+
+
+def test_a_checkpoint_is_written_every_so_often_and_at_the_end(ticking):
+    kept = []
+    with ticking(10.0):
+        follow(Counting(), Course(updates=7), ignore, kept.append, interval=30.0)
+    assert kept == [30.0, 60.0, 70.0]
+
+
+def test_ctrl_c_waits_for_the_end_of_an_update():
+    class Interrupted(Counting):
+        def update(self, remaining):
+            if self.updates == 2:
+                signal.raise_signal(signal.SIGINT)
+            super().update(remaining)
+
+    training, kept = Interrupted(), []
+    handler = signal.getsignal(signal.SIGINT)
+    follow(training, Course(updates=9), ignore, kept.append)
+    assert training.updates == 3
+    assert len(kept) == 1
+    assert signal.getsignal(signal.SIGINT) is handler
+
+
+@pytest.mark.parametrize("given", [{"updates": 0}, {"seconds": -1.0}, {"seconds": float("nan")}, {}])
+def test_a_course_must_end(given):
+    with pytest.raises(ValueError, match="must be"):
+        Course(**given)
+
+
+@pytest.mark.parametrize("scenario", ["nominal", "delay", "failure", "hysteresis", "rotor", "spin-up", "off-damping.toml"])
+def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrupted_one(scenario, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "off-damping.toml").write_text("[plants]\nbank = 4\ndamping_ratio = [0.003, 0.02]\n")
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    carry_out(assignment(GRADIENT, scenario), whole, ignore)
+    carry_out(assignment(GRADIENT, scenario), broken, interrupted_after(3))
+    halfway = weights(broken)
+    carry_out(assignment(GRADIENT, scenario), broken, ignore, resume=True)
+    assert_same(weights(whole), weights(broken))
+    assert any((halfway[name] != weight).any() for name, weight in weights(whole).items())
+    costs = [[row["cost"] for row in curve(folder)] for folder in (whole, broken)]
+    assert costs[0] == costs[1]
+
+
+@pytest.mark.parametrize("recipe", [PPO, SAC], ids=["ppo", "sac"])
+def test_a_resumed_training_goes_on_from_its_networks_and_counters(recipe, tmp_path):
+    carry_out(assignment(recipe), tmp_path, interrupted_after(3))
+    before = read_checkpoint(tmp_path)["training"]
+    seen = []
+    carry_out(assignment(recipe), tmp_path, seen.append, resume=True)
+    assert [progress.updates for progress in seen] == [4, 5, 6]
+    assert seen[0].steps > before["counters"]["steps"]
+    after = read_checkpoint(tmp_path)["training"]["policy"]
+    distance = max(float((after[name] - value).abs().max()) for name, value in before["policy"].items())
+    assert 0.0 < distance < 0.1  # three updates on, not begun anew
+    assert json.loads((tmp_path / "agent.json").read_text())["updates"] == 6
+
+
+@pytest.mark.parametrize("recipe", [GRADIENT, PPO, SAC], ids=["gradient", "ppo", "sac"])
+def test_a_training_begun_again_is_the_same(recipe, tmp_path):
+    for name in ("first", "second"):
+        carry_out(assignment(recipe, updates=3), tmp_path / name, ignore)
+    carry_out(assignment(recipe, updates=3, seed=1), tmp_path / "other", ignore)
+    first, second, other = (weights(tmp_path / name) for name in ("first", "second", "other"))
+    assert_same(first, second)
+    assert any((first[name] != other[name]).any() for name in first)
+
+
+def test_what_is_saved_tells_what_it_depends_on(tmp_path):
+    (place,) = carry_out(assignment(GRADIENT), tmp_path / "agent", ignore)
+    about = json.loads((place / "agent.json").read_text())
+    plant = task_of(SHORT).design_plant
+    assert about["recipe"] == GRADIENT.to_dict()
+    assert (about["agent"], about["scenario"], about["seed"], about["updates"]) == ("gradient", "nominal", 0, 6)
+    assert set(about["versions"]) == {"python", "numpy", "torch", "stable-baselines3", "sb3-contrib", "gymnasium"}
+    assert about["plants"] == {"nominal": fingerprint(plant)}
+    assert load_policy(place, plant).predict(np.zeros(4))[0].shape == (4,)
+    assert [int(row["updates"]) for row in curve(place)] == [1, 2, 3, 4, 5, 6]
+    assert list((place / "tensorboard").glob("events.out.tfevents.*"))
+
+
+def test_runs_side_by_side_are_saved_apart(tmp_path):
+    recipe = replace(GRADIENT, settings=replace(GRADIENT.settings, runs=2))
+    places = carry_out(assignment(recipe, updates=2), tmp_path, ignore)
+    assert [place.name for place in places] == ["0", "1"]
+    curves = [(place / "learning.csv").read_text() for place in places]
+    assert curves[0] != curves[1]
+
+
+def test_a_generalist_knows_the_plant_of_every_scenario(tmp_path, monkeypatch):
+    monkeypatch.setattr(train.assignment, "NAMES", ("nominal", "hysteresis"))
+    (place,) = carry_out(assignment(PPO, "generalist", updates=1), tmp_path, ignore)
+    tasks = [task_of({**SHORT, "scenario": name}) for name in ("nominal", "hysteresis")]
+    assert load_policy(place, tasks[0].design_plant).lowest == pytest.approx(-1.0)
+    assert load_policy(place, tasks[1].design_plant).lowest == pytest.approx(-1.0 / 3.0)
+
+
+def test_a_teacher_must_know_the_plant(tmp_path):
+    (teacher,) = carry_out(assignment(GRADIENT, updates=1), tmp_path / "teacher", ignore)
+    for_other = replace(assignment(PPO, "hysteresis"), teacher=teacher)
+    with pytest.raises(ValueError, match="none of those the agent .* was trained on"):
+        carry_out(for_other, tmp_path / "student", ignore)
+    with pytest.raises(ValueError, match="'gradient' must start from scratch"):
+        carry_out(replace(assignment(GRADIENT), teacher=teacher), tmp_path / "student", ignore)
+
+
+def test_a_folder_s_training_is_neither_overwritten_nor_taken_for_another(tmp_path):
+    carry_out(assignment(PPO, updates=1), tmp_path, ignore)
+    before = (tmp_path / NAME).read_bytes()
+    with pytest.raises(ValueError, match="holds a training already"):
+        carry_out(assignment(PPO, updates=1), tmp_path, ignore)
+    with pytest.raises(ValueError, match="holds another training"):
+        carry_out(assignment(PPO, updates=1, seed=1), tmp_path, ignore, resume=True)
+    assert (tmp_path / NAME).read_bytes() == before
+    with pytest.raises(ValueError, match="must hold a checkpoint"):
+        carry_out(assignment(PPO), tmp_path / "nothing", ignore, resume=True)
+
+
+class Bomb:
+    """Unpickled, it leaves a file behind."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return open, (str(self.path), "w")
+
+
+@pytest.mark.parametrize("write", [torch.save, lambda content, path: path.write_bytes(pickle.dumps(content))])
+def test_a_checkpoint_executes_no_code(write, tmp_path):
+    write({"training": Bomb(tmp_path / "trace")}, tmp_path / NAME)
+    with pytest.raises(ValueError, match="must be a checkpoint of tensors and numbers"):
+        read_checkpoint(tmp_path)
+    assert not (tmp_path / "trace").exists()
+
+
+def test_half_a_checkpoint_is_told_in_a_sentence(tmp_path):
+    write_checkpoint(tmp_path, {"weights": torch.arange(100.0)})
+    torch.testing.assert_close(read_checkpoint(tmp_path)["weights"], torch.arange(100.0))
+    whole = (tmp_path / NAME).read_bytes()
+    for length in (0, 1, len(whole) // 2):
+        (tmp_path / NAME).write_bytes(whole[:length])
+        with pytest.raises(ValueError, match="must be a checkpoint"):
+            read_checkpoint(tmp_path)

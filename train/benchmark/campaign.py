@@ -1,0 +1,145 @@
+"""The benchmark: every controller in every scenario on the same held-out episodes."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from importlib import metadata
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import beamenv
+from beamenv.scenarios import Scenario, scenario
+from train.benchmark.cells import Cell, Job, Setting, held_out, read_cell, write_cell
+from train.benchmark.entrants import Entrant, entrants
+from train.benchmark.report import write_files
+from train.benchmark.runner import run
+from train.benchmark.table import BenchmarkTable, tabulate
+from train.shipped import FOLDER
+from train.storage import check_folder
+
+Progress = Callable[[int, int, Cell], None]
+
+PACKAGES = ("numpy", "scipy", "gymnasium", "control", "torch", "stable-baselines3", "sb3-contrib", "daqp")
+
+
+def benchmark(
+    own: Mapping[str, Any] | None = None,
+    *,
+    scenarios: Sequence[str] | None = None,
+    controllers: Sequence[str] | None = None,
+    seeds: int = 128,
+    folder: Path | None = None,
+    models: Sequence[Path] = (),
+    trusted: bool = False,
+    jobs: int = 1,
+    trained: Path = FOLDER,
+    environment: Mapping[str, Any] | None = None,
+    progress: Progress | None = None,
+) -> BenchmarkTable:
+    """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
+
+    - ``own``: objects with Stable-Baselines3's ``predict`` by the names they are to have. They are given the readings (N, p)
+      of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
+    - ``scenarios``: names or TOML files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
+      the others go on.
+    - ``controllers``: names of contenders and shipped agents, all of them if None. No control and LQG are always among them.
+    - ``seeds``: held-out episodes, equal for every controller.
+    - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
+    - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
+    - ``environment``: further keyword arguments of the environment, such as a "blade".
+    - ``progress``: called with cells done, their number, and the cell.
+
+    A folder that holds cells of an earlier run is gone on from: a cell is kept unless something it depends on has changed.
+    What fails fails in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
+    no scenario is left.
+    """
+    if isinstance(seeds, bool) or not isinstance(seeds, int) or seeds < 2:
+        raise ValueError(f"seeds = {seeds!r} must be a whole number, at least 2: intervals need more than one episode.")
+    if folder is not None:
+        check_folder(folder)
+    entered = entrants(controllers, own or {}, models, trusted, trained)
+    known, refused = read_scenarios(scenarios)
+    settings = [Setting(name, each, seeds, json.dumps(dict(environment or {}), sort_keys=True)) for name, each in known.items()]
+    queue = [
+        Job(setting, each.name, name, source)
+        for setting in settings
+        for each in entered
+        for name, source in each.runs(setting.name).items()
+    ]
+    cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
+    table = tabulate(cells, entered, refused, configuration(settings, entered))
+    if folder is not None:
+        write_all(folder, table)
+    return table
+
+
+def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
+    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
+    read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
+    titles = {name: Path(name).stem if name.endswith(".toml") else name for name in read}
+    known = {titles[name]: each for name, each in read.items() if isinstance(each, Scenario)}
+    refused = {name: each for name, each in read.items() if isinstance(each, str)}
+    if doubled := [name for name in read if list(titles.values()).count(titles[name]) > 1]:
+        raise ValueError(f"scenarios {' and '.join(doubled)} have the same name: rename the file.")
+    if not known:
+        raise ValueError(" ".join(refused.values()) or "scenarios is empty, but a benchmark needs at least one.")
+    return known, refused
+
+
+def _read(name: str) -> Scenario | str:
+    try:
+        return scenario(name)
+    except ValueError as error:
+        return str(error)
+
+
+def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progress) -> list[Cell]:
+    """The cells of the queue, in its order: what is there already, and what is measured now, each written when it is whole."""
+    kept = {job: cell for job in queue if folder is not None and (cell := read_cell(folder, job)) is not None}
+    missing = [job for job in queue if job not in kept]
+
+    def finished(job: Job, cell: Cell) -> None:
+        kept[job] = cell
+        if folder is not None:
+            write_cell(folder, job, cell)
+        progress(len(kept), len(queue), cell)
+
+    run(missing, jobs, finished)
+    return [kept[job] for job in queue]
+
+
+def configuration(settings: Sequence[Setting], entered: Sequence[Entrant]) -> dict[str, Any]:
+    """How the table was made, as JSON can hold it."""
+    seeds = held_out(settings[0].seeds)
+    return {
+        "seeds": [seeds[0], seeds[-1]],
+        "environment": json.loads(settings[0].arguments),
+        "scenarios": {setting.name: setting.scenario.to_dict() for setting in settings},
+        "controllers": {each.name: each.kind for each in entered},
+        "versions": versions(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Of beamenv, Python, the machine and the packages that are installed."""
+    found = {name: metadata.version(name) for name in PACKAGES if find_spec(name.replace("-", "_"))}
+    return {
+        "beamenv": beamenv.__version__,
+        "Python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        **found,
+    }
+
+
+def write_all(folder: Path, table: BenchmarkTable) -> None:
+    """Tables, heat map and page."""
+    from train.benchmark.heat_map import heat_map
+    from train.benchmark.page import write_report
+    from train.figures import save
+
+    write_files(folder, table)
+    save(heat_map(table), folder / "heat_map.png")
+    write_report(folder / "report.html", table)

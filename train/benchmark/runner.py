@@ -1,0 +1,72 @@
+"""Measuring many cells, one after another or in several processes; each is handed over as soon as it is whole."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import get_context
+
+from train.benchmark.cells import Cell, Job, measured
+from train.benchmark.sources import Source
+from train.speed import ONE_THREAD
+
+
+def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], None]) -> None:
+    """Measure every job and call ``finished`` for each, in this process or in several, each of them on one thread.
+
+    An interruption loses only the cells that are being measured. Raises ValueError for objects that cannot be sent to another
+    process, ChildProcessError if a process dies.
+    """
+    if processes == 1 or len(jobs) < 2:
+        for job in jobs:
+            finished(job, measured(job))
+        return
+    _check_that_they_travel(jobs)
+    with one_thread_each(), _pool(min(processes, len(jobs))) as pool:
+        futures = {pool.submit(measured, job): job for job in jobs}
+        try:
+            for future in as_completed(futures):
+                finished(futures[future], future.result())
+        except BrokenProcessPool:
+            raise ChildProcessError("a process died: what was finished is kept, and the same command goes on.") from None
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _pool(processes: int) -> ProcessPoolExecutor:
+    """Fresh interpreters, which Ctrl-C ends without a word: what it means is said by the process that started them."""
+    return ProcessPoolExecutor(processes, get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_DFL))
+
+
+@contextmanager
+def one_thread_each() -> Iterator[None]:
+    """Within it new processes start with one thread for linear algebra: more would only be in each other's way."""
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(ONE_THREAD)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name)
+            if value is not None:
+                os.environ[name] = value
+
+
+def _check_that_they_travel(jobs: Sequence[Job]) -> None:
+    for job in {job.controller: job for job in jobs}.values():
+        if not _travels(job.source):
+            raise ValueError(f"controller {job.controller!r} cannot be sent to another process: take jobs=1.")
+
+
+def _travels(source: Source) -> bool:
+    try:
+        pickle.dumps(source)
+    except Exception:  # noqa: BLE001 - pickle raises whatever the object does
+        return False
+    return True

@@ -1,0 +1,139 @@
+"""The table: every controller in every scenario, its estimates made of the cells of its training runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import Estimate
+from train.benchmark import statistics
+from train.benchmark.cells import SERIES, Cell
+from train.benchmark.entrants import ORDER, Entrant
+
+Array = NDArray[np.float64]
+
+UNSTABLE = 2.0
+"""An episode counts as unstable if the blade fails in it or if J is more than so many times what it is without control: a
+controller that feeds vibration may well take longer than an episode to break the blade."""
+
+RIVAL = "lqg"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Row:
+    """One controller in one scenario."""
+
+    scenario: str
+    controller: str
+    title: str
+    kind: str
+    runs: int
+    """Training runs that were measured; 1 for what does not learn."""
+    seeds: int
+    sentences: tuple[str, ...] = ()
+    """What went wrong, once each."""
+    estimates: Mapping[str, Estimate] = field(default_factory=dict)
+    """In SI units; empty where nothing could be measured."""
+    cost: Array | None = None
+    """(runs, N), J s."""
+    uncontrolled: Array | None = None
+    """(N,), J s."""
+
+    @property
+    def measured(self) -> bool:
+        """Whether there is anything to compare."""
+        return self.cost is not None
+
+    @property
+    def mean_cost(self) -> float:
+        """J s, infinite where nothing was measured or a blade failed."""
+        return float("inf") if self.cost is None else float(self.cost.mean())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BenchmarkTable:
+    """Everything a benchmark has found out."""
+
+    rows: tuple[Row, ...]
+    """Scenario by scenario; within one by kind, then as they entered."""
+    refused: Mapping[str, str]
+    """Scenarios that could not be read, and why."""
+    configuration: Mapping[str, Any]
+    """How it was made, as JSON can hold it."""
+
+    @property
+    def scenarios(self) -> tuple[str, ...]:
+        """In order."""
+        return tuple(dict.fromkeys(row.scenario for row in self.rows))
+
+    @property
+    def controllers(self) -> tuple[str, ...]:
+        """By kind."""
+        kinds = {row.controller: row.kind for row in self.rows}
+        return tuple(sorted(kinds, key=lambda name: ORDER.index(kinds[name])))
+
+    def within(self, scenario: str) -> tuple[Row, ...]:
+        """The rows of a scenario."""
+        return tuple(row for row in self.rows if row.scenario == scenario)
+
+    def row(self, scenario: str, controller: str) -> Row | None:
+        """One row, None if the controller has nothing to do there."""
+        return next((row for row in self.within(scenario) if row.controller == controller), None)
+
+    @property
+    def sentences(self) -> dict[str, str]:
+        """Everything that went wrong, by where it did."""
+        rows = {f"{row.controller} in {row.scenario}": " ".join(row.sentences) for row in self.rows if row.sentences}
+        return {**{f"scenario {name}": sentence for name, sentence in self.refused.items()}, **rows}
+
+
+def tabulate(
+    cells: Sequence[Cell], entered: Sequence[Entrant], refused: Mapping[str, str], configuration: Mapping[str, Any]
+) -> BenchmarkTable:
+    """The table of all cells."""
+    rows = []
+    for scenario in dict.fromkeys(cell.scenario for cell in cells):
+        found = {each.name: [c for c in cells if (c.scenario, c.controller) == (scenario, each.name)] for each in entered}
+        rivals = costs(found.get(RIVAL, []))
+        rows += [row(found[each.name], each.kind, rivals) for each in entered if found[each.name]]
+    return BenchmarkTable(tuple(rows), refused, configuration)
+
+
+def costs(cells: Sequence[Cell]) -> Array | None:
+    """(runs, N), J s, of the cells that were measured; None if none were."""
+    series = [cell.metrics["cost"] for cell in cells if cell.metrics is not None]
+    return np.stack(series) if series else None
+
+
+def row(cells: Sequence[Cell], kind: str, rival: Array | None) -> Row:
+    """The training runs of one controller in one scenario taken together."""
+    served = [cell for cell in cells if cell.metrics is not None]
+    about = (cells[0].scenario, cells[0].controller, (served or cells)[0].title or cells[0].controller, kind)
+    sentences = tuple(dict.fromkeys(cell.sentence for cell in cells if cell.sentence))
+    if not served:
+        return Row(*about, runs=0, seeds=0, sentences=sentences)
+    if len(served) < len(cells):
+        sentences = (f"{len(cells) - len(served)} of {len(cells)} runs could not be measured:", *sentences)
+    series = {name: np.stack([cell.metrics[name] for cell in served if cell.metrics]) for name in SERIES}
+    uncontrolled = served[0].uncontrolled
+    assert uncontrolled is not None
+    found = estimates(series, uncontrolled, rival)
+    return Row(*about, len(served), len(uncontrolled), sentences, found, series["cost"], uncontrolled)
+
+
+def estimates(series: Mapping[str, Array], uncontrolled: Array, rival: Array | None) -> dict[str, Estimate]:
+    """Every estimate from ``series`` (runs, N) each; those beside LQG only where it was measured."""
+    cost = series["cost"]
+    found = {
+        "relative_cost": statistics.relative_cost(cost, uncontrolled),
+        "relative_cost_iqm": statistics.pooled_interquartile_mean(cost / uncontrolled),
+        "unstable": statistics.mean((cost > UNSTABLE * uncontrolled).astype(float)),
+    }
+    if rival is not None:
+        found["difference_to_lqg"] = statistics.difference(cost, rival, uncontrolled)
+        found["improvement_on_lqg"] = statistics.mean(statistics.better(cost, rival[0]))
+    return found | {name: statistics.mean(values) for name, values in series.items()}

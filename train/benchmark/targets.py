@@ -1,0 +1,92 @@
+"""What the table says of the questions it was made for, by rule."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from baselines import Estimate
+from train.benchmark import statistics
+from train.benchmark.entrants import GENERALIST
+from train.benchmark.table import RIVAL, BenchmarkTable, Row
+
+NOMINAL = "nominal"
+MARGIN = 0.03
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A sentence, and whether it meets what was aimed at; None where nothing was."""
+
+    sentence: str
+    met: bool | None = None
+
+
+def findings(table: BenchmarkTable) -> list[Finding]:
+    """All of them: the generalists where LQG is at home, the best agent elsewhere, and who wins where."""
+    found = [nominal(each, rival) for each, rival in _generalists(table)]
+    others = [name for name in table.scenarios if name != NOMINAL]
+    contests = [contest for name in others if (contest := _contest(table.within(name)))]
+    if contests:
+        ahead = [agent.scenario for agent, _, gap in contests if gap.high < 0.0]
+        where = f"{len(ahead)} of {len(contests)} scenarios besides nominal{': ' if ahead else ''}{', '.join(ahead)}"
+        found.append(Finding(f"The best agent is ahead of the best fixed controller in {where}."))
+        found += [Finding(_told(*contest)) for contest in contests]
+    return found + [Finding(sentence) for name in table.scenarios if (sentence := winner(table.within(name)))]
+
+
+def nominal(agent: Row, rival: Row) -> Finding:
+    """Whether a generalist is within 3 % of LQG under the nominal plant, by the ratio of mean costs."""
+    assert agent.cost is not None and rival.cost is not None
+    excess = statistics.ratio(agent.cost, rival.cost)
+    sentence = (
+        f"{agent.controller} on nominal: J differs from LQG's by {_percent(excess.value - 1.0)} "
+        f"[{_percent(excess.low - 1.0)}, {_percent(excess.high - 1.0)}]; aimed at: no more than {_percent(MARGIN)}."
+    )
+    return Finding(sentence, excess.value <= 1.0 + MARGIN)
+
+
+def best(rows: Sequence[Row], *kinds: str) -> Row | None:
+    """The least mean J among the kinds; None if none of them was measured."""
+    return min((row for row in rows if row.kind in kinds and row.measured), key=lambda row: row.mean_cost, default=None)
+
+
+def winner(rows: Sequence[Row]) -> str:
+    """Who has the least mean J among those that real blades offer, and how far ahead of LQG; empty without one."""
+    first = best(rows, "fixed", "scheduled", "predictive", "learned", "own")
+    gap = first.estimates.get("difference_to_lqg") if first else None
+    if first is None or gap is None:
+        return ""
+    if first.mean_cost == float("inf"):
+        return f"{first.scenario}: every controller breaks blades."
+    unstable = first.estimates["unstable"].value
+    doubt = f"; unstable in {100.0 * unstable:.0f} % of its episodes" if unstable else ""
+    return f"{first.scenario}: least J has {first.controller} ({first.kind}), {_gap(gap)} beside LQG{doubt}."
+
+
+def _generalists(table: BenchmarkTable) -> list[tuple[Row, Row]]:
+    rival = table.row(NOMINAL, RIVAL)
+    rows = [row for row in table.within(NOMINAL) if row.controller.endswith(GENERALIST) and row.measured]
+    return [(row, rival) for row in rows] if rival is not None and rival.measured else []
+
+
+def _contest(rows: Sequence[Row]) -> tuple[Row, Row, Estimate] | None:
+    """Best agent, best fixed controller, and the paired difference of their relative costs."""
+    agent, fixed = best(rows, "learned"), best(rows, "fixed")
+    if agent is None or fixed is None:
+        return None
+    assert agent.cost is not None and fixed.cost is not None and fixed.uncontrolled is not None
+    return agent, fixed, statistics.difference(agent.cost, fixed.cost, fixed.uncontrolled)
+
+
+def _told(agent: Row, fixed: Row, gap: Estimate) -> str:
+    verdict = "ahead" if gap.high < 0.0 else "behind" if gap.low > 0.0 else "not told apart"
+    return f"{agent.scenario}: best agent {agent.controller}, best fixed controller {fixed.controller}: {_gap(gap)}, {verdict}."
+
+
+def _gap(gap: Estimate) -> str:
+    return f"J / J without control {gap.value:+.3f} [{gap.low:+.3f}, {gap.high:+.3f}]"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:+.1f} %"

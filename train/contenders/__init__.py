@@ -1,0 +1,54 @@
+"""The controllers that agents are compared with, a file each: a file put into this folder is a controller of its name.
+
+Such a module has a ``KIND``, one of ``KINDS``, and ``build(task)``, which returns the controller. It is built from
+``task.design_plant`` and ``task.design_config`` alone: what the true blade is like no controller is told. ``lqg_load.py`` is
+called "lqg-load".
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from types import MappingProxyType
+
+from baselines import Controller
+from beamenv.task import Task
+
+KINDS = ("fixed", "scheduled", "predictive", "bound")
+"""Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
+and those that see the true state, which no real blade offers: bounds, not rivals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contender:
+    """A controller by its short name. Raises ValueError for another kind than those in ``KINDS``."""
+
+    name: str
+    kind: str
+    build: Callable[[Task], Controller]
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise ValueError(f"KIND = {self.kind!r} of the controller {self.name!r} must be one of {', '.join(KINDS)}.")
+
+
+def discover() -> Mapping[str, Contender]:
+    """Every contender in the folder by its name, in alphabetical order; ``ValueError`` for a file that lacks what it must have."""
+    found = {}
+    for module in sorted(pkgutil.iter_modules(__path__), key=lambda each: each.name):
+        name = module.name.replace("_", "-")
+        content = import_module(f"{__name__}.{module.name}")
+        if missing := [wanted for wanted in ("KIND", "build") if not hasattr(content, wanted)]:
+            raise ValueError(f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND and build(task).")
+        found[name] = Contender(name, content.KIND, content.build)
+    return MappingProxyType(found)
+
+
+def contender(name: str) -> Contender:
+    """A contender by its short name; ``ValueError`` lists the known ones."""
+    known = discover()
+    if name not in known:
+        raise ValueError(f"controller = {name!r} must be one of {', '.join(known)}, or the folder of a trained agent.")
+    return known[name]

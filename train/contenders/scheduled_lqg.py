@@ -1,0 +1,16 @@
+"""LQG that follows the rotor's speed, which it is told."""
+
+import numpy as np
+
+from baselines import Controller, scheduled_lqg_for
+from beamenv.task import Task
+
+KIND = "scheduled"
+
+RANGE = np.linspace(0.5, 1.5, 11)
+"""Speeds over that of the design: half of it either way, in steps of 20 rad/s on the default blade."""
+
+
+def build(task: Task) -> Controller:
+    """An LQG for each of eleven speeds, mixed in between."""
+    return scheduled_lqg_for(task.design_config, RANGE * task.design_config.speed)

@@ -1,0 +1,1 @@
+"""Recipes as TOML files: their names are those of the files."""
