@@ -1,6 +1,7 @@
-"""A clock that makes training deterministic, and a page with every part."""
+"""A clock that makes training deterministic, a page with every part, and a browser."""
 
 import itertools
+import shutil
 from contextlib import contextmanager
 from types import SimpleNamespace
 
@@ -49,3 +50,28 @@ def page_content():
         learning=page.LearningCurves({"PPO": np.array([[1.0, 1e5, 1.2], [2.0, 2e5, 0.9], [3.0, 3e5, 0.6]])}, {"LQG": 0.4}),
         configuration={"blade": {"length": 2.023}, "note": "<none>"},
     )
+
+
+ALONE = (
+    *("--headless=new", "--no-sandbox", "--no-first-run", "--disable-sync", "--disable-background-networking"),
+    *("--disable-component-update", "--disable-quic"),
+    *("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
+)
+"""No network, and WebGL without a graphics card."""
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Chromium, which keeps a log of what its console says."""
+    webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if chromium is None or driver is None:
+        pytest.skip("Chromium and its driver are not installed")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for argument in ALONE:
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    started = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
+    yield started
+    started.quit()

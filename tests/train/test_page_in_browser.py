@@ -1,25 +1,13 @@
 """The page in a real browser: it draws without an error, moves, sorts, and can be read in both themes and on a telephone."""
 
-import shutil
 import time
 
 import numpy as np
 import pytest
 
 webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
-CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(CHROMIUM is None or DRIVER is None, reason="Chromium and its driver are not installed"),
-]
-
-ALONE = (
-    *("--headless=new", "--no-sandbox", "--no-first-run", "--disable-sync", "--disable-background-networking"),
-    *("--disable-component-update", "--disable-quic"),
-    *("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
-)
-"""No network, and WebGL without a graphics card."""
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
@@ -29,18 +17,6 @@ def report(page_content, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
     write_page(path, page_content)
     return path
-
-
-@pytest.fixture(scope="module")
-def browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for argument in ALONE:
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
-    yield driver
-    driver.quit()
 
 
 @pytest.fixture
