@@ -6,12 +6,13 @@ ARGS ?=
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: help compare benchmark reproduce speed test slow lint docs format install clean
+.PHONY: help compare benchmark reproduce speed test slow pages lint docs format install clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make compare    train the agents, compare every controller, write tables and figures"
 	@echo "make test       run the tests; make slow runs the slow ones"
+	@echo "make pages      run the tests of the report and of the explorer in a headless Chromium"
 	@echo "make reproduce  regenerate the thesis' tables and figures and judge its statements"
 	@echo "make benchmark  every controller in every scenario on the same episodes"
 	@echo "make speed      measure steps per second beside Gymnasium's CartPole"
@@ -26,6 +27,9 @@ test: $(INSTALLED)
 
 slow: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow $(ARGS)
+
+pages: $(INSTALLED)
+	$(BIN)/python -m pytest -m slow tests/train/test_page_in_browser.py tests/train/test_explore_in_browser.py $(ARGS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
