@@ -9,6 +9,7 @@ webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not in
 
 pytestmark = pytest.mark.slow
 
+
 @pytest.fixture(scope="module")
 def report(page_content, tmp_path_factory):
     from train.page import write_page

@@ -9,7 +9,7 @@ from dash import ClientsideFunction, Dash, Input, Output, html, no_update
 
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
-from train.explore.layout import CONTROLS, layout
+from train.explore.layout import CONTROLS, RANGES, layout
 from train.page.themes import THEMES
 
 SIDES = ("actuators", "sensors")
@@ -66,7 +66,7 @@ def theme() -> str:
 def outputs() -> dict[str, Any]:
     """What the callback gives, by the names that ``redraw`` uses."""
     return {
-        "edges": [Output(f"{side}-values", "children") for side in SIDES],
+        "values": [Output(f"{name}-value", "children") for name in RANGES],
         "message": Output("message", "children"),
         "results": Output("results", "hidden"),
         "campbell": Output("campbell", "figure"),
@@ -80,15 +80,15 @@ def outputs() -> dict[str, Any]:
 
 def redraw(**values: Any) -> dict[str, Any]:
     """Figures for the controls' values; for what makes no blade, one sentence in their place."""
-    edges = ["   ".join(f"{edge:.1f}" for edge in values[side]) for side in SIDES]
+    told = [entry.told(values[name]) for name, entry in RANGES.items()]
     try:
         seen = view(settings(**values))
     except ValueError as error:
         kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
         rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
-        return {"edges": edges, "message": str(error), "results": True, **kept, **rows}
+        return {"values": told, "message": str(error), "results": True, **kept, **rows}
     return {
-        "edges": edges,
+        "values": told,
         "message": "",
         "results": False,
         "campbell": campbell_diagram(seen),
