@@ -84,10 +84,10 @@ def test_patches_stop_where_they_would_overlap(show):
 
 def test_what_makes_no_blade_is_told_and_leaves_the_sliders_usable(show):
     browser = show()
-    browser.execute_script("dash_clientside.set_props('actuators', {value: [0, 50, 500, 900]})")
+    browser.execute_script("dash_clientside.set_props('speed', {value: 2000})")  # no slider goes that far
     wait(browser, "return document.getElementById('results').hidden")
-    assert "do not overlap" in browser.find_element("id", "message").text
-    press(browser, "actuators", webdriver.Keys.PAGE_UP, handle=1, times=1)
+    assert "critical speed" in browser.find_element("id", "message").text
+    press(browser, "speed", webdriver.Keys.ARROW_LEFT)
     wait(browser, f"return !document.getElementById('results').hidden && {IDLE}")
     assert browser.find_element("id", "message").text == ""
 
