@@ -143,6 +143,12 @@ def test_another_speed_needs_no_new_blade():
     assert built.cache_info().misses == before
 
 
+def test_sliders_tell_their_values_with_their_units():
+    told = redraw(**START | {"speed": 215.0, "taper": 1.5})["values"]
+    assert told[:4] == ["30 °", "215 rad/s", "30 °", "1.5"]
+    assert told[4] == "0.0, 443.7, 887.4, 1331.1 mm"
+
+
 def check_figures(shown):
     assert shown["message"] == ""
     assert shown["results"] is False
@@ -166,7 +172,7 @@ def test_the_sliders_ends_give_figures(ends):
 def test_patches_side_by_side_at_an_end_give_figures(side, edges):
     shown = redraw(**START | {side: edges, "load": "lag"})
     check_figures(shown)
-    assert shown["edges"][("actuators", "sensors").index(side)].split()[0] == f"{edges[0]:.1f}"
+    assert shown["values"][list(RANGES).index(side)] == ", ".join(f"{edge:.1f}" for edge in edges) + " mm"
 
 
 @pytest.mark.parametrize(

@@ -75,18 +75,21 @@ def test_moves_that_follow_each_other_quickly_end_at_the_last(show):
 def test_patches_stop_where_they_would_overlap(show):
     browser = show()
     press(browser, "actuators", webdriver.Keys.PAGE_DOWN, handle=1, times=8)
-    wait(browser, "return document.getElementById('actuators-values').textContent.startsWith('0.0   95.7   887.4') && " + IDLE)
+    wait(browser, f"return document.getElementById('actuators-value').textContent !== '0.0, 443.7, 887.4, 1331.1 mm' && {IDLE}")
+    first, second, *others = (float(edge) for edge in browser.find_element("id", "actuators-value").text.rstrip(" m").split(", "))
+    assert (first, others) == (0.0, [887.4, 1331.1])
+    assert 85.0 <= second < 443.7
     assert browser.find_element("id", "message").text == ""
 
 
-def test_a_value_that_makes_no_blade_leaves_the_sliders_usable(show):
+def test_what_makes_no_blade_is_told_and_leaves_the_sliders_usable(show):
     browser = show()
-    typed = browser.find_element("css selector", "#taper input")
-    typed.send_keys(webdriver.Keys.CONTROL, "a")
-    typed.send_keys(webdriver.Keys.DELETE)
-    wait(browser, "return document.getElementById('results').hidden || document.getElementById('message').textContent === ''")
-    press(browser, "taper", webdriver.Keys.ARROW_RIGHT, times=2)
-    wait(browser, "return !document.getElementById('results').hidden && " + IDLE)
+    browser.execute_script("dash_clientside.set_props('speed', {value: 2000})")  # no slider goes that far
+    wait(browser, "return document.getElementById('results').hidden")
+    assert "critical speed" in browser.find_element("id", "message").text
+    press(browser, "speed", webdriver.Keys.ARROW_LEFT)
+    wait(browser, f"return !document.getElementById('results').hidden && {IDLE}")
+    assert browser.find_element("id", "message").text == ""
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -98,8 +101,10 @@ def test_text_has_the_theme_s_ink(show, scheme):
     texts = "#results .cartesianlayer text, #results .infolayer text"
     colours = f"return [...document.querySelectorAll('{texts}')].map((text) => getComputedStyle(text).fill)"
     assert set(browser.execute_script(colours)) == {expected}
-    values = "return [...document.querySelectorAll('#controls input')].map((input) => getComputedStyle(input).color)"
-    assert expected in browser.execute_script(values)
+    values = (
+        "return [...document.querySelectorAll('#controls output, #controls label')].map((text) => getComputedStyle(text).color)"
+    )
+    assert set(browser.execute_script(values)) == {expected}
 
 
 @pytest.mark.parametrize("width", [400, 1200])

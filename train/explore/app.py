@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
-from train.explore.layout import CONTROLS, layout
+from train.explore.layout import CONTROLS, RANGES, layout
 from train.page.themes import THEMES
 
 SIDES = ("actuators", "sensors")
@@ -67,7 +67,7 @@ def theme() -> str:
 def outputs() -> dict[str, Any]:
     """What the callback gives, by the names that ``redraw`` uses."""
     return {
-        "edges": [Output(f"{side}-values", "children") for side in SIDES],
+        "values": [Output(f"{name}-value", "children") for name in RANGES],
         "message": Output("message", "children"),
         "results": Output("results", "hidden"),
         "campbell": Output("campbell", "figure"),
@@ -81,19 +81,24 @@ def outputs() -> dict[str, Any]:
 
 @threadpool_limits.wrap(limits=1)
 def redraw(**values: Any) -> dict[str, Any]:
+<<<<<<< HEAD
     """Figures for the controls' values; for what makes no blade, one sentence in their place.
 
     On one BLAS thread: matrices are so small that a second one makes it five times slower.
     """
     edges = ["   ".join(f"{edge:.1f}" for edge in values[side]) for side in SIDES]
+=======
+    """Figures for the controls' values; for what makes no blade, one sentence in their place."""
+    told = [entry.told(values[name]) for name, entry in RANGES.items()]
+>>>>>>> explore
     try:
         seen = view(settings(**values))
     except ValueError as error:
         kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
         rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
-        return {"edges": edges, "message": str(error), "results": True, **kept, **rows}
+        return {"values": told, "message": str(error), "results": True, **kept, **rows}
     return {
-        "edges": edges,
+        "values": told,
         "message": "",
         "results": False,
         "campbell": campbell_diagram(seen),

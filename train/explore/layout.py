@@ -23,23 +23,30 @@ class Range:
     """What a slider goes through; with several values, one handle each."""
 
     label: str
-    """With the unit."""
+    unit: str
     low: float
     high: float
     step: float
     value: float | list[float]
 
     def control(self, name: str) -> html.Div:
-        """The slider under its label, and its value beside it: to be typed in, or for several handles below."""
+        """The slider under its label and value."""
         limits = {"min": self.low, "max": self.high, "step": self.step, "value": self.value, "marks": None, "updatemode": "drag"}
         if isinstance(self.value, list):
             slider = dcc.RangeSlider(id=name, **limits, pushable=APART, allow_direct_input=False)
-            return _control(self.label, slider, html.Div(id=f"{name}-values", className="values"))
-        return _control(self.label, dcc.Slider(id=name, **limits))
+        else:
+            slider = dcc.Slider(id=name, **limits, allow_direct_input=False)  # an emptied input would stop the handle
+        return _control(self.label, html.Output(id=f"{name}-value"), slider)
+
+    def told(self, value: float | list[float] | None) -> str:
+        """A value as the page writes it, with its unit."""
+        if isinstance(value, list):
+            return ", ".join(f"{edge:.1f}" for edge in value) + f" {self.unit}"
+        return "" if value is None else f"{value:g} {self.unit}".rstrip()
 
 
 def _control(label: str, *children: Any) -> html.Div:
-    return html.Div([html.Div(label), *children], role="group", className="control", **{"aria-label": label})
+    return html.Div([html.Span(label), *children], role="group", className="control", **{"aria-label": label})
 
 
 def _millimetres(edges: tuple[float, ...]) -> list[float]:
@@ -54,12 +61,12 @@ APART = math.ceil(1e3 * THESIS.patches.length / _STEP)
 
 RANGES: Mapping[str, Range] = MappingProxyType(
     {
-        "ply_angle_deg": Range("ply angle from the contour, °", 0.0, 90.0, 1.0, START.ply_angle_deg),
-        "speed": Range("rotor speed, rad/s", 0.0, HIGHEST_SPEED, 5.0, START.speed),
-        "pretwist_deg": Range("pretwist, °", 0.0, 90.0, 1.0, START.pretwist_deg),
-        "taper": Range("taper, root chord over tip chord", 1.0, 3.0, 0.05, START.taper),
-        "actuators": Range("actuators (top wall), mm from the root", 0.0, _LAST, _STEP, _millimetres(START.actuators)),
-        "sensors": Range("sensors (bottom wall), mm from the root", 0.0, _LAST, _STEP, _millimetres(START.sensors)),
+        "ply_angle_deg": Range("ply angle from the contour", "°", 0.0, 90.0, 1.0, START.ply_angle_deg),
+        "speed": Range("rotor speed", "rad/s", 0.0, HIGHEST_SPEED, 5.0, START.speed),
+        "pretwist_deg": Range("pretwist", "°", 0.0, 90.0, 1.0, START.pretwist_deg),
+        "taper": Range("taper, root chord over tip chord", "", 1.0, 3.0, 0.05, START.taper),
+        "actuators": Range("actuators on top, from the root at", "mm", 0.0, _LAST, _STEP, _millimetres(START.actuators)),
+        "sensors": Range("sensors below, from the root at", "mm", 0.0, _LAST, _STEP, _millimetres(START.sensors)),
     }
 )
 CONTROLS = (*RANGES, "load")
@@ -85,7 +92,7 @@ def _introduction() -> str:
     return (
         f"The thesis' box beam, {beam.length:g} m long, {1e3 * beam.width:g} × {1e3 * beam.depth:g} mm at the root, "
         f"with {patches.material} patches of {1e3 * patches.length:g} mm, whose mass and stiffness count. "
-        f"Damping without control is {100.0 * THESIS.damping_ratio:g} % of critical in every mode."
+        f"Damping without control is {100.0 * THESIS.damping_ratio:g} % of critical in every mode, but for gyroscopic coupling."
     )
 
 
