@@ -81,16 +81,11 @@ def outputs() -> dict[str, Any]:
 
 @threadpool_limits.wrap(limits=1)
 def redraw(**values: Any) -> dict[str, Any]:
-<<<<<<< HEAD
     """Figures for the controls' values; for what makes no blade, one sentence in their place.
 
     On one BLAS thread: matrices are so small that a second one makes it five times slower.
     """
-    edges = ["   ".join(f"{edge:.1f}" for edge in values[side]) for side in SIDES]
-=======
-    """Figures for the controls' values; for what makes no blade, one sentence in their place."""
     told = [entry.told(values[name]) for name, entry in RANGES.items()]
->>>>>>> explore
     try:
         seen = view(settings(**values))
     except ValueError as error:
