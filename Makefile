@@ -59,4 +59,4 @@ $(BIN)/python:
 	  echo "beamenv needs Python 3.10 to 3.13, but '$(PYTHON)' is $$($(PYTHON) -V 2>&1): name another with make PYTHON=..." >&2; exit 1; }
 	@$(PYTHON) -m venv --clear .venv || { rm -rf .venv; \
 	  echo "'$(PYTHON) -m venv' failed: on Debian and Ubuntu, install the package python3-venv first." >&2; exit 1; }
-	@echo "Installing into .venv: about a minute, once."
+	@echo "Installing into .venv: about two minutes, once."
