@@ -43,7 +43,7 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
     """The modal model of a blade; ``ValueError`` at or beyond the critical speed or for more modes than trial functions."""
     if not (np.isfinite(speed) and 0.0 <= speed < beam.critical_speed):
         raise ValueError(
-            f"speed = {speed!r} rad/s must be at least 0 and below the critical speed, {beam.critical_speed:.6g} rad/s."
+            f"speed = {float(speed)!r} rad/s must be at least 0 and below the critical speed, {beam.critical_speed:.6g} rad/s."
         )
     if not (isinstance(modes, (int, np.integer)) and 1 <= modes <= beam.space.size):
         raise ValueError(f"modes = {modes!r} must be an integer from 1 to {beam.space.size}, the number of trial functions.")

@@ -88,6 +88,7 @@ def resolve_task(
     config = _in_scenario(config, chosen, chosen.plants.modes)
     own = config if design is None else _design_config(preset, speed, design)
     designed = _in_scenario(own, chosen, chosen.plants.design_modes)
+    _check_failures(chosen, build_plant(config))
     return Task(
         config=config,
         design_config=designed if designed == config else _same_electronics(designed, config),
@@ -95,6 +96,17 @@ def resolve_task(
         steps=round(duration / interval),
         physical_units=bool(physical_units),
     )
+
+
+def _check_failures(chosen: Scenario, plant: Plant) -> None:
+    """``ValueError`` for more broken actuators or sensors than the blade has."""
+    failures = chosen.failures
+    for name, broken, there in (
+        ("dead_actuators", failures.dead_actuators, plant.B.shape[1]),
+        ("faulty_sensors", failures.faulty_sensors, len(plant.C)),
+    ):
+        if broken > there:
+            raise ValueError(f"scenario: failures.{name} is {broken}, but the blade has {there}.")
 
 
 def _in_scenario(config: BladeConfig, chosen: Scenario, modes: int | None) -> BladeConfig:
