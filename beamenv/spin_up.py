@@ -142,9 +142,7 @@ def spin_up_bank(config: BladeConfig, design: BladeConfig, speeds: tuple[float, 
     """One plant for each of ``steps`` control intervals, built once and cached; ``ValueError`` past the critical speed."""
     critical = build_beam(config).critical_speed
     if max(speeds) >= critical:
-        raise ValueError(
-            f"scenario: plants.spin_up is {list(speeds)}, but must stay below the critical speed, {critical:.6g} rad/s."
-        )
+        raise ValueError(f"scenario: plants.spin_up is {list(speeds)}, but must be below the critical speed, {critical:.6g} rad/s.")
     reference, interval = build_plant(config), config.control_interval
     run_up = RunUp.of(config, Cycloid(*speeds, steps * interval))
     edges: Array = interval * np.arange(steps + 1, dtype=np.float64)
