@@ -1,23 +1,23 @@
 """Classical controllers of the blade, and the evaluation that every controller goes through."""
 
-from baselines.clipped_lqg import ClippedLQG, clipped_lqg
-from baselines.controller import Controller, LinearController
-from baselines.episodes import Episodes, roll_out
-from baselines.evaluation import Estimate, Evaluation, evaluate
-from baselines.frequency_response import h_infinity_norm
-from baselines.h_infinity import h_infinity
-from baselines.lqg import lqg
-from baselines.lqr import lqr
-from baselines.margins import StabilityMargins, stability_margins
-from baselines.metrics import EpisodeMetrics
-from baselines.mpc import PredictiveController, mpc
-from baselines.no_control import no_control
-from baselines.persistent_load import PersistentLoad
-from baselines.positive_position_feedback import positive_position_feedback
-from baselines.rotor_lqg import RotorHarmonics, rotor_lqg
-from baselines.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
-from baselines.stationary import closed_loop_poles, stationary_cost
-from baselines.velocity_feedback import velocity_feedback
+from baselines.analysis.frequency_response import h_infinity_norm
+from baselines.analysis.margins import StabilityMargins, stability_margins
+from baselines.analysis.stationary import closed_loop_poles, stationary_cost
+from baselines.design.controller import Controller, LinearController
+from baselines.design.persistent_load import PersistentLoad
+from baselines.evaluation.episodes import Episodes, roll_out
+from baselines.evaluation.evaluate import Estimate, Evaluation, evaluate
+from baselines.evaluation.metrics import EpisodeMetrics
+from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
+from baselines.laws.h_infinity import h_infinity
+from baselines.laws.lqg import lqg
+from baselines.laws.lqr import lqr
+from baselines.laws.mpc import PredictiveController, mpc
+from baselines.laws.no_control import no_control
+from baselines.laws.positive_position_feedback import positive_position_feedback
+from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
+from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
+from baselines.laws.velocity_feedback import velocity_feedback
 
 __all__ = [
     "ClippedLQG",

@@ -11,38 +11,38 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
-from beamenv.named_scenarios import NAMES as BENCHMARK_SCENARIOS
+from beamenv.scenarios.named import NAMES as BENCHMARK_SCENARIOS
 
 if TYPE_CHECKING:
-    from beamenv.configuration import PRESETS, BladeConfig, blade_config, build_plant
-    from beamenv.env import RotatingBeamEnv
-    from beamenv.placement_wrapper import PlacementWrapper, VectorPlacementWrapper
-    from beamenv.plant import Plant, SampledPlant, sample
-    from beamenv.scenarios import SCENARIOS, Scenario, scenario
-    from beamenv.vector_env import RotatingBeamVectorEnv
-    from beamenv.wrappers import SensorHistory, VectorSensorHistory
+    from beamenv.blade.config import PRESETS, BladeConfig, blade_config, build_plant
+    from beamenv.envs.batch import RotatingBeamVectorEnv
+    from beamenv.envs.history import SensorHistory, VectorSensorHistory
+    from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
+    from beamenv.envs.single import RotatingBeamEnv
+    from beamenv.plant.plant import Plant, SampledPlant, sample
+    from beamenv.scenarios.scenario import SCENARIOS, Scenario, scenario
 
 __version__ = "0.1.0"
 
 ENV_ID = "beamenv/RotatingBeam-v0"
 
 _HOMES = {
-    "PRESETS": "configuration",
-    "BladeConfig": "configuration",
-    "blade_config": "configuration",
-    "build_plant": "configuration",
-    "RotatingBeamEnv": "env",
-    "PlacementWrapper": "placement_wrapper",
-    "VectorPlacementWrapper": "placement_wrapper",
-    "Plant": "plant",
-    "SampledPlant": "plant",
-    "sample": "plant",
-    "SCENARIOS": "scenarios",
-    "Scenario": "scenarios",
-    "scenario": "scenarios",
-    "RotatingBeamVectorEnv": "vector_env",
-    "SensorHistory": "wrappers",
-    "VectorSensorHistory": "wrappers",
+    "PRESETS": "blade.config",
+    "BladeConfig": "blade.config",
+    "blade_config": "blade.config",
+    "build_plant": "blade.config",
+    "RotatingBeamEnv": "envs.single",
+    "PlacementWrapper": "envs.placement",
+    "VectorPlacementWrapper": "envs.placement",
+    "Plant": "plant.plant",
+    "SampledPlant": "plant.plant",
+    "sample": "plant.plant",
+    "SCENARIOS": "scenarios.scenario",
+    "Scenario": "scenarios.scenario",
+    "scenario": "scenarios.scenario",
+    "RotatingBeamVectorEnv": "envs.batch",
+    "SensorHistory": "envs.history",
+    "VectorSensorHistory": "envs.history",
 }
 
 __all__ = [
@@ -84,8 +84,8 @@ def _register(env_id: str, **arguments: str) -> None:
     if env_id not in gymnasium.registry:
         gymnasium.register(
             id=env_id,
-            entry_point="beamenv.env:RotatingBeamEnv",
-            vector_entry_point="beamenv.vector_env:RotatingBeamVectorEnv",
+            entry_point="beamenv.envs.single:RotatingBeamEnv",
+            vector_entry_point="beamenv.envs.batch:RotatingBeamVectorEnv",
             kwargs=arguments,
         )
 

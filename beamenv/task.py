@@ -11,12 +11,13 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from beamenv.bank import Bank, build_bank
-from beamenv.configuration import BladeConfig, blade_config, build_plant
-from beamenv.plant import Plant
-from beamenv.scenarios import Scenario, scenario, with_load
-from beamenv.simulation import Motion
-from beamenv.strain_limit import FAILURE_STRAIN
+from beamenv.blade.config import BladeConfig, blade_config, build_plant
+from beamenv.plant.plant import Plant
+from beamenv.scenarios.scenario import Scenario, scenario, with_load
+from beamenv.simulation.blades import Motion
+from beamenv.simulation.plants.bank import Bank
+from beamenv.simulation.plants.banks import build_bank
+from beamenv.simulation.strain_limit import FAILURE_STRAIN
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from mkdocs.structure.files import File, Files
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-SCENARIOS = ROOT / "beamenv" / "named_scenarios"
+SCENARIOS = ROOT / "beamenv" / "scenarios" / "named"
 EXAMPLES = ROOT / "examples"
 
 
@@ -69,7 +69,7 @@ def settings(lines: list[str]) -> list[str]:
 
 def recipe_table() -> str:
     """The recipes that come with the package."""
-    from train.recipe import NAMES, named_recipe
+    from train.learning.recipe import NAMES, named_recipe
 
     found = [(name, named_recipe(name)) for name in NAMES]
     return "\n".join(
@@ -79,8 +79,8 @@ def recipe_table() -> str:
 
 
 def shipped_table() -> str:
-    """The policies in ``train/trained``."""
-    from train.shipped import shipped
+    """The policies in ``train/controllers/trained``."""
+    from train.controllers.shipped import shipped
 
     seeds: dict[tuple[str, str], list[str]] = {}
     for each in shipped():
@@ -95,7 +95,7 @@ def command_line() -> str:
     """Each command with its arguments and options, from the command line itself."""
     import typer.main
 
-    from train.cli import app
+    from train.cli.app import app
 
     group: Any = typer.main.get_command(app)
     return "\n\n".join(command_page(name, command) for name, command in group.commands.items())

@@ -16,7 +16,7 @@ import gymnasium as gym
 import beamenv
 from baselines import evaluate, lqg
 from beamenv.task import resolve_task
-from train.gradient import GradientSettings, train_gradient
+from train.learning.through_plant.gradient import GradientSettings, train_gradient
 
 task = resolve_task("thesis", None, None, None, "deflection", 0.5, False)
 learning = []

@@ -71,7 +71,7 @@ def test_citation_cites_the_software_and_the_thesis():
 
 
 def test_command_without_the_train_extra_says_how_to_install_it():
-    hide_typer_and_torch = "import sys; sys.modules.update(typer=None, torch=None); from train.command import main; main()"
+    hide_typer_and_torch = "import sys; sys.modules.update(typer=None, torch=None); from train.cli.command import main; main()"
     run = subprocess.run([sys.executable, "-c", hide_typer_and_torch, "--help"], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 1
     assert run.stderr.count("\n") == 1
@@ -84,7 +84,7 @@ def test_command_without_the_train_extra_says_how_to_install_it():
 ENVIRONMENT = {
     f"beamenv.{module}" for module in ("env", "vector_env", "mixed_blades", "placement_wrapper", "wrappers", "rendering", "render")
 }
-STRUCTURE, PATCHES, PLANT = "beamenv.structure", "beamenv.patches", "beamenv.plant"
+STRUCTURE, PATCHES, PLANT = "beamenv.structure", "beamenv.patches", "beamenv.plant.plant"
 
 
 def dotted_name(path):

@@ -9,10 +9,10 @@ import tempfile
 from functools import lru_cache
 from pathlib import Path
 
-from baselines.placement.problem import PlacementProblem
-from baselines.placement.search import place
-from beamenv.configuration import BladeConfig, to_dict
-from beamenv.layouts import SIDES, Positions, Side, positions_of, with_positions
+from baselines.placement.cost.problem import PlacementProblem
+from baselines.placement.search.search import place
+from beamenv.blade.config import BladeConfig, to_dict
+from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_positions
 
 METHOD, SEED = "multistart", 0
 """It met the best layout known with every seed tried; the thesis' GA and SQP miss it by 1 to 2 % now and then."""

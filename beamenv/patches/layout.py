@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamenv.patches.material import PATCH_MATERIALS, PatchMaterial
-from beamenv.structure.arguments import is_number
-from beamenv.structure.contour import Inlay
+from beamenv.structure.checks import is_number
+from beamenv.structure.walls.contour import Inlay
 
 ACTUATOR_WALL, SENSOR_WALL = "top", "bottom"
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.structure.contour import Inlay
-from beamenv.structure.laminate import Ply, power_integrals
-from beamenv.structure.materials import Lamina, strain_rotation
+from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.laminate import Ply, power_integrals
+from beamenv.structure.walls.materials import Lamina, strain_rotation
 
 Array = NDArray[np.float64]
 
@@ -38,10 +38,6 @@ class PatchMaterial:
     def free_strain(self, voltage: float) -> float:
         """Strain along the span of an unloaded sheet."""
         return self.d11 * voltage / self.electrode_spacing
-
-    def blocking_force(self, voltage: float, width: float) -> float:
-        """Force (N) of a sheet of given width (m) held at constant length and free across."""
-        return self.lamina.E1 * self.free_strain(voltage) * width * self.thickness
 
     def stress_in_wall(self) -> Array:
         """(3,): piezoelectric stress in the wall's (ss, zz, sz) per field, C/m²."""

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.mixed_blades import MixedBlades
 from beamenv.rendering.history import Instant
 from beamenv.rendering.renderer import BladeRenderer
-from beamenv.simulation import Blades, Motion
+from beamenv.simulation.blades import Blades, Motion
+from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.task import Task
 
 Rows = NDArray[np.int64]

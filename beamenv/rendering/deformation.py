@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.bank import varied
-from beamenv.configuration import build_beam, changed_blade, displacement_operator
-from beamenv.reduction import truncate
-from beamenv.spin_up import Cycloid, RunUp
+from beamenv.blade.config import build_beam, changed_blade, displacement_operator
+from beamenv.plant.reduction import truncate
+from beamenv.simulation.plants.banks import varied
+from beamenv.simulation.plants.spin_up import Cycloid, RunUp
 from beamenv.task import Task
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from beamenv.rendering.history import WINDOW, History, Instant
 from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
 from beamenv.rendering.scene import Scene
 from beamenv.rendering.window import Window
-from beamenv.simulation import reward_scale
+from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 
 Array = NDArray[np.float64]

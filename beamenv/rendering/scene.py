@@ -7,7 +7,7 @@ from collections.abc import Container
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import BladeConfig
+from beamenv.blade.config import BladeConfig
 from beamenv.rendering.camera import Camera, faces_camera
 from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.palette import INK, OUTPUT_SCALE, PALE, QUIET, VOLTAGE_SCALE, colour_table, colours_of

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import BladeConfig, build_plant
-from beamenv.loads import static_deflection
-from beamenv.reduction import REFERENCE_LOAD
+from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.scenarios.load_cases import static_deflection
 
 Array = NDArray[np.float64]
 

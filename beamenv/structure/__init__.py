@@ -1,11 +1,11 @@
 """Structural mechanics of rotating thin-walled composite blades (thesis chapters 2 and 3)."""
 
 from beamenv.structure.beam import RotatingBeam
-from beamenv.structure.contour import Inlay
-from beamenv.structure.laminate import Laminate, Layup, Ply
-from beamenv.structure.materials import AS4_3501_6, GRAPHITE_EPOXY, Lamina
 from beamenv.structure.modes import Modes
-from beamenv.structure.section import BoxSection, PolygonSection, Section
+from beamenv.structure.section.section import BoxSection, PolygonSection, Section
+from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.laminate import Laminate, Layup, Ply
+from beamenv.structure.walls.materials import AS4_3501_6, GRAPHITE_EPOXY, Lamina
 
 __all__ = [
     "AS4_3501_6",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.structure.inertia import SectionInertia
+from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.trial_functions import Stations, TrialSpace
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from beamenv.structure.assembly import generalised_displacements
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
 from beamenv.structure.trial_functions import Stations
-from beamenv.structure.wall_kinematics import DS, DTY, DU, DU1
+from beamenv.structure.walls.wall_kinematics import DS, DTY, DU, DU1
 
 Array = NDArray[np.float64]
 

@@ -8,13 +8,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.structure.arguments import check_positive, is_count, is_number
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
-from beamenv.structure.contour import Inlay
-from beamenv.structure.laminate import Layup
+from beamenv.structure.checks import check_positive, is_count, is_number
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
-from beamenv.structure.section import Section, SpanWalls, check_theory
+from beamenv.structure.section.section import Section, SpanWalls, check_theory
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
+from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.laminate import Layup
 
 Array = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beamenv.plant import Plant
+from beamenv.plant.plant import Plant
 
 
 def small_plant(**changes):

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from baselines.box_qp import BoxQP
+from baselines.design.box_qp import BoxQP
 
 HESSIAN = np.array([[2.0, 1.0], [1.0, 2.0]])
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from baselines import PersistentLoad, lqg
-from baselines.clipped_lqg import clipped_lqg
-from beamenv.plant import sample
+from baselines.laws.clipped_lqg import clipped_lqg
+from beamenv.plant.plant import sample
 
 
 @pytest.mark.parametrize("load", [None, PersistentLoad()])

@@ -15,11 +15,11 @@ from baselines import (
     rotor_lqg,
     velocity_feedback,
 )
-from baselines.controller import Controller
-from baselines.persistent_load import PersistentLoad, with_persistent_load
-from baselines.riccati import sampled_kalman_filter, sampled_regulator
-from baselines.stationary import stationary_cost
-from beamenv.plant import sample
+from baselines.analysis.stationary import stationary_cost
+from baselines.design.controller import Controller
+from baselines.design.persistent_load import PersistentLoad, with_persistent_load
+from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
+from beamenv.plant.plant import sample
 
 LAWS = {
     "no control": no_control,

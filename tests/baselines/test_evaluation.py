@@ -10,8 +10,8 @@ from gymnasium.vector import AutoresetMode
 
 import beamenv
 from baselines import PersistentLoad, evaluate, lqg, lqr, no_control, roll_out, velocity_feedback
-from baselines.episodes import Episodes
-from baselines.metrics import measure, settling_band
+from baselines.evaluation.episodes import Episodes
+from baselines.evaluation.metrics import measure, settling_band
 
 SHORT = {"duration": 0.05}
 

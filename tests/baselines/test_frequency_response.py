@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from baselines import lqg, no_control, stationary_cost
-from baselines.frequency_response import cost_response, frequency_response, h_infinity_norm, square_root
-from baselines.velocity_feedback import velocity_feedback
-from beamenv.plant import sample
+from baselines.analysis.frequency_response import cost_response, frequency_response, h_infinity_norm, square_root
+from baselines.laws.velocity_feedback import velocity_feedback
+from beamenv.plant.plant import sample
 
 
 def test_a_first_order_lag_has_its_response_by_hand():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from baselines import lqg, stationary_cost
-from baselines.frequency_response import h_infinity_norm
-from baselines.h_infinity import h_infinity, h_infinity_law, least_attenuation
-from beamenv.plant import sample
+from baselines.analysis.frequency_response import h_infinity_norm
+from baselines.laws.h_infinity import h_infinity, h_infinity_law, least_attenuation
+from beamenv.plant.plant import sample
 
 
 @pytest.fixture(name="blade", scope="module")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from baselines import lqg, lqr, no_control, stationary_cost
-from baselines.controller import static_law
-from baselines.margins import stability_margins
-from baselines.velocity_feedback import velocity_feedback
+from baselines.analysis.margins import stability_margins
+from baselines.design.controller import static_law
+from baselines.laws.velocity_feedback import velocity_feedback
 
 
 def integrator(scalar_plant, gain, interval=0.5):

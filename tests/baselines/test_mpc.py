@@ -7,8 +7,8 @@ from scipy.optimize import lsq_linear
 
 import beamenv
 from baselines import PersistentLoad, evaluate, lqg, mpc
-from baselines.lqg import sampled_design
-from baselines.mpc import doubling_blocks
+from baselines.laws.lqg import sampled_design
+from baselines.laws.mpc import doubling_blocks
 
 LOADS = {"no load estimate": None, "load estimate": PersistentLoad()}
 BLOCKS = {"every interval": [1] * 6, "blocks": [1, 1, 2, 3], "one move held": [4]}

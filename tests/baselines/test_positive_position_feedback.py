@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from baselines import closed_loop_poles, no_control, stationary_cost
-from baselines.positive_position_feedback import positive_position_feedback
+from baselines.laws.positive_position_feedback import positive_position_feedback
 
 OMEGA, DAMPING = 200.0, 0.01
 ALMOST_NO_LEAK = 1e-5

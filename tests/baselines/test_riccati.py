@@ -4,8 +4,8 @@ import control
 import numpy as np
 import pytest
 
-from baselines.riccati import kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
-from beamenv.plant import sample
+from baselines.design.riccati import kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
+from beamenv.plant.plant import sample
 
 
 def test_scalar_regulator_solves_the_quadratic_by_hand():

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from baselines import PersistentLoad, lqg, stationary_cost
-from baselines.frequency_response import cost_response
-from baselines.load_model import with_load
-from baselines.rotor_lqg import RotorHarmonics, rotor_lqg
-from beamenv.plant import sample
+from baselines.analysis.frequency_response import cost_response
+from baselines.design.load_model import with_load
+from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
+from beamenv.plant.plant import sample
 
 SPEED = 100.0
 

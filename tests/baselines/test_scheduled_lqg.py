@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from baselines import PersistentLoad, lqg, stationary_cost
-from baselines.scheduled_lqg import scheduled_lqg, scheduled_lqg_for
-from beamenv.configuration import THESIS, build_plant
-from beamenv.scheduling import speed_family
+from baselines.laws.scheduled_lqg import scheduled_lqg, scheduled_lqg_for
+from beamenv.blade.config import THESIS, build_plant
+from beamenv.simulation.plants.speed_family import speed_family
 
 SPEEDS = np.array([100.0, 130.0, 160.0, 180.0, 200.0, 220.0])
 

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from baselines import lqg, lqr, no_control, velocity_feedback
-from baselines.riccati import sampled_kalman_filter, sampled_regulator
-from baselines.stationary import closed_loop_poles, stationary_cost
-from beamenv.plant import sample
+from baselines.analysis.stationary import closed_loop_poles, stationary_cost
+from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
+from beamenv.plant.plant import sample
 
 GAINS = ("transition", "measurement_input", "voltage_input", "state_gain", "measurement_gain")
 

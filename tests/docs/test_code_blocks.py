@@ -53,7 +53,7 @@ def test_commands_exist_with_the_options_they_are_given(page):
     pytest.importorskip("typer")
     from typer.main import get_command
 
-    from train.cli import app
+    from train.cli.app import app
 
     group = get_command(app)
     targets = set(re.findall(r"^([a-z][\w ]*):", (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE))

@@ -39,7 +39,7 @@ def test_no_page_loads_anything_from_the_net(site):
 
 def test_every_scenario_every_command_and_every_example_has_its_place(site):
     scenarios = (site / "scenarios.html").read_text(encoding="utf-8")
-    assert all(file.stem in scenarios for file in (ROOT / "beamenv" / "named_scenarios").glob("*.toml"))
+    assert all(file.stem in scenarios for file in (ROOT / "beamenv" / "scenarios" / "named").glob("*.toml"))
     assert all((site / "examples" / f"{file.stem}.html").is_file() for file in (ROOT / "examples").glob("[0-9]*.py"))
     assert "beamenv frequencies" in (site / "cli.html").read_text(encoding="utf-8")
 

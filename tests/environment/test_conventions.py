@@ -105,7 +105,7 @@ def test_a_script_in_cleanrl_s_manner_learns_on_it():
 
 
 def zoo_settings():
-    text = (Path(__file__).parents[2] / "train" / "zoo" / "ppo.yml").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "train" / "learning" / "zoo" / "ppo.yml").read_text(encoding="utf-8")
     return yaml.safe_load(text)[beamenv.ENV_ID]
 
 

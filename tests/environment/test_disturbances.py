@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.disturbances import BLOCK, SeededDisturbances, SharedDisturbances, noise_factor
-from beamenv.scenarios import SCENARIOS, draw_load_cases
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.scenarios.scenario import SCENARIOS, draw_load_cases
+from beamenv.simulation.signals.disturbances import BLOCK, SeededDisturbances, SharedDisturbances, noise_factor
 
 PLANT = build_plant(blade_config())
 SENSORS = len(PLANT.C)

@@ -7,8 +7,8 @@ from scipy.linalg import expm
 
 import beamenv
 from beamenv import RotatingBeamEnv
-from beamenv.loads import static_deflection
-from beamenv.simulation import FAILURE_STRAIN, reward_scale
+from beamenv.scenarios.load_cases import static_deflection
+from beamenv.simulation.blades import FAILURE_STRAIN, reward_scale
 
 
 def quiet(**arguments):

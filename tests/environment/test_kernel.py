@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.kernel import Operators, advance
-from beamenv.plant import sample
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.plant.plant import sample
+from beamenv.simulation.kernel import Operators, advance
 
 PLANT = build_plant(blade_config())
 OPERATORS = Operators.from_plant(PLANT)

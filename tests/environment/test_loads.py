@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.loads import CASES, NEVER, LoadCases, static_deflection
-from beamenv.scenarios import SCENARIOS, Scenario, draw_load_cases, scenario, with_load
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.scenarios.load_cases import CASES, NEVER, LoadCases, static_deflection
+from beamenv.scenarios.scenario import SCENARIOS, Scenario, draw_load_cases, scenario, with_load
 
 PLANT = build_plant(blade_config())
 

@@ -83,7 +83,7 @@ def test_importing_twice_registers_once():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         importlib.reload(beamenv)
-    assert gymnasium.spec("beamenv/RotatingBeam-v0").entry_point == "beamenv.env:RotatingBeamEnv"
+    assert gymnasium.spec("beamenv/RotatingBeam-v0").entry_point == "beamenv.envs.single:RotatingBeamEnv"
 
 
 def test_every_public_name_is_there():
@@ -114,7 +114,7 @@ def test_every_argument_is_documented(cls):
     assert not [name for name in names if f"`{name}`" not in cls.__doc__ and f"``{name}``" not in cls.__doc__]
 
 
-@pytest.mark.parametrize("module", ["beamenv.env", "beamenv.vector_env"])
+@pytest.mark.parametrize("module", ["beamenv.envs.single", "beamenv.envs.batch"])
 def test_examples_in_the_docstrings_run(module):
     results = doctest.testmod(importlib.import_module(module))
     assert results.attempted > 0

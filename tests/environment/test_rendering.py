@@ -13,8 +13,8 @@ from gymnasium.utils.env_checker import check_env
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, blade_config, build_plant
-from beamenv.configuration import displacement_operator
-from beamenv.loads import static_deflection
+from beamenv.blade.config import displacement_operator
+from beamenv.scenarios.load_cases import static_deflection
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("pygame")

@@ -6,7 +6,7 @@ import pytest
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, SensorHistory, VectorSensorHistory
-from beamenv.wrappers import RollingHistory
+from beamenv.envs.history import RollingHistory
 
 
 def test_a_history_holds_readings_and_the_voltages_before_them_oldest_first():

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import LinearConstraint, minimize
 
+from beamenv.blade.bounds import Bounds
 from beamenv.patches import PatchLayout
-from beamenv.patches.bounds import Bounds
 
 SPAN = 2.023
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from baselines.placement.contributions import contributions
-from baselines.placement.intervals import Intervals, PatchEdges
-from baselines.placement.layout_model import layout_matrices, matrix_slopes
-from beamenv.configuration import blade_config, build_beam
+from baselines.placement.model.contributions import contributions
+from baselines.placement.model.intervals import Intervals, PatchEdges
+from baselines.placement.model.layout_model import layout_matrices, matrix_slopes
+from beamenv.blade.config import blade_config, build_beam
 from beamenv.patches import actuation, sensing
 from beamenv.structure.modes import normal_modes
 

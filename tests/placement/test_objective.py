@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from baselines.design.riccati import kalman_filter, regulator
 from baselines.placement import PlacementProblem
-from baselines.riccati import kalman_filter, regulator
-from beamenv.configuration import blade_config, build_plant
+from beamenv.blade.config import blade_config, build_plant
 
 CASES = [("thesis", {}), ("thesis", {"patches": {"ganged": True}}), ("thesis", {"gyroscopic": False}), ("chandra-chopra", {})]
 

@@ -7,10 +7,10 @@ import pytest
 from typer.testing import CliRunner
 
 from baselines.placement import METHODS, PlacementProblem, place
-from beamenv.configuration import blade_config
-from train.cli import app
-from train.place import place_sides
-from train.placement_picture import cost_along_span
+from beamenv.blade.config import blade_config
+from train.cli.app import app
+from train.placement.picture import cost_along_span
+from train.placement.placed import place_sides
 
 
 def run(*arguments):

@@ -10,9 +10,9 @@ from gymnasium.utils.env_checker import check_env
 
 from baselines import lqg
 from baselines.placement import PlacementProblem, optimal_layout, place
-from baselines.placement.genetic import Genetic
+from baselines.placement.search.genetic import Genetic
 from beamenv import ENV_ID, PlacementWrapper, SensorHistory, VectorPlacementWrapper, blade_config, build_plant
-from beamenv.patches.bounds import Bounds
+from beamenv.blade.bounds import Bounds
 
 ELSEWHERE = {"actuators": [0.0, 0.2, 0.4, 0.6], "sensors": [0.1, 0.2, 0.3, 0.4]}
 

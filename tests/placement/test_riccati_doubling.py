@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_continuous_are
 
-import baselines.placement.riccati as riccati
-from baselines.placement.equations import filter_equation, regulator_equation
-from baselines.placement.problem import PlacementProblem
-from baselines.placement.riccati import relative_residual, solve_riccati
-from beamenv.configuration import blade_config
+import baselines.placement.cost.riccati as riccati
+from baselines.placement.cost.problem import PlacementProblem
+from baselines.placement.cost.riccati import relative_residual, solve_riccati
+from baselines.placement.model.equations import filter_equation, regulator_equation
+from beamenv.blade.config import blade_config
 
 
 def by_scipy(A, G, Q):

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from baselines.placement import METHODS, PlacementProblem, place, reach
-from baselines.placement.evolution import Evolution
-from baselines.placement.genetic import Genetic, decoded, encoded
-from baselines.placement.grid import Grid
-from baselines.placement.search import InTurn
-from baselines.placement.sqp import MultiStart, SequentialQuadratic
-from beamenv.configuration import blade_config
+from baselines.placement.search.evolution import Evolution
+from baselines.placement.search.genetic import Genetic, decoded, encoded
+from baselines.placement.search.grid import Grid
+from baselines.placement.search.search import InTurn
+from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
+from beamenv.blade.config import blade_config
 
 QUICK = {
     "ga": Genetic(population=10, generations=4),

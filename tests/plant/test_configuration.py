@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from beamenv.configuration import PRESETS, blade_config, build_plant, from_dict, load_config, to_dict
+from beamenv.blade.config import PRESETS, blade_config, build_plant, from_dict, load_config, to_dict
 
 
 @pytest.mark.parametrize("preset", PRESETS)

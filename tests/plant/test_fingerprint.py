@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.plant import fingerprint
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.plant.plant import fingerprint
 
 
 @pytest.fixture(scope="module")

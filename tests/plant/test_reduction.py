@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.configuration import blade_config, build_beam, build_plant, displacement_operator
+from beamenv.blade.config import blade_config, build_beam, build_plant, displacement_operator
 from beamenv.patches import actuation, sensing
-from beamenv.plant import sample
-from beamenv.reduction import REFERENCE_LOAD, truncate
+from beamenv.plant.plant import sample
+from beamenv.plant.reduction import REFERENCE_LOAD, truncate
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.newmark import NewmarkScheme, newmark
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.plant import sample
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.plant.plant import sample
 
 
 @pytest.fixture(scope="module")

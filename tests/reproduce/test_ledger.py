@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from train.reproduce.catalogue import NAMES, STUDIES, chosen
-from train.reproduce.ledger import ROWS
-from train.reproduce.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Small, Substantial, Verdict
+from train.reproduce.judging.ledger import ROWS
+from train.reproduce.judging.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Small, Substantial, Verdict
 
 BY_NAME = {study.name: study for study in STUDIES}
 DECIDED = [row for row in ROWS if row.decided_by]

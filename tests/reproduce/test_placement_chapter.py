@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.configuration import blade_config
-from beamenv.thesis import Model, printed_table
-from train.placement_study import COUNTS, SPEEDS, table_row
+from beamenv.blade.config import blade_config
 from train.reproduce.catalogue import STUDIES
-from train.reproduce.chapter6_columns import all_header, all_rows, four_header, four_panels, four_rows
-from train.reproduce.chapter6_layouts import placed_blade
-from train.reproduce.chapter6_tables import printed_cost, speed_orders
+from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.runner import source_fingerprint
-from train.reproduce.verdicts import Verdict
+from train.reproduce.studies.chapter6_columns import all_header, all_rows, four_header, four_panels, four_rows
+from train.reproduce.studies.chapter6_layouts import placed_blade
+from train.reproduce.studies.chapter6_tables import printed_cost, speed_orders
+from train.reproduce.studies.placement_study import COUNTS, SPEEDS, table_row
+from train.reproduce.thesis import Model, printed_table
 
 BY_NAME = {study.name: study for study in STUDIES}
 

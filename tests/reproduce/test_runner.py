@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from beamenv.thesis import Model
-from train.cli import app
+from train.cli.app import app
 from train.reproduce.catalogue import chosen
+from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.reproduce.judging.verdicts import Holds, Verdict
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import load, run, source_fingerprint
-from train.reproduce.study import Curve, Outcome, Panel, Statement, Study
-from train.reproduce.verdicts import Holds, Verdict
+from train.reproduce.thesis import Model
 
 
 def counted(name="figure-3.2", fails=False):

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import pytest
 
-from beamenv.thesis import Model
 from train.reproduce.catalogue import STUDIES, chosen
-from train.reproduce.verdicts import Verdict
+from train.reproduce.judging.verdicts import Verdict
+from train.reproduce.thesis import Model
 
 BY_NAME = {study.name: study for study in STUDIES}
 AS_JUDGED = {

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from train.reproduce.verdicts import (
+from train.reproduce.judging.verdicts import (
     Below,
     Changes,
     Holds,

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from baselines import lqg
-from baselines.stationary import closed_loop_poles
+from baselines.analysis.stationary import closed_loop_poles
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
-from beamenv.bank import build_bank, varied
-from beamenv.configuration import blade_config, build_plant, changed_blade
-from beamenv.kernel import Operators
-from beamenv.loads import static_deflection
-from beamenv.plant import normalised
-from beamenv.scenarios import SCENARIOS
+from beamenv.blade.config import blade_config, build_plant, changed_blade
+from beamenv.plant.plant import normalised
+from beamenv.scenarios.load_cases import static_deflection
+from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.scenarios.tables import PlantVariation
+from beamenv.simulation.kernel import Operators
+from beamenv.simulation.plants.banks import build_bank, varied
 from beamenv.task import resolve_task
-from beamenv.troubles import PlantVariation
 
 CONFIG = blade_config()
 

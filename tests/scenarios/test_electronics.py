@@ -6,9 +6,9 @@ from scipy.stats import binomtest, chisquare
 
 from baselines import lqg
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
-from beamenv.electronics import DRAWS, Faults, SignalMemory, acquire, draw_faults, drive
-from beamenv.scenarios import SCENARIOS
-from beamenv.troubles import Failures
+from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.scenarios.tables import Failures
+from beamenv.simulation.signals.faults import DRAWS, Faults, SignalMemory, acquire, draw_faults, drive
 
 CASES = dict.fromkeys(("step", "pulse", "deflection", "harmonic"), 0.0)
 QUIET = {**CASES, "white_load": False, "sensor_noise": False}

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamenv import RotatingBeamEnv
-from beamenv.hysteresis import PLAYS, prandtl_ishlinskii
+from beamenv.simulation.signals.hysteresis import PLAYS, prandtl_ishlinskii
 
 LOW, HIGH = -500.0, 1500.0
 OPERATOR = prandtl_ishlinskii(0.2, LOW, HIGH)

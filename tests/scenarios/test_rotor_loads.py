@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
-from beamenv.scenarios import SCENARIOS, draw_load_cases, scenario
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.scenarios.scenario import SCENARIOS, draw_load_cases, scenario
+from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 
 PLANT = build_plant(blade_config())
 ROTOR = SCENARIOS["rotor"].rotor

@@ -14,7 +14,7 @@ from gymnasium.utils.env_checker import check_env
 
 import beamenv
 from beamenv import BENCHMARK_SCENARIOS, RotatingBeamEnv, scenarios
-from beamenv.scenarios import SCENARIOS, load_scenario, scenario
+from beamenv.scenarios.scenario import SCENARIOS, load_scenario, scenario
 
 GUST = """
 preset = "rotor"

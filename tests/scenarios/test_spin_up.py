@@ -8,8 +8,8 @@ from numpy.polynomial import chebyshev
 from scipy.integrate import solve_ivp
 
 from beamenv import RotatingBeamEnv
-from beamenv.configuration import blade_config, build_beam
-from beamenv.spin_up import Cycloid, RunUp
+from beamenv.blade.config import blade_config, build_beam
+from beamenv.simulation.plants.spin_up import Cycloid, RunUp
 
 CONFIG = blade_config()
 COURSE = Cycloid(100.0, 300.0, 0.5)

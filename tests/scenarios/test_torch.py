@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.bank import build_bank
-from beamenv.configuration import blade_config
-from beamenv.electronics import Faults, SignalMemory, acquire, drive
-from beamenv.hysteresis import prandtl_ishlinskii
-from beamenv.kernel import advance
-from beamenv.scenarios import SCENARIOS
+from beamenv.blade.config import blade_config
+from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.simulation.kernel import advance
+from beamenv.simulation.plants.banks import build_bank
+from beamenv.simulation.signals.faults import Faults, SignalMemory, acquire, drive
+from beamenv.simulation.signals.hysteresis import prandtl_ishlinskii
 
 torch = pytest.importorskip("torch")
 BLADES = 6

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection, RotatingBeam
-from beamenv.structure.wall_kinematics import DISPLACEMENTS, STRAINS, motion_rows, transverse_shear_rows
+from beamenv.structure.walls.wall_kinematics import DISPLACEMENTS, STRAINS, motion_rows, transverse_shear_rows
 
 ALUMINIUM = Lamina.isotropic(E=70e9, nu=0.3, density=2700.0)
 ISOTROPIC = Layup.uniform(ALUMINIUM, angles_deg=[0])

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamenv.structure import GRAPHITE_EPOXY, Lamina, Laminate, Ply
-from beamenv.structure.laminate import wall_law
+from beamenv.structure.walls.laminate import wall_law
 
 E, NU, H = 70e9, 0.3, 0.004
 G = E / (2.0 * (1.0 + NU))

@@ -3,7 +3,7 @@ import time
 import numpy as np
 import pytest
 
-from beamenv.configuration import BeamConfig
+from beamenv.blade.config import BeamConfig
 from beamenv.structure.sweep import frequency_sweep
 
 BOX = BeamConfig(ply_angles_deg=(0.0,) * 6, pretwist_deg=0.0)

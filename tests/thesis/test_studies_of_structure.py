@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 
-from beamenv.thesis import Model, printed_table
-from beamenv.thesis.configurations import antisymmetric
-from beamenv.thesis.couplings import coupled_fields, subsystems
-from beamenv.thesis.frequencies import presetting_and_speed, printed_presettings, wall_thickness
-from beamenv.thesis.printed import numbers
-from beamenv.thesis.response import ForcedBlade, settling_time
-from beamenv.thesis.shapes import STATIONS, family_shapes
-from beamenv.thesis.veering import exchange, locate_veering
+from train.reproduce.thesis import Model, printed_table
+from train.reproduce.thesis.configurations import antisymmetric
+from train.reproduce.thesis.couplings import coupled_fields, subsystems
+from train.reproduce.thesis.frequencies import presetting_and_speed, printed_presettings, wall_thickness
+from train.reproduce.thesis.printed import numbers
+from train.reproduce.thesis.response import ForcedBlade, settling_time
+from train.reproduce.thesis.shapes import STATIONS, family_shapes
+from train.reproduce.thesis.veering import exchange, locate_veering
 
 MODEL = Model()
 

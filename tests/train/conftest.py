@@ -20,9 +20,9 @@ def ticking():
     @contextmanager
     def clock(seconds):
         with pytest.MonkeyPatch.context() as patch:
-            for timed in ("gradient", "session"):
+            for timed in ("through_plant.gradient", "session"):
                 readings = itertools.count()
-                patch.setattr(f"train.{timed}.time", SimpleNamespace(monotonic=lambda kept=readings: seconds * next(kept)))
+                patch.setattr(f"train.learning.{timed}.time", SimpleNamespace(monotonic=lambda kept=readings: seconds * next(kept)))
             yield
 
     return clock

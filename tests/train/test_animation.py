@@ -7,7 +7,7 @@ pytest.importorskip("PIL")
 
 from PIL import Image
 
-from train.animation import MS_PER_PICTURE, SIZE, write_animation
+from train.tools.animation import MS_PER_PICTURE, SIZE, write_animation
 
 
 def test_an_animation_shows_two_blades_that_differ_once_lqg_acts(tmp_path):

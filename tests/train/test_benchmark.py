@@ -10,15 +10,15 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg
-from beamenv.plant import fingerprint
-from train import contenders
+from beamenv.plant.plant import fingerprint
+from train.controllers import contenders
 from train.benchmark import benchmark
-from train.benchmark.entrants import agents
+from train.benchmark.entrants.entrants import agents
 from train.benchmark.targets import findings
-from train.compare import HELD_OUT
-from train.contenders import contender, discover
-from train.policies import HistoryPolicy
-from train.policy_files import save_policy
+from train.controllers.contenders import contender, discover
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import save_policy
+from train.shared.held_out import HELD_OUT
 
 SHORT = {"duration": 0.02}
 SMALL = {"scenarios": ["nominal", "spillover"], "controllers": ["lqg-load"], "seeds": 3, "environment": SHORT}
@@ -191,7 +191,7 @@ def test_a_file_in_the_folder_is_a_contender(tmp_path, monkeypatch):
 def test_a_contender_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
     (tmp_path / "wrong.py").write_text(content)
     monkeypatch.setattr(contenders, "__path__", [str(tmp_path)])
-    sys.modules.pop("train.contenders.wrong", None)
+    sys.modules.pop("train.controllers.contenders.wrong", None)
     with pytest.raises(ValueError, match=sentence):
         discover()
 

@@ -5,7 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from train.cli import app
+from train.cli.app import app
 
 SMALL = ("benchmark", "--scenario", "deflection", "--controller", "lqg", "--seeds", "2", "--jobs", "1")
 

@@ -7,10 +7,10 @@ from stable_baselines3 import PPO, SAC
 
 import beamenv
 from baselines import evaluate
-from beamenv.configuration import blade_config, build_plant
+from beamenv.blade.config import blade_config, build_plant
 from train.benchmark import benchmark
-from train.benchmark.models import fitted, load_model
-from train.compare import HELD_OUT
+from train.benchmark.entrants.models import fitted, load_model
+from train.shared.held_out import HELD_OUT
 
 SHORT = {"duration": 0.02}
 SMALL = {"scenarios": ["nominal"], "controllers": [], "seeds": 3, "environment": SHORT}

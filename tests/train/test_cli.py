@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from beamenv.configuration import blade_config, build_beam
-from train.cli import app
+from beamenv.blade.config import blade_config, build_beam
+from train.cli.app import app
 
 COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")
 

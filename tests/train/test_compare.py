@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import beamenv
-import train.compare
-from train.agents import train_agent
-from train.compare import CLASSICAL, Comparison, Listener, compare, read_curve
-from train.comparison_page import shown_pair
-from train.contenders import contender
-from train.policies import HistoryPolicy
-from train.policy_files import load_policy
+import train.comparison.compare
+from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve
+from train.comparison.page import shown_pair
+from train.controllers.contenders import contender
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import load_policy
+from train.learning.agents import train_agent
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
 
@@ -104,7 +104,7 @@ def test_a_second_run_goes_on_from_the_trained_agents(finished, monkeypatch):
     def refuse(*arguments):
         raise AssertionError("trained again")
 
-    monkeypatch.setattr(train.compare, "train_agent", refuse)
+    monkeypatch.setattr(train.comparison.compare, "train_agent", refuse)
     again = compare(SMALL, folder)
     assert [evaluation.relative_cost for evaluation in again] == [evaluation.relative_cost for evaluation in evaluations]
 
@@ -137,7 +137,7 @@ def test_ctrl_c_ends_a_training_and_goes_on_to_the_evaluation(tmp_path):
 
 @pytest.mark.parametrize("agent", ["gradient", "ppo"])
 def test_a_training_that_ends_before_its_first_report_is_evaluated_all_the_same(agent, tmp_path, monkeypatch):
-    monkeypatch.setattr(train.compare, "train_agent", lambda *arguments: IDLE)
+    monkeypatch.setattr(train.comparison.compare, "train_agent", lambda *arguments: IDLE)
     evaluations = compare(Comparison({"duration": 0.05}, {agent: 1.0}, seeds=2), tmp_path)
     assert len(evaluations) == len(CLASSICAL) + 1
     assert read_curve(tmp_path, agent).shape == (0, 3)

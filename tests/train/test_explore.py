@@ -12,11 +12,11 @@ import pytest
 from typer.testing import CliRunner
 
 from baselines import closed_loop_poles, lqg
-from baselines.lqg import sampled_design
-from beamenv.configuration import THESIS, build_beam, build_plant
-from beamenv.loads import static_deflection
-from beamenv.plant import drive_limit, sample
-from train.cli import app as command
+from baselines.laws.lqg import sampled_design
+from beamenv.blade.config import THESIS, build_beam, build_plant
+from beamenv.plant.plant import drive_limit, sample
+from beamenv.scenarios.load_cases import static_deflection
+from train.cli.app import app as command
 
 pytest.importorskip("dash", reason="dash is not installed")
 go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")
@@ -256,7 +256,7 @@ def test_a_port_that_is_none_is_refused_in_one_sentence():
 
 @pytest.mark.parametrize("hidden", ["dash", "werkzeug"])
 def test_without_its_extra_the_command_says_how_to_install_it(hidden):
-    hide = f"import sys; sys.modules.update({hidden}=None); from train.command import main; main()"
+    hide = f"import sys; sys.modules.update({hidden}=None); from train.cli.command import main; main()"
     run = subprocess.run([sys.executable, "-c", hide, "explore"], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 1
     assert run.stderr.count("\n") == 1

@@ -7,15 +7,15 @@ import torch
 
 import beamenv
 from baselines import PersistentLoad, clipped_lqg, evaluate
-from beamenv.configuration import blade_config, build_plant
-from beamenv.kernel import Operators, advance
-from beamenv.plant import normalised
-from beamenv.simulation import Blades
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.plant.plant import normalised
+from beamenv.simulation.blades import Blades
+from beamenv.simulation.kernel import Operators, advance
 from beamenv.task import resolve_task
-from train.actors import ActorSettings
-from train.gradient import GradientSettings, new_actor, on_training_bank, train_gradient
-from train.training import uncontrolled_cost
-from train.windows import Windows
+from train.learning.through_plant.actors import ActorSettings
+from train.learning.through_plant.gradient import GradientSettings, new_actor, on_training_bank, train_gradient
+from train.learning.through_plant.windows import Windows
+from train.learning.training import uncontrolled_cost
 
 
 @pytest.fixture(scope="module")

@@ -13,14 +13,14 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, no_control
-from beamenv.configuration import BladeConfig, build_plant
+from beamenv.blade.config import BladeConfig, build_plant
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, comparison_table, record, write_page
 from train.page.blade import BOX, Strip, blade_figures, frame_times, magnification, motions
 from train.page.heat_map import heat_map
 from train.page.page import plots, render
 from train.page.plots import amplitude_density, pole_map, symmetric_logarithm
 from train.page.themes import NEUTRAL, PALETTE, THEMES, contrast
-from train.page.versions import versions
+from train.shared.versions import versions
 
 SECTIONS = ("table", "blade", "heat-map", "time-series", "spectra", "poles", "learning", "provenance")
 

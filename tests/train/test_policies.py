@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import torch
 
-from beamenv.configuration import blade_config, build_plant
-from train.actors import ActorSettings, RecurrentActor
-from train.policies import HistoryPolicy
-from train.policy_files import load_policy, save_policy
+from beamenv.blade.config import blade_config, build_plant
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import load_policy, save_policy
+from train.learning.through_plant.actors import ActorSettings, RecurrentActor
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,10 @@ import pickle
 import numpy as np
 import pytest
 
-from beamenv.configuration import blade_config, build_plant
-from beamenv.plant import fingerprint
-from train.policies import HistoryPolicy
-from train.policy_files import load_policy, save_policy
+from beamenv.blade.config import blade_config, build_plant
+from beamenv.plant.plant import fingerprint
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import load_policy, save_policy
 
 ONE = np.ones(4, np.float32)
 POLICY = HistoryPolicy(

@@ -4,8 +4,8 @@ from dataclasses import fields, is_dataclass
 
 import pytest
 
-from train.agents import AGENTS
-from train.recipe import NAMES, load_recipe, named_recipe, parsed
+from train.learning.agents import AGENTS
+from train.learning.recipe import NAMES, load_recipe, named_recipe, parsed
 
 WHOLE = 'agent = "ppo"\ntitle = "Brief"\nupdates = 3\n[settings]\nunits = 32\nlearning_rate = 1\n'
 

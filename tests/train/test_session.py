@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 import torch
 
-import train.assignment
-from beamenv.plant import fingerprint
-from train.agents import task_of
-from train.assignment import Assignment, carry_out
-from train.checkpoint import NAME, read_checkpoint, write_checkpoint
-from train.policy_files import load_policy
-from train.recipe import parsed
-from train.session import Course, follow
+import train.learning.job
+from beamenv.plant.plant import fingerprint
+from train.controllers.policy_files import load_policy
+from train.learning.agents import task_of
+from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
+from train.learning.job import Assignment, carry_out
+from train.learning.recipe import parsed
+from train.learning.session import Course, follow
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"
@@ -180,7 +180,7 @@ def test_runs_side_by_side_are_saved_apart(tmp_path):
 
 
 def test_a_generalist_knows_the_plant_of_every_scenario(tmp_path, monkeypatch):
-    monkeypatch.setattr(train.assignment, "NAMES", ("nominal", "hysteresis"))
+    monkeypatch.setattr(train.learning.job, "NAMES", ("nominal", "hysteresis"))
     (place,) = carry_out(assignment(PPO, "generalist", updates=1), tmp_path, ignore)
     tasks = [task_of({**SHORT, "scenario": name}) for name in ("nominal", "hysteresis")]
     assert load_policy(place, tasks[0].design_plant).lowest == pytest.approx(-1.0)

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from train.agents import task_of
-from train.policies import HistoryPolicy
-from train.policy_files import save_policy
-from train.shipped import FOLDER, find_shipped, load_shipped, shipped
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import save_policy
+from train.controllers.shipped import FOLDER, find_shipped, load_shipped, shipped
+from train.learning.agents import task_of
 
 ONE = np.ones(4, np.float32)
 POLICY = HistoryPolicy(

@@ -6,9 +6,9 @@ import os
 import numpy as np
 import pytest
 
-from train.policies import RecurrentPolicy
-from train.policy_files import save_policy
-from train.storage import check_folder, write_csv, write_json, write_whole
+from train.controllers.policies import RecurrentPolicy
+from train.controllers.policy_files import save_policy
+from train.shared.files import check_folder, write_csv, write_json, write_whole
 
 
 def names(folder):
@@ -35,7 +35,7 @@ def test_an_interrupted_write_leaves_the_old_file_whole_and_no_litter(tmp_path, 
             kept(first, *arguments).close()
         raise interruption
 
-    monkeypatch.setattr(f"train.storage.os.{call}", interrupt)
+    monkeypatch.setattr(f"train.shared.files.os.{call}", interrupt)
     with pytest.raises(interruption):
         write_whole(path, "new")
     monkeypatch.undo()
@@ -63,7 +63,7 @@ def test_a_table_without_rows_has_its_columns(tmp_path):
 
 def test_an_agent_half_saved_is_no_agent(tmp_path, monkeypatch):
     one = np.ones(1, np.float32)
-    monkeypatch.setattr("train.policy_files.write_json", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr("train.controllers.policy_files.write_json", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         save_policy(RecurrentPolicy("half", {"bias_out": one}, {}, -one, one), tmp_path)
     assert names(tmp_path) == ["weights.npz"]

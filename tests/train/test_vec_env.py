@@ -7,8 +7,8 @@ from gymnasium.vector import AutoresetMode
 from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
 
 import beamenv
-from beamenv.simulation import reward_scale
-from train.vec_env import REWARD_UNIT, BladeVecEnv
+from beamenv.simulation.blades import reward_scale
+from train.learning.sb3.vec_env import REWARD_UNIT, BladeVecEnv
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 COUNT = 4

@@ -11,14 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import beamenv
-from beamenv.scenarios import Scenario, scenario
-from train.benchmark.cells import Cell, Job, Setting, held_out, read_cell, write_cell
-from train.benchmark.entrants import Entrant, entrants
-from train.benchmark.report import write_files
+from beamenv.scenarios.scenario import Scenario, scenario
+from train.benchmark.cells import Cell, Job, Setting, read_cell, write_cell
+from train.benchmark.entrants.entrants import Entrant, entrants
 from train.benchmark.runner import run
+from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
-from train.shipped import FOLDER
-from train.storage import check_folder
+from train.controllers.shipped import FOLDER
+from train.shared.files import check_folder
+from train.shared.held_out import held_out
 
 Progress = Callable[[int, int, Cell], None]
 
@@ -136,9 +137,9 @@ def versions() -> dict[str, str]:
 
 def write_all(folder: Path, table: BenchmarkTable) -> None:
     """Tables, heat map and page."""
-    from train.benchmark.heat_map import heat_map
-    from train.benchmark.page import write_report
-    from train.figures import save
+    from train.benchmark.showing.heat_map import heat_map
+    from train.benchmark.showing.page import write_report
+    from train.comparison.figures import save
 
     write_files(folder, table)
     save(heat_map(table), folder / "heat_map.png")

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import EpisodeMetrics, Episodes, no_control, roll_out
-from baselines.metrics import finite, measure, settling_band
-from beamenv.scenarios import Scenario
-from train.benchmark.sources import Source, digest
-from train.compare import HELD_OUT
-from train.storage import write_json
+from baselines.evaluation.metrics import finite, measure, settling_band
+from beamenv.scenarios.scenario import Scenario
+from train.benchmark.entrants.sources import Source, digest
+from train.shared.files import write_json
+from train.shared.held_out import held_out
 
 Array = NDArray[np.float64]
 
@@ -91,11 +91,6 @@ def opened(setting: Setting) -> Opened:
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **json.loads(setting.arguments))
     reference = roll_out(no_control(envs.unwrapped.design_plant), envs, held_out(setting.seeds))
     return Opened(envs, reference, settling_band(reference))
-
-
-def held_out(seeds: int) -> range:
-    """The seeds themselves."""
-    return range(HELD_OUT, HELD_OUT + seeds)
 
 
 def measured(job: Job) -> Cell:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from multiprocessing import get_context
 
 from train.benchmark.cells import Cell, Job, measured
-from train.benchmark.sources import Source
-from train.speed import ONE_THREAD
+from train.benchmark.entrants.sources import Source
+from train.shared.threads import one_thread_each
 
 
 def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], None]) -> None:
@@ -42,20 +40,6 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
 def _pool(processes: int) -> ProcessPoolExecutor:
     """Fresh interpreters, which Ctrl-C ends without a word: what it means is said by the process that started them."""
     return ProcessPoolExecutor(processes, get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_DFL))
-
-
-@contextmanager
-def one_thread_each() -> Iterator[None]:
-    """Within it new processes start with one thread for linear algebra: more would only be in each other's way."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(ONE_THREAD)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name)
-            if value is not None:
-                os.environ[name] = value
 
 
 def _check_that_they_travel(jobs: Sequence[Job]) -> None:

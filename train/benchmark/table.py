@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from baselines import Estimate
 from train.benchmark import statistics
 from train.benchmark.cells import SERIES, Cell
-from train.benchmark.entrants import ORDER, Entrant
+from train.benchmark.entrants.entrants import ORDER, Entrant
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines.lqg import sampled_design
-from beamenv.configuration import THESIS, BeamConfig, BladeConfig, check, plant_of
+from baselines.laws.lqg import sampled_design
+from beamenv.blade.config import THESIS, BeamConfig, BladeConfig, check, plant_of
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.plant import Plant, SampledPlant
+from beamenv.plant.plant import Plant, SampledPlant
 
 Array = NDArray[np.float64]
 

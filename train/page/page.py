@@ -20,8 +20,8 @@ from train.page.plots import LearningCurves, learning, pole_map, spectra, time_s
 from train.page.recording import RecordedEpisode
 from train.page.table import Table
 from train.page.themes import THEMES
-from train.page.versions import versions
-from train.storage import write_whole
+from train.shared.files import write_whole
+from train.shared.versions import versions
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import Controller, no_control
-from beamenv.configuration import BladeConfig
+from beamenv.blade.config import BladeConfig
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def _instant(env: Any, info: Mapping[str, Any]) -> tuple[Array, ...]:
 def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controller, Controller]) -> RecordedEpisode:
     """The episode of ``seed`` in the environment with these keyword arguments, three times over.
 
-    A controller called as ``baselines.no_control`` is counts as the episode without control, and is not run twice.
+    A controller called as ``baselines.laws.no_control`` is counts as the episode without control, and is not run twice.
     """
     env = gym.make(beamenv.ENV_ID, **arguments)
     try:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from baselines import Evaluation
-from train.report import COLUMNS, caption, cells, ranked
+from train.comparison.table import COLUMNS, caption, cells, ranked
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Table:
 
 
 def comparison_table(evaluations: Sequence[Evaluation]) -> Table:
-    """Controllers, best first, with the estimates of ``train.report``."""
+    """Controllers, best first, with the estimates of ``train.comparison.table``."""
     rows = []
     for evaluation in ranked(evaluations):
         name, *texts = cells(evaluation)

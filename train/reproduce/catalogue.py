@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from train.reproduce import (
+from train.reproduce.judging.study import Study
+from train.reproduce.studies import (
     chapter2,
     chapter3_gyroscopic,
     chapter3_presetting,
@@ -19,7 +20,6 @@ from train.reproduce import (
     chapter6_layouts,
     chapter6_tables,
 )
-from train.reproduce.study import Study
 
 CHAPTERS: tuple[tuple[str, tuple[Study, ...]], ...] = (
     ("Chapter 2: couplings", chapter2.STUDIES),

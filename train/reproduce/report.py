@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from train.reproduce.catalogue import CHAPTERS, STUDIES
-from train.reproduce.ledger import ROWS, counts
+from train.reproduce.judging.ledger import ROWS, counts
+from train.reproduce.judging.study import Study
+from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.runner import Record
-from train.reproduce.study import Study
-from train.reproduce.verdicts import Verdict
 
 TITLE = "The thesis, regenerated and judged"
 INTRODUCTION = (

@@ -13,14 +13,12 @@ from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 
-from beamenv.thesis import Model
-from train.reproduce.figures import curve_rows, draw
-from train.reproduce.study import Outcome, Study
-from train.reproduce.verdicts import Judgement, Verdict
+from train.reproduce.drawing import curve_rows, draw
+from train.reproduce.judging.study import Outcome, Study
+from train.reproduce.judging.verdicts import Judgement, Verdict
+from train.reproduce.thesis import Model
 
 FINGERPRINTED = ("beamenv", "baselines", "train.reproduce")
-FINGERPRINTED_STUDY = ("train", "placement_study.py")
-"""A module beside the studies that chapter 6 stands on: its package, its file."""
 SOURCES = (".py", ".csv", ".mplstyle")
 
 
@@ -110,8 +108,6 @@ def source_fingerprint(model: Model) -> str:
     for package in FINGERPRINTED:
         for content in sources(Path(str(files(package)))):
             digest.update(content)
-    package, file = FINGERPRINTED_STUDY
-    digest.update(files(package).joinpath(file).read_bytes())
     return digest.hexdigest()[:16]
 
 

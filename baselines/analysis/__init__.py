@@ -1,0 +1,1 @@
+"""What can be said of a loop without simulating it: stationary cost, frequency response, margins."""

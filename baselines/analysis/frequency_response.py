@@ -1,0 +1,77 @@
+"""Frequency responses of sampled systems, and the largest gain from a plant's noise to its cost in a closed loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import minimize_scalar
+
+from baselines.analysis.stationary import closed_loop
+from baselines.design.controller import Array, LinearController
+from beamenv.plant.plant import Plant, sample
+
+Complex = NDArray[np.complex128]
+
+
+def frequency_response(A: Array, B: Array, C: Array, D: Array, angles: ArrayLike) -> Complex:
+    """C (zI − A)⁻¹ B + D at z = exp(iθ): (k, p, m) for k ``angles`` θ in rad a sample."""
+    z = np.exp(1j * np.atleast_1d(np.asarray(angles, dtype=np.float64)))
+    resolvent = np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, np.broadcast_to(B.astype(complex), (len(z), *B.shape)))
+    return np.asarray(C @ resolvent + D)
+
+
+def resonant_angles(*systems: Array) -> Array:
+    """Angles from 0 to π in rad a sample: evenly spaced, and about each pole of the transition matrices as dense as it is light."""
+    poles = np.concatenate([np.linalg.eigvals(A) for A in systems])
+    poles = poles[np.abs(poles) > 1e-6]
+    around = np.abs(np.angle(poles))[:, None] + np.abs(np.log(np.abs(poles)))[:, None] * np.tan(np.linspace(-1.5, 1.5, 25))
+    return np.unique(np.clip(np.concatenate([np.linspace(0.0, np.pi, 400), around.ravel()]), 0.0, np.pi))
+
+
+def highest(function: Callable[[Array], Array], angles: Array) -> tuple[float, float]:
+    """The largest value of a function of angles over a grid, refined between its neighbours, and the angle where it is."""
+    values = function(angles)
+    top = int(values.argmax())
+    low, high = angles[max(top - 1, 0)], angles[min(top + 1, len(angles) - 1)]
+    found = minimize_scalar(lambda angle: -float(function(np.array([angle]))[0]), bounds=(low, high), method="bounded")
+    return max((float(-found.fun), float(found.x)), (float(values[top]), float(angles[top])))
+
+
+def cost_response(plant: Plant, controller: LinearController, frequencies: ArrayLike) -> Complex:
+    """From the noise [d; v], in units of its standard deviations, to z with |z|² the cost of an interval (J s): (k, n+m+2, 2+p).
+
+    ``frequencies`` (k,) in rad/s, voltages unlimited.
+    """
+    angles = np.atleast_1d(np.asarray(frequencies, dtype=np.float64)) * plant.control_interval
+    return frequency_response(*_noise_to_cost(plant, controller), angles)
+
+
+def h_infinity_norm(plant: Plant, controller: LinearController) -> float:
+    """Largest gain, √(J s), of ``cost_response`` over all frequencies: noise n with Σ|n|² = 1 costs no more than its square.
+
+    Infinite when the loop is unstable.
+    """
+    system = _noise_to_cost(plant, controller)
+    if np.abs(np.linalg.eigvals(system[0])).max() >= 1.0:
+        return float("inf")
+
+    def gain(angles: Array) -> Array:
+        return np.asarray(np.linalg.norm(frequency_response(*system, angles), ord=2, axis=(1, 2)))
+
+    return highest(gain, resonant_angles(system[0]))[0]
+
+
+def _noise_to_cost(plant: Plant, controller: LinearController) -> tuple[Array, Array, Array, Array]:
+    held = sample(plant)
+    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, controller)
+    deviation, weight = square_root(covariance), square_root(held.cost)
+    return transition, noise_input @ deviation, weight.T @ state_map, weight.T @ noise_map @ deviation
+
+
+def square_root(matrix: Array) -> Array:
+    """Factor F with F Fᵀ = ``matrix`` (k, k), which is symmetric and not negative; each row in its own unit, whatever the units."""
+    unit = np.sqrt(np.where(np.diag(matrix) > 0.0, np.diag(matrix), 1.0))
+    values, vectors = np.linalg.eigh(matrix / np.outer(unit, unit))
+    return np.asarray(unit[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))

@@ -1,0 +1,53 @@
+"""A linear controller on a plant under white noise: closed-loop poles and the exact mean cost, without a simulation."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import solve_discrete_lyapunov
+
+from baselines.design.controller import Array, LinearController
+from beamenv.plant.plant import Plant, SampledPlant, sample
+
+
+def stationary_cost(plant: Plant, controller: LinearController) -> float:
+    """Mean of J per second (J) in the long run, under the plant's white loads and sensor noise, voltages unlimited.
+
+    With X = [x; ξ] and noise n = [d; v], X⁺ = Φ X + Γ n and z = [x; u; d] = Z_x X + Z_n n, so Σ = ΦΣΦᵀ + ΓNΓᵀ and the mean
+    is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable.
+    """
+    held = sample(plant)
+    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, controller)
+    if np.abs(np.linalg.eigvals(transition)).max() >= 1.0:
+        return float("inf")
+    spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T)
+    second_moment = state_map @ spread @ state_map.T + noise_map @ covariance @ noise_map.T
+    return float(np.sum(held.cost * second_moment) / held.interval)
+
+
+def closed_loop_poles(plant: Plant, controller: LinearController) -> Array:
+    """Poles of plant and controller together, as the continuous equivalents log(z)/Δt in rad/s (complex), slowest first.
+
+    Poles of the sampled loop at z = 0 have no continuous equivalent and are left out.
+    """
+    held = sample(plant)
+    poles = np.linalg.eigvals(closed_loop(held, controller)[0])
+    poles = np.log(poles[np.abs(poles) > 1e-12].astype(complex)) / held.interval
+    return np.asarray(poles[np.argsort(-poles.real)])
+
+
+def closed_loop(held: SampledPlant, law: LinearController) -> tuple[Array, Array, Array, Array, Array]:
+    """Φ, Γ, Z_x, Z_n of X⁺ = Φ X + Γ n, z = Z_x X + Z_n n and the covariance N of n = [d; v]; u = T C x + M ξ + T v."""
+    (n, m), s, k = held.B.shape, len(law.transition), held.disturbance_input.shape[1]
+    C, V = (held.C, held.sensor_noise) if law.observes == "observation" else (np.eye(n), np.zeros((n, n)))
+    p = len(C)
+    voltage = np.hstack([law.measurement_gain @ C, law.state_gain])
+    transition = np.block([[held.A, np.zeros((n, s))], [law.measurement_input @ C, law.transition]])
+    transition += np.vstack([held.B, law.voltage_input]) @ voltage
+    noise_input = np.block([[held.disturbance_input, np.zeros((n, p))], [np.zeros((s, k)), law.measurement_input]])
+    noise_input[:, k:] += np.vstack([held.B, law.voltage_input]) @ law.measurement_gain
+    state_map = np.vstack([np.eye(n, n + s), voltage, np.zeros((k, n + s))])
+    noise_map = np.zeros((n + m + k, k + p))
+    noise_map[n : n + m, k:] = law.measurement_gain
+    noise_map[n + m :, :k] = np.eye(k)
+    covariance = np.block([[held.process_noise, np.zeros((k, p))], [np.zeros((p, k)), V]])
+    return transition, noise_input, state_map, noise_map, covariance

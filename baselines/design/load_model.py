@@ -1,0 +1,62 @@
+"""Models of line loads that can be foreseen, as part of the plant: a filter can estimate them and a regulator answer them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from baselines.design.riccati import Array
+from beamenv.plant.plant import SampledPlant
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadModel:
+    """Line loads d = output ξ whose q states move by themselves, ξ⁺ = transition ξ + w, from one control interval to the next."""
+
+    transition: Array
+    """(q, q): its eigenvalues must lie within the unit circle, for no voltage can stop a load."""
+    output: Array
+    """(2, q), N/m per unit of ξ: lag, flap."""
+    noise: Array
+    """(q, q): covariance of w in one interval."""
+
+    def __add__(self, other: LoadModel) -> LoadModel:
+        """Both loads at once, independent of each other."""
+        return LoadModel(
+            transition=block_diag(self.transition, other.transition),
+            output=np.hstack([self.output, other.output]),
+            noise=block_diag(self.noise, other.noise),
+        )
+
+
+class Load(Protocol):
+    """What the load is, apart from the clock it is sampled by."""
+
+    def model(self, interval: float) -> LoadModel:
+        """The load from one control interval (s) to the next."""
+        ...
+
+
+def with_load(held: SampledPlant, load: LoadModel) -> SampledPlant:
+    """The plant with state [x; ξ], ξ (q,) that of the load, and with disturbances [white load; w].
+
+    The cost stays the plant's own: the load bends the blade, and that energy counts.
+    """
+    (n, m), k, q = held.B.shape, held.disturbance_input.shape[1], len(load.transition)
+    total = np.zeros((n + m + k, n + q + m + k + q))  # [x, u, white + d] from [x, ξ, u, white, w]
+    total[:n, :n] = np.eye(n)
+    total[n : n + m, n + q : n + q + m] = np.eye(m)
+    total[n + m :, n : n + q] = load.output
+    total[n + m :, n + q + m : n + q + m + k] = np.eye(k)
+    return replace(
+        held,
+        A=np.block([[held.A, held.disturbance_input @ load.output], [np.zeros((q, n)), load.transition]]),
+        B=np.vstack([held.B, np.zeros((q, m))]),
+        C=np.hstack([held.C, np.zeros((len(held.C), q))]),
+        disturbance_input=block_diag(held.disturbance_input, np.eye(q)),
+        cost=total.T @ held.cost @ total,
+        process_noise=block_diag(held.process_noise, load.noise),
+    )

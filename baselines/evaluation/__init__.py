@@ -1,0 +1,1 @@
+"""Any controller on any environment: episodes, metrics, intervals."""

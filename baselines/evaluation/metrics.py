@@ -1,0 +1,88 @@
+"""What an episode is judged by, one number for each blade."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from baselines.design.controller import Array
+from baselines.evaluation.episodes import Episodes
+
+SETTLING_BAND = 0.05
+"""Share of the uncontrolled peak within which a tip counts as settled."""
+
+REST = 0.2
+"""Share of an episode, its end, whose mean is taken for the position the tip settles to."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EpisodeMetrics:
+    """One array (N,) each, a blade a row."""
+
+    cost: Array
+    """J, J s: vibration energy and actuator effort integrated over the episode; infinite if the blade failed."""
+    effort: Array
+    """J s: the actuators' share of J, up to the failure if there was one."""
+    settling_time: Array
+    """s from the reset until the tip's response to the load case last leaves a band of 5 % of its uncontrolled peak about its
+    final position, which is the deflection under a load that lasts. The whole episode if it does not settle: a harmonic load
+    seldom lets it."""
+    settled: Array
+    """1 if it had settled when the last fifth of the episode began, else 0."""
+    peak_tip: Array
+    """m: greatest distance of the tip from where it rests without load."""
+    rms_tip: Array
+    """m."""
+    peak_voltage: Array
+    """V, of any actuator."""
+    rms_voltage: Array
+    """V, over actuators and time."""
+    saturation: Array
+    """Share of actuators and time at a drive limit."""
+
+    def to_dict(self) -> dict[str, list[float | None]]:
+        """Lists that JSON can hold, None for what is infinite."""
+        return {entry.name: [finite(value) for value in getattr(self, entry.name)] for entry in fields(self)}
+
+
+def finite(value: float) -> float | None:
+    """The number as JSON can hold it: None when it is not finite."""
+    return float(value) if np.isfinite(value) else None
+
+
+def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
+    """Metrics of each blade; ``band`` (N,) in m as ``settling_band`` gives it."""
+    distance = np.linalg.norm(episodes.tip_displacement, axis=-1)
+    magnitude = np.abs(episodes.voltages)
+    low, high = 0.999 * episodes.voltage_limits  # single precision and tanh come near a limit without touching it
+    at_limit = np.where(np.isnan(magnitude), np.nan, (episodes.voltages >= high) | (episodes.voltages <= low))
+    settling_time = _settling_time(episodes, band)
+    return EpisodeMetrics(
+        cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
+        effort=np.nansum(episodes.effort, axis=0),
+        settling_time=settling_time,
+        settled=(settling_time <= (1.0 - REST) * episodes.time[-1]).astype(float),
+        peak_tip=np.nanmax(distance, axis=0),
+        rms_tip=np.sqrt(np.nanmean(distance**2, axis=0)),
+        peak_voltage=np.nanmax(magnitude, axis=(0, 2)),
+        rms_voltage=np.sqrt(np.nanmean(magnitude**2, axis=(0, 2))),
+        saturation=np.nanmean(at_limit, axis=(0, 2)),
+    )
+
+
+def settling_band(uncontrolled: Episodes) -> Array:
+    """(N,), m: 5 % of the greatest distance of the tip's response to the load case from its final position, without control."""
+    return SETTLING_BAND * _excursion(uncontrolled).max(axis=0)
+
+
+def _excursion(episodes: Episodes) -> Array:
+    """(T, N), m: distance of the load response from its final position, the mean over the episode's last fifth."""
+    final = episodes.load_response[int((1.0 - REST) * len(episodes.time)) :].mean(axis=0)
+    return np.nan_to_num(np.linalg.norm(episodes.load_response - final, axis=-1), nan=np.inf)  # a blade that failed never settles
+
+
+def _settling_time(episodes: Episodes, band: Array) -> Array:
+    outside = _excursion(episodes) > band
+    inside_since = np.where(outside.any(axis=0), np.argmax(outside[::-1], axis=0), len(outside))  # intervals before the end
+    return episodes.interval * (len(outside) - inside_since)

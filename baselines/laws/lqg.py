@@ -1,0 +1,99 @@
+"""LQG: Kalman filter and regulator, as the sampled-data optimum or as the thesis' continuous design."""
+
+from __future__ import annotations
+
+from functools import reduce
+from operator import add
+from typing import Literal
+
+import numpy as np
+from scipy.linalg import expm
+
+from baselines.design.controller import LinearController, drive_scale
+from baselines.design.load_model import Load, with_load
+from baselines.design.persistent_load import PersistentLoad
+from baselines.design.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
+from beamenv.plant.plant import Plant, SampledPlant, sample
+
+_CONVERTER_STEP = 2.0**-15
+"""Of full scale: a 16-bit converter's."""
+
+
+def lqg(
+    plant: Plant, design: Literal["sampled", "continuous"] = "sampled", persistent_load: PersistentLoad | None = None
+) -> LinearController:
+    """LQG controller of a design plant; its filter starts from its own estimate, zero.
+
+    ``design="sampled"``: the optimum for the cost and the noise of the environment, both exactly sampled, with y_k used for u_k:
+    x̂ ← x̂ + L (y − C x̂), u = −K x̂, x̂⁺ = A x̂ + B u.
+
+    ``design="continuous"``: the thesis' compensator, Eqs. 5.11 and 5.18–5.21,
+
+        x̂̇ = (A − BK − LC) x̂ + L y + B (clip(u) − u),        u = −K x̂,
+
+    whose last term, zero unless the drive saturates, keeps it from winding up. It is integrated exactly from sample to sample with
+    the newest reading held over the interval that it ends, so that y_k acts on u_k. (With y_k held over the interval that it
+    begins, as is more usual, the loop through the blade's upper modes, up to 1.4 rad a sample, is unstable.) It still needs a
+    filter slower than the sampling: with sensors of next to no noise it is unstable too.
+
+    ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
+    Raises ValueError for another design, or for a persistent load with the continuous one.
+    """
+    if design == "sampled":
+        return sampled_lqg(plant, "LQG" if persistent_load is None else "LQG with load estimate", persistent_load)
+    if design != "continuous":
+        raise ValueError(f'design = {design!r} is not an LQG design: allowed are "sampled" and "continuous"')
+    if persistent_load is not None:
+        raise ValueError(f'persistent_load = {persistent_load} needs design="sampled": the thesis\' design has no load state')
+    return _continuous(plant)
+
+
+def sampled_lqg(plant: Plant, name: str = "LQG", *loads: Load | None) -> LinearController:
+    """The sampled optimum, with the states of the ``loads`` behind those of the blade in its memory."""
+    held, _, K, L = sampled_design(plant, *loads)
+    correct = np.eye(len(held.A)) - L @ held.C
+    return observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
+
+
+def sampled_design(plant: Plant, *loads: Load | None) -> tuple[SampledPlant, Array, Array, Array]:
+    """The sampled plant, with the states of whatever ``loads`` are given, its regulator's P and K, and its filter's L."""
+    models = [load.model(plant.control_interval) for load in loads if load is not None]
+    held = with_load(sample(plant), reduce(add, models)) if models else sample(plant)
+    E = held.disturbance_input
+    P, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
+    return held, P, K, L
+
+
+def _continuous(plant: Plant) -> LinearController:
+    E, n, p = plant.disturbance_input, len(plant.A), len(plant.C)
+    _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
+    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
+    dynamics = np.zeros((n + p + plant.B.shape[1],) * 2)
+    scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_scale(plant)])  # keeps the exponential well scaled
+    dynamics[:n] = np.hstack([plant.A - plant.B @ K - L @ plant.C, L, plant.B]) * scale
+    F, G, H = np.split(expm(dynamics * plant.control_interval)[:n] / scale, [n, n + p], axis=1)
+    onward = F + H @ K
+    return observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
+
+
+def known_sensor_noise(plant: Plant) -> Array:
+    """V (p, p), A² s. Without any noise the filter's equation has no solution, so at least the converter's steps count."""
+    converter = np.diag((_CONVERTER_STEP * plant.sensor_full_scale) ** 2 / 12.0) * plant.control_interval
+    silent = np.diag(plant.sensor_noise) < np.diag(converter)
+    return plant.sensor_noise + np.where(silent, converter, 0.0)
+
+
+def observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
+    """The law ξ⁺ = F ξ + G y + H u, u = clip(M ξ + T y) behind the plant's own instruments and drive."""
+    return LinearController(
+        name=name,
+        transition=F,
+        measurement_input=G,
+        voltage_input=H,
+        state_gain=M,
+        measurement_gain=T,
+        measurement_scale=plant.sensor_full_scale,
+        voltage_scale=drive_scale(plant),
+        voltage_limits=plant.voltage_limits,
+    )

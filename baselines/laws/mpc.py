@@ -1,0 +1,173 @@
+"""Model-predictive control: LQG that knows, over a horizon, what the drive can give."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from baselines.design.box_qp import BoxQP
+from baselines.design.controller import Array, drive_scale, measurement, remembered
+from baselines.design.persistent_load import PersistentLoad
+from baselines.laws.lqg import sampled_design
+from beamenv.plant.plant import Plant, SampledPlant
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PredictiveController:
+    """A filter and a plan within the drive limits, for one blade or a batch.
+
+    With y_k the measurement (A) and the memory ξ_k the state predicted for it, zero at the start of an episode,
+
+        x̂ = ξ_k + L (y_k − clip(C ξ_k)),        ξ_{k+1} = A x̂ + B u_k,
+
+    where C ξ is clipped at the sensors' full scale as the reading itself is. Where LQG's plan u = −K x̂, −K (A − BK) x̂, … stays
+    within the limits over the whole horizon, u_k is its first move; elsewhere u_k is the first of the moves that ``program`` finds.
+    """
+
+    name: str
+    """What tables and figures call it."""
+    transition: Array
+    """A (s, s)."""
+    voltage_input: Array
+    """B (s, m), per V."""
+    output: Array
+    """C (p, s), A."""
+    filter_gain: Array
+    """L (s, p), per A."""
+    unconstrained_plan: Array
+    """(m × horizon, s), V: LQG's voltages over the horizon from x̂, those of one instant together."""
+    program: BoxQP
+    """For the moves (V), those of one instant together."""
+    program_gradient: Array
+    """(m × moves, s): the program's linear term from x̂."""
+    sensor_full_scale: Array
+    """(p,), A: where readings clip."""
+    measurement_scale: Array
+    """(p,): the measurement that an observation of 1 stands for."""
+    voltage_scale: Array
+    """(m,), V: the voltage that an action of 1 stands for."""
+    voltage_limits: Array
+    """(2, m), V: lower and upper drive limit."""
+    observes: str = field(default="observation", init=False)
+
+    @property
+    def solver_failures(self) -> int:
+        """Decisions so far for which the solver gave up, and LQG's clipped voltage was applied instead."""
+        return self.program.failures
+
+    def predict(
+        self,
+        observation: ArrayLike,
+        state: Array | None = None,
+        episode_start: ArrayLike | None = None,
+        deterministic: bool = True,
+    ) -> tuple[Array, Array]:
+        """Action (m,) or (N, m) in units of the drive limit, and the next memory (s,) or (N, s).
+
+        ``observation`` (p,) or (N, p) is normalised as the environment gives it; rows where ``episode_start`` is true
+        forget their memory. Raises ValueError for an observation of another length.
+        """
+        reading = measurement(self, observation) * self.measurement_scale
+        predicted = remembered(state, episode_start, reading.shape[:-1], len(self.transition))
+        expected = np.clip(predicted @ self.output.T, -self.sensor_full_scale, self.sensor_full_scale)
+        estimate = predicted + (reading - expected) @ self.filter_gain.T
+        voltage = self._voltage(np.atleast_2d(estimate)).reshape(*reading.shape[:-1], -1)
+        return voltage / self.voltage_scale, estimate @ self.transition.T + voltage @ self.voltage_input.T
+
+    def _voltage(self, estimate: Array) -> Array:
+        """(N, m), V, from x̂ (N, s)."""
+        lowest, highest = self.voltage_limits
+        plan = (estimate @ self.unconstrained_plan.T).reshape(len(estimate), -1, len(lowest))
+        voltage = np.clip(plan[:, 0], lowest, highest)
+        limited = ((plan < lowest) | (plan > highest)).any(axis=(1, 2))
+        if limited.any():
+            move = self.program.minimise(estimate[limited] @ self.program_gradient.T)[:, : len(lowest)]
+            voltage[limited] = np.where(np.isnan(move), voltage[limited], move)
+        return voltage
+
+    def in_physical_units(self) -> PredictiveController:
+        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
+        return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
+
+
+def mpc(
+    plant: Plant, persistent_load: PersistentLoad | None = None, move_blocks: Sequence[int] | None = None
+) -> PredictiveController:
+    """Constrained model-predictive control of a design plant, with the Kalman filter of the sampled ``lqg``.
+
+    Least Σ (xᵀQx + 2xᵀNu + uᵀRu) + x_hᵀPx_h over the next h intervals, subject to the drive limits: the environment's own cost,
+    exactly sampled, and beyond the horizon that of LQG (Scokaert and Rawlings, IEEE Trans. Automatic Control 43, 1998). As long as
+    no limit is in sight the law is therefore LQG itself.
+
+    The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h; by default they are
+    ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike.
+    Raises ValueError for blocks that are not positive whole numbers, ModuleNotFoundError without DAQP.
+    """
+    blocks = doubling_blocks(plant) if move_blocks is None else _checked(move_blocks)
+    held, P, K, L = sampled_design(plant, persistent_load)
+    deviation, moves = _deviation(held, P, K, blocks), len(blocks)
+    by_state, by_move = np.split(deviation, [len(held.A)], axis=1)
+    lowest, highest = (np.tile(limit, moves) for limit in plant.voltage_limits)
+    return PredictiveController(
+        name="MPC" if persistent_load is None else "MPC with load estimate",
+        transition=held.A,
+        voltage_input=held.B,
+        output=held.C,
+        filter_gain=L,
+        unconstrained_plan=_unconstrained_plan(held, K, sum(blocks)),
+        program=BoxQP(by_move.T @ by_move, lowest, highest),
+        program_gradient=by_move.T @ by_state,
+        sensor_full_scale=plant.sensor_full_scale,
+        measurement_scale=plant.sensor_full_scale,
+        voltage_scale=drive_scale(plant),
+        voltage_limits=plant.voltage_limits,
+    )
+
+
+def doubling_blocks(plant: Plant) -> list[int]:
+    """Control intervals that each move is held: 1, 1, 2, 2, 4, 4, 8, 8, … up to one period of the plant's slowest mode.
+
+    The last block ends with the period. Moves soon to be made are as fine as the clock, those far off, which will be decided
+    anew many times before they are made, as coarse as they are far.
+    """
+    left = max(1, round(2.0 * np.pi / (plant.natural_frequencies[0] * plant.control_interval)))
+    blocks: list[int] = []
+    while left > 0:
+        blocks.append(min(2 ** (len(blocks) // 2), left))
+        left -= blocks[-1]
+    return blocks
+
+
+def _checked(blocks: Sequence[int]) -> list[int]:
+    whole = [isinstance(block, (int, np.integer)) and not isinstance(block, bool) and block > 0 for block in blocks]
+    if not (whole and all(whole)):
+        raise ValueError(f"move_blocks = {blocks!r} is not allowed: it must hold at least one positive whole number and no others")
+    return [int(block) for block in blocks]
+
+
+def _deviation(held: SampledPlant, P: Array, K: Array, blocks: Sequence[int]) -> Array:
+    """M (m h, s + m b) with cost over the horizon = |M [x; u]|² + xᵀPx, u the moves of b blocks.
+
+    The square completed at every instant: xᵀQx + 2xᵀNu + uᵀRu + x⁺ᵀPx⁺ = xᵀPx + (u + Kx)ᵀ (R + BᵀPB) (u + Kx).
+    """
+    s, m = held.B.shape
+    root = np.linalg.cholesky(held.input_weight + held.B.T @ P @ held.B).T
+    state = np.eye(s, s + m * len(blocks))  # from [x; u]
+    rows = []
+    for block, length in enumerate(blocks):
+        voltage = np.eye(m, state.shape[1], k=s + m * block)
+        for _ in range(length):
+            rows.append(root @ (voltage + K @ state))
+            state = held.A @ state + held.B @ voltage
+    return np.vstack(rows)
+
+
+def _unconstrained_plan(held: SampledPlant, K: Array, horizon: int) -> Array:
+    """(m horizon, s): −K, −K (A − BK), −K (A − BK)², and so on."""
+    rows = [-K]
+    while len(rows) < horizon:
+        rows.append(rows[-1] @ (held.A - held.B @ K))
+    return np.vstack(rows)

@@ -1,0 +1,13 @@
+"""No control: what every other controller is measured against."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from baselines.design.controller import LinearController, static_law
+from beamenv.plant.plant import Plant
+
+
+def no_control(plant: Plant) -> LinearController:
+    """Zero volts always, whatever the sensors say."""
+    return static_law(plant, "no control", np.zeros((plant.B.shape[1], len(plant.C))))

@@ -1,0 +1,101 @@
+"""Positive position feedback: each pair of patches drives the blade through filters tuned to its first modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import block_diag, expm
+from scipy.optimize import minimize
+
+from baselines.analysis.stationary import stationary_cost
+from baselines.design.controller import Array, LinearController
+from baselines.laws.lqg import observer
+from baselines.laws.velocity_feedback import pairing
+from beamenv.plant.plant import Plant
+
+FILTER_DAMPING = 0.3
+"""ζ_f of every filter: wide enough for a mode that is some per cent off."""
+
+LEAK = 0.05
+"""Corner of the charge integrator over the first natural frequency: 3° of phase there, and offsets are forgotten."""
+
+_GAINS = np.logspace(-3.0, 0.0, 16)
+"""Common gains tried first."""
+
+
+def positive_position_feedback(
+    plant: Plant, gain: ArrayLike | None = None, modes: int = 3, filter_damping: float = FILTER_DAMPING, leak: float = LEAK
+) -> LinearController:
+    """Voltages u_j = Σ_k g_k q_k / c_j, with a filter for each of the first ``modes`` natural frequencies on each pair of patches.
+
+        q̈_k + 2 ζ_f ω_k q̇_k + ω_k² q_k = ω_k² q,        q̇ = y_j − (leak ω_1) q,
+
+    filters the sensor's charge q, for the sensor tells the rate of strain and positive position feedback wants strain. c_j is the
+    charge that a volt on the same pair brings about at rest, so that a single mode with a single filter is stable just as long as
+    g < 1 (Fanson and Caughey, AIAA Journal 28, 1990). Ganged drive takes the sensors' mean.
+
+    ``gain`` (modes,) or one number for all are the g_k. By default those of least stationary cost under the plant's white loads
+    and sensor noise, among stable loops: the best common one of a few, then each for itself (Nelder and Mead's simplex). Integrated
+    exactly from sample to sample, the newest reading held over the interval that it ends. Raises ValueError when sensors and
+    actuators cannot be paired, or for modes, damping, leak or gains that are not allowed.
+    """
+    frequencies = plant.natural_frequencies[:modes]
+    _check(modes, len(plant.natural_frequencies), filter_damping=filter_damping, leak=leak)
+    pairs = pairing(plant, "positive position feedback")
+    filters = _held_filters(frequencies, filter_damping, leak * frequencies[0], plant.control_interval)
+
+    def law(gains: ArrayLike) -> LinearController:
+        return _law(plant, pairs, filters, np.broadcast_to(np.asarray(gains, dtype=np.float64), modes))
+
+    if gain is None:
+        return law(_least_cost_gains(lambda gains: stationary_cost(plant, law(gains)), modes))
+    if np.shape(gain) not in ((), (modes,)) or not np.isfinite(gain).all():
+        raise ValueError(f"gain = {gain!r} must be a finite number, or {modes} of them, one for each mode")
+    return law(gain)
+
+
+def _check(modes: int, most: int, **positive: float) -> None:
+    if not (isinstance(modes, (int, np.integer)) and 1 <= modes <= most):
+        raise ValueError(f"modes = {modes!r} must be an integer from 1 to {most}, the number of the plant's modes")
+    for name, value in positive.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise ValueError(f"{name} = {value!r} must be a positive number")
+
+
+def _held_filters(frequencies: Array, damping: float, corner: float, interval: float) -> tuple[Array, Array]:
+    """Transition (s, s) and input (s,) of one pair's states [charge; q_k, q̇_k/ω_k of each filter] under a held current."""
+    size = 1 + 2 * len(frequencies)
+    dynamics = np.zeros((size + 1, size + 1))
+    dynamics[0, 0], dynamics[0, -1] = -corner, 1.0
+    for k, omega in enumerate(frequencies):
+        at = 1 + 2 * k
+        dynamics[at, at + 1] = dynamics[at + 1, 0] = omega
+        dynamics[at + 1, at : at + 2] = -omega, -2.0 * damping * omega
+    held = expm(dynamics * interval)
+    return held[:size, :size], held[:size, -1]
+
+
+def _law(plant: Plant, pairs: Array, filters: tuple[Array, Array], gains: Array) -> LinearController:
+    """The filters' states at t_k, F ξ + G y, make the voltage."""
+    transition, held_input = filters
+    charge_per_volt = np.diag(pairs @ -plant.C @ np.linalg.solve(plant.A @ plant.A, plant.B))
+    outputs = np.zeros(len(transition))
+    outputs[1::2] = gains
+    F = block_diag(*[transition] * len(pairs))
+    G: Array = block_diag(*[held_input[:, None]] * len(pairs)) @ pairs
+    M = block_diag(*(outputs / each for each in charge_per_volt))
+    return observer(plant, "positive position feedback", F, G, np.zeros((len(F), len(pairs))), M @ F, M @ G)
+
+
+def _least_cost_gains(cost: Callable[[Array], float], modes: int) -> Array:
+    common = min(_GAINS, key=lambda gain: cost(np.full(modes, gain)))
+    start = np.full(modes, common)
+    options = {
+        "initial_simplex": np.vstack([start, start + common * np.eye(modes)]),
+        "fatol": 1e-6 * cost(start),
+        "xatol": np.inf,
+        "maxiter": 400,
+    }
+    return np.asarray(minimize(cost, start, method="Nelder-Mead", options=options).x)

@@ -1,0 +1,73 @@
+"""LQG that knows what a rotor does to its blades: loads at whole multiples of the speed, beside turbulence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import reduce
+from operator import add
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from baselines.design.controller import LinearController
+from baselines.design.load_model import LoadModel
+from baselines.design.persistent_load import PersistentLoad
+from baselines.laws.lqg import sampled_lqg
+from beamenv.plant.plant import Plant
+
+
+@dataclass(frozen=True, slots=True)
+class RotorHarmonics:
+    """Line loads in lag and flap at whole multiples of the rotor speed: oscillators that all but keep their phase.
+
+    The rule for the numbers: the first four harmonics, each of the size of the environment's harmonic loads, whose mean amplitude
+    of 3 N/m in any direction is 1.5 N/m root mean square in lag and in flap, and steady over an episode of 0.5 s.
+    """
+
+    speed: float
+    """rad/s, of the rotor."""
+    orders: tuple[int, ...] = (1, 2, 3, 4)
+    """Loads per revolution."""
+    magnitude: float = 1.5
+    """N/m, root mean square, of each harmonic in each direction."""
+    duration: float = 0.5
+    """s: time in which a harmonic forgets its amplitude and phase."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "orders", tuple(self.orders))
+        for name in ("speed", "magnitude", "duration"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{name} = {value!r} of rotor harmonics is not allowed: it must be a positive number")
+        if not self.orders or any(order != int(order) or order < 1 for order in self.orders):
+            raise ValueError(
+                f"orders = {self.orders!r} of rotor harmonics are not allowed: give one or more whole numbers from 1 up"
+            )
+
+    def model(self, interval: float) -> LoadModel:
+        """Four states for each order, an in-phase and a quadrature part (N/m) in lag and in flap, over an interval in s.
+
+        Raises ValueError for a harmonic that the sampling cannot tell from a slower one.
+        """
+        if max(self.orders) * self.speed * interval >= np.pi:
+            raise ValueError(
+                f"order {max(self.orders)} at {self.speed:g} rad/s is not allowed: sampled every {interval:g} s, a load must "
+                f"stay below {np.pi / interval:.6g} rad/s"
+            )
+        return reduce(add, (self._oscillator(order * self.speed * interval, interval) for order in self.orders))
+
+    def _oscillator(self, angle: float, interval: float) -> LoadModel:
+        decay = float(np.exp(-interval / self.duration))
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        noise = (1.0 - decay**2) * self.magnitude**2 * np.eye(4)
+        return LoadModel(decay * block_diag(turn, turn), block_diag(np.eye(1, 2), np.eye(1, 2)), noise)
+
+
+def rotor_lqg(plant: Plant, harmonics: RotorHarmonics, turbulence: PersistentLoad | None = None) -> LinearController:
+    """The sampled LQG of a plant under rotor harmonics and, if given, under Gauss–Markov ``turbulence``.
+
+    The loads are part of the state, for filter and regulator alike, so that the compensator holds a model of each harmonic and
+    answers it (the internal model principle: Francis and Wonham, Automatica 12, 1976; for helicopter rotors Shaw and Albion, J. Am.
+    Helicopter Soc. 26, 1981). Raises ValueError for a harmonic beyond half the sampling rate.
+    """
+    return sampled_lqg(plant, "LQG with rotor harmonics", harmonics, turbulence)

@@ -1,0 +1,135 @@
+"""Gain-scheduled LQG: a family of LQG controllers over the rotor speed, which is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import block_diag
+
+from baselines.design.controller import Array, LinearController, Observes, measurement, remembered
+from baselines.design.persistent_load import PersistentLoad
+from baselines.laws.lqg import sampled_lqg
+from beamenv.blade.config import BladeConfig
+from beamenv.plant.plant import Plant
+from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
+
+_MATRICES = ("transition", "measurement_input", "voltage_input", "state_gain", "measurement_gain")
+_GRID = np.linspace(0.8, 1.2, 9)
+"""Speeds of the default family over the configuration's own: between neighbours the blade's frequencies change by some 5 %."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScheduledLQG:
+    """A linear law whose matrices are interpolated between those of the nearest speeds, for one blade or a batch.
+
+    All laws remember in the same coordinates, so that the estimate goes on as the speed changes. Beyond the first and the last
+    speed these laws are used as they are. What is scheduled is each frozen speed's optimum; a speed that changes as fast as the
+    blade vibrates is outside the theory (Shamma and Athans, IEEE Trans. Automatic Control 35, 1990).
+    """
+
+    name: str
+    """What tables and figures call it."""
+    speeds: Array
+    """(k,), rad/s, ascending."""
+    laws: tuple[LinearController, ...]
+    """One for each speed."""
+    observes: Observes = "observation and speed"
+
+    def predict(
+        self,
+        observation: ArrayLike,
+        state: Array | None = None,
+        episode_start: ArrayLike | None = None,
+        deterministic: bool = True,
+    ) -> tuple[Array, Array]:
+        """Action (m,) or (N, m) in units of the drive limit, and the next memory; as ``LinearController.predict``.
+
+        ``observation`` (p + 1,) or (N, p + 1) are the readings, normalised, and the speed in rad/s. Raises ValueError for another
+        length or a speed that is no number.
+        """
+        measured, law = measurement(self, observation), self.laws[0]
+        order, limits = len(law.transition), law.voltage_limits / law.voltage_scale
+        weights = self._weights(measured[..., -1])
+        memory = remembered(state, episode_start, measured.shape[:-1], order)
+        fused, feedback = zip(*(each.matrices for each in self.laws), strict=True)
+        product = _mixed(weights, np.concatenate([memory, measured[..., :-1]], axis=-1), fused)
+        action = np.clip(product[..., order:], limits[0], limits[1])
+        return action, product[..., :order] + _mixed(weights, action, feedback)
+
+    @property
+    def measurement_scale(self) -> Array:
+        """(p + 1,): the measurement that an observation of 1 stands for, in A and, last, in rad/s."""
+        return np.append(self.laws[0].measurement_scale, 1.0)
+
+    def at(self, speed: float) -> LinearController:
+        """The linear law that this one is at a constant speed in rad/s."""
+        weights = self._weights(np.asarray(speed, dtype=np.float64))
+        mixed: dict[str, Any] = {
+            name: np.tensordot(weights, np.stack([getattr(law, name) for law in self.laws]), axes=1) for name in _MATRICES
+        }
+        return replace(self.laws[0], name=f"{self.name} at {speed:g} rad/s", **mixed)
+
+    def in_physical_units(self) -> ScheduledLQG:
+        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
+        return replace(self, laws=tuple(law.in_physical_units() for law in self.laws))
+
+    def _weights(self, speed: Array) -> Array:
+        """(…, k): share of each law, all of it at its own speed, falling linearly to none at its neighbours'."""
+        if not np.isfinite(speed).all():
+            raise ValueError(
+                f"observation has the rotor speed {speed[~np.isfinite(speed)][0]}, but {self.name} needs a number in rad/s"
+            )
+        return np.stack([np.interp(speed, self.speeds, share) for share in np.eye(len(self.speeds))], axis=-1)
+
+
+def _mixed(weights: Array, rows: Array, matrices: Sequence[Array]) -> Array:
+    """Σ_j weights_j (rows @ matrices_j), leaving out what has no weight anywhere."""
+    used = [j for j in range(len(matrices)) if weights[..., j].any()]
+    return np.asarray(sum(weights[..., j, None] * (rows @ matrices[j]) for j in used))
+
+
+def scheduled_lqg(family: SpeedFamily, persistent_load: PersistentLoad | None = None) -> ScheduledLQG:
+    """The sampled LQG of each plant of a family, all in its common coordinates; ``persistent_load`` as in ``lqg``.
+
+    Raises ValueError for plants that differ in their sensors' range, drive or clock.
+    """
+    first = family.plants[0]
+    for plant in family.plants:
+        for name in ("sensor_full_scale", "voltage_limits", "control_interval"):
+            if not np.array_equal(getattr(plant, name), getattr(first, name)):
+                raise ValueError(f"family has plants that differ in {name}, but one controller has one set of instruments")
+    laws = (_law(*each, persistent_load) for each in zip(family.plants, family.from_common, strict=True))
+    name = "LQG, scheduled with speed" if persistent_load is None else "LQG with load estimate, scheduled with speed"
+    return ScheduledLQG(name, family.speeds, tuple(laws))
+
+
+def scheduled_lqg_for(
+    config: BladeConfig, speeds: ArrayLike | None = None, persistent_load: PersistentLoad | None = None
+) -> ScheduledLQG:
+    """The scheduled LQG of a blade over ``speeds`` (rad/s), by default nine within 20 % of the configuration's own.
+
+    Raises ValueError for speeds that ``speed_family`` refuses, or for a blade that does not turn and has none to be scheduled with.
+    """
+    if speeds is None:
+        if config.speed == 0.0:
+            raise ValueError("speeds must be given for a blade at rest: there is no speed to choose them around")
+        speeds = config.speed * _GRID
+    return scheduled_lqg(speed_family(config, speeds), persistent_load)
+
+
+def _law(plant: Plant, from_common: Array, persistent_load: PersistentLoad | None) -> LinearController:
+    """The LQG of a plant with its memory, x or [x; lasting load], in the common coordinates."""
+    law = sampled_lqg(plant, "LQG", persistent_load)
+    there = block_diag(from_common, np.eye(len(law.transition) - len(from_common)))
+    back = np.linalg.inv(there)
+    return replace(
+        law,
+        transition=back @ law.transition @ there,
+        measurement_input=back @ law.measurement_input,
+        voltage_input=back @ law.voltage_input,
+        state_gain=law.state_gain @ there,
+    )

@@ -1,0 +1,66 @@
+"""Collocated negative velocity feedback: each actuator opposes the strain rate that its own sensor feels."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize
+
+from baselines.analysis.stationary import stationary_cost
+from baselines.design.controller import Array, LinearController, static_law
+from beamenv.plant.plant import Plant
+
+_DECADES = np.linspace(-6.0, 1.0, 36)
+"""Exponents of the common gains tried, in units of the gain that damps at about the first mode's own rate."""
+
+
+def velocity_feedback(plant: Plant, gain: ArrayLike | None = None) -> LinearController:
+    """u_j = −g_j y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
+
+    ``gain`` in V/A is one number or one for each actuator. By default the gains are those with the least stationary cost under the
+    plant's white loads and sensor noise, found from the plant alone among those that keep the sampled loop stable. The thesis'
+    sensors lie across the section from their actuators and so feel bending alike but extension with the opposite sign: with one
+    gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between them. Raises
+    ValueError when sensors and actuators cannot be paired, or for a gain of another shape.
+    """
+    pairs = pairing(plant, "velocity feedback")
+    gains = _least_cost_gains(plant, pairs) if gain is None else np.asarray(gain, dtype=np.float64)
+    if gains.shape not in ((), (len(pairs),)) or not np.isfinite(gains).all():
+        raise ValueError(f"gain = {gain!r} must be a finite number, or {len(pairs)} of them, one for each actuator")
+    return _law(plant, "velocity feedback", pairs, gains)
+
+
+def _law(plant: Plant, name: str, pairs: Array, gains: Array) -> LinearController:
+    return static_law(plant, name, -np.broadcast_to(gains, len(pairs))[:, None] * pairs)
+
+
+def pairing(plant: Plant, name: str) -> Array:
+    """(m, p): which sensor each actuator answers, signed so that −(its current) takes energy out.
+
+    Raises ValueError, with the ``name`` of the law, for a plant whose sensors and actuators do not make pairs.
+    """
+    m, p = plant.B.shape[1], len(plant.C)
+    if m not in (1, p):
+        raise ValueError(
+            f"plant has {m} actuators and {p} sensors, which {name} cannot pair: "
+            "it needs one sensor to each actuator, or one ganged actuator"
+        )
+    pairs = np.eye(p) if m == p else np.full((1, p), 1.0 / p)
+    return pairs * np.sign(np.diag(pairs @ plant.C @ plant.B))[:, None]
+
+
+def _least_cost_gains(plant: Plant, pairs: Array) -> Array:
+    """(m,): first the best common gain, by decades, then each for itself from there (Nelder and Mead's simplex)."""
+    collocated = np.abs(np.diag(pairs @ plant.C @ plant.B)).max()
+    unit = float(plant.natural_frequencies[0] / collocated)  # damps at about the first mode's own rate
+
+    def cost(gains: Array) -> float:
+        return stationary_cost(plant, _law(plant, "trial", pairs, unit * gains))
+
+    common = min((10.0**decade for decade in _DECADES), key=lambda gain: cost(np.asarray(gain)))
+    start = np.full(len(pairs), common)
+    simplex = np.vstack([start, start + common * np.eye(len(start))])
+    found = minimize(
+        cost, start, method="Nelder-Mead", options={"initial_simplex": simplex, "fatol": 1e-6 * cost(start), "maxiter": 800}
+    )
+    return np.asarray(unit * found.x)

@@ -1,0 +1,1 @@
+"""What a layout is judged by: traces of Riccati solutions, reach, damping."""

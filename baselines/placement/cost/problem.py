@@ -1,0 +1,141 @@
+"""The placement problem: which trace to make least, by moving which patches, within which bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from baselines.placement.cost.riccati import solve_riccati
+from baselines.placement.model.contributions import Contributions, contributions
+from baselines.placement.model.equations import (
+    Equation,
+    filter_equation,
+    filter_slopes,
+    regulator_equation,
+    regulator_slopes,
+    trace_slopes,
+)
+from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes, layout_matrices, matrix_slopes
+from baselines.placement.model.reduced_layouts import ReducedLayouts, Reduction, reduce_layouts
+from baselines.placement.model.reduced_slopes import ReducedSlopes, reduce_with_slopes
+from beamenv.blade.bounds import Bounds
+from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.layouts import SIDES, Side, with_positions
+
+Array = NDArray[np.float64]
+Matrices = TypeVar("Matrices", LayoutMatrices, MatrixSlopes)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacementProblem:
+    """Where to put actuators (or sensors) of a blade whose other patches stay.
+
+    Actuators: tr(P) in s, of PA + AᵀP + Q − PBR⁻¹BᵀP = 0. ½xᵀx is the vibration energy, so tr(P)/r is the mean cost (J s per J)
+    of bringing the blade to rest, over initial states of 1 J in every direction of its 2r states.
+    Sensors: tr(S) in J, of AS + SAᵀ + W − SCᵀV⁻¹CS = 0 with the environment's noise; ½tr(S) is the mean energy that the filter
+    does not know of. The data acquisition, and so V, stays as it is when sensors move.
+    """
+
+    config: BladeConfig
+    """The blade, with its moving patches equally spaced and the range of its data acquisition held."""
+    side: Side
+    bounds: Bounds
+    load_noise: Array
+    """W (2, 2), (N/m)² s."""
+    sensor_noise: float
+    """V, A² s, of every sensor."""
+    parts: Contributions
+
+    @classmethod
+    def of(
+        cls, config: BladeConfig, side: Side = "actuators", count: int | None = None, bounds: Sequence[float] | None = None
+    ) -> PlacementProblem:
+        """The problem of a configuration; ``count`` defaults to its own number of patches, ``bounds`` (m) to 0 … 0.7 L.
+
+        Raises ``ValueError`` for an unknown side, bounds without room, more patches than fit, or sensors without noise.
+        """
+        if side not in SIDES:
+            raise ValueError(f"side = {side!r} must be one of {', '.join(SIDES)}.")
+        if side == "sensors":
+            check_noise(config)
+        own = getattr(config.patches, side)
+        number = (own if isinstance(own, int) else len(own)) if count is None else count
+        room = Bounds.of(config.patches, config.beam.length, number, bounds, name=side)
+        uniform = with_positions(config, {side: tuple(room.uniform().tolist())})
+        plant = build_plant(uniform)
+        held = replace(uniform, sensor_full_scale=float(plant.sensor_full_scale[0]))
+        return cls(held, side, room, plant.process_noise, float(plant.sensor_noise[0, 0]), parts_of(config))
+
+    def configuration(self, positions: ArrayLike) -> BladeConfig:
+        """The blade with its moving patches at ``positions`` (count,), m: what ``build_plant`` takes."""
+        return with_positions(self.config, {self.side: tuple(self.bounds.checked(positions).tolist())})
+
+    def cost(self, positions: Array) -> Array:
+        """The trace (N,) of feasible layouts (N, count), m from the root."""
+        reduced = self.reduced(positions)
+        return np.asarray(np.trace(solve_riccati(*self.equation(reduced)), axis1=1, axis2=2))
+
+    def cost_and_slopes(self, positions: Array) -> tuple[float, Array]:
+        """The trace of one layout (count,) and its exact derivatives (count,) by the positions, per m."""
+        actuators, sensors = self._layouts(positions[None])
+        size = self.bounds.length, self.config.patches.passive
+        matrices = self._ganged(layout_matrices(self.parts, actuators, sensors, *size))
+        moved = self._ganged(matrix_slopes(self.parts, actuators[0], sensors[0], *size))
+        reduced, slopes = reduce_with_slopes(self.parts, matrices, moved, Reduction.of(self.config))
+        equation = self.equation(reduced)
+        solution = solve_riccati(*equation)[0]
+        by_patch = trace_slopes(equation, self._equation_slopes(reduced, slopes), solution)
+        own = slice(None, actuators.shape[1]) if self.side == "actuators" else slice(actuators.shape[1], None)
+        return float(np.trace(solution)), by_patch[own]
+
+    def reduced(self, positions: Array) -> ReducedLayouts:
+        """Layouts (N, count), m from the root, as reduced blades."""
+        actuators, sensors = self._layouts(np.atleast_2d(positions))
+        matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, self.config.patches.passive)
+        return reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
+
+    def equation(self, reduced: ReducedLayouts) -> Equation:
+        """The regulator's or the filter's equation of reduced layouts."""
+        if self.side == "actuators":
+            return regulator_equation(reduced)
+        return filter_equation(reduced, self.load_noise, self.sensor_noise)
+
+    def _equation_slopes(self, reduced: ReducedLayouts, slopes: ReducedSlopes) -> Equation:
+        if self.side == "actuators":
+            return regulator_slopes(reduced, slopes)
+        return filter_slopes(reduced, slopes, self.load_noise, self.sensor_noise)
+
+    def _layouts(self, positions: Array) -> tuple[Array, Array]:
+        """Actuators (N, a) and sensors (N, s), m."""
+        patches, span = self.config.patches, self.config.beam.length
+        if self.side == "actuators":
+            fixed = patches.sensor_positions(span)
+            return positions, np.tile(fixed, (len(positions), 1))
+        return np.tile(patches.actuator_positions(span), (len(positions), 1)), positions
+
+    def _ganged(self, matrices: Matrices) -> Matrices:
+        """With one voltage for all actuators, their forces are one."""
+        if not self.config.patches.ganged:
+            return matrices
+        return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True))
+
+
+def check_noise(config: BladeConfig) -> None:
+    """``ValueError`` for a blade on which every layout of sensors is as good as any other."""
+    for name in ("white_load", "sensor_noise_fraction"):
+        if getattr(config, name) == 0.0:
+            raise ValueError(f"{name} = {getattr(config, name)!r} must be positive: without noise all sensors serve alike.")
+
+
+def parts_of(config: BladeConfig) -> Contributions:
+    """The contributions of a blade, kept from one problem to the next: they depend on neither side nor positions."""
+    patches = replace(config.patches, actuators=1, sensors=1, ganged=False)
+    return _parts(BladeConfig(beam=config.beam, patches=patches, speed=config.speed))
+
+
+_parts = lru_cache(maxsize=16)(contributions)

@@ -1,0 +1,1 @@
+"""The reduced plant as a function of where the patches are."""

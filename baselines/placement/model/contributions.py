@@ -1,0 +1,171 @@
+"""What a patch adds to a blade wherever it lies, from integrals along the span taken once.
+
+Pretwist, taper and the walls' kinematics depend on z alone, so a patch from a to a + l adds I(a + l) − I(a) to a matrix, with
+I(z) = ∫₀ᶻ of what a covered section has and a bare one has not. I is smooth: a Chebyshev series holds it to round-off. Sections
+are bare, covered on top, below, or on both walls (the closed cell couples its walls, so "both" is not the sum).
+
+The added mass m' also pulls: with T(z) = T₀(z) + ∫_z m'(R₀ + σ) dσ the centrifugal stiffening between two patch edges is
+∫ T₀ S dz + c ∫ S dz − ∫ h S dz, where S = u'u' + v'v' + (I_p/m) φ'φ', h(z) = ∫₀ᶻ m'(R₀ + σ) dσ and c is constant there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.placement.model.chebyshev import ChebyshevSpan
+from baselines.placement.model.triangles import packed
+from beamenv.blade.config import BladeConfig
+from beamenv.patches import force_per_span
+from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
+from beamenv.structure import RotatingBeam
+from beamenv.structure.assembly import generalised_displacements, generalised_strains
+from beamenv.structure.modes import normal_modes
+
+Array = NDArray[np.float64]
+
+COVERED_WALLS = ((), (ACTUATOR_WALL,), (SENSOR_WALL,), (ACTUATOR_WALL, SENSOR_WALL))
+"""What is covered in a section of kind 0 (bare), 1 (top), 2 (below), 3 (both)."""
+BARE, TOP, BELOW, BOTH = range(len(COVERED_WALLS))
+
+EXTRA_COEFFICIENTS = 12
+"""Beyond two for each trial function (products of two of them are integrated): pretwist and taper then leave round-off only."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contributions:
+    """A blade at one speed in the coordinates in which its bare stiffness is the identity, and what patches add to it.
+
+    The coordinates are its N modes, each divided by its frequency: K = I + ΔK, M = diag(1/ω²) + ΔM.
+    """
+
+    span: ChebyshevSpan
+    """0 … 0.7 L, where patches may lie; k coefficients."""
+    bare_frequencies: Array
+    """(N,), rad/s."""
+    bare_gyroscopic: Array
+    """G (N, N) of the bare blade."""
+    line_load: Array
+    """(N, 2): generalised force per N/m."""
+    stiffness: Array
+    """(7 k, T): upper triangles; 3 k of sections covered on top, below, on both, with bare T₀ and −h, then 4 k of Ω² ∫S for
+    every kind of section, to be multiplied by c."""
+    mass: Array
+    """(3 k, T): upper triangles."""
+    gyroscopic: Array
+    """(3 k, T): upper triangles of skew matrices."""
+    tension: Array
+    """(k, 4): h(z) for each kind of section, kg m/m·m = N per (rad/s)²."""
+    actuator_force: Array
+    """(2, k, N): per volt, with nothing below, and what a sensor below changes."""
+    sensor_force: Array
+    """(2, k, N): the same of a sensor, driven as an actuator, with nothing above and what an actuator above changes."""
+
+
+def contributions(config: BladeConfig) -> Contributions:
+    """The contributions of a configuration's patches, for any position of them; takes about 0.1 s."""
+    layout = config.patches
+    span = ChebyshevSpan(OUTERMOST * config.beam.length, 2 * config.beam.terms + EXTRA_COEFFICIENTS)
+    bare = config.beam.build()
+    frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
+    basis = shapes / frequencies
+    sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
+    tension = span.integral(np.stack([s.added_pull(sections[BARE]) for s in sections], axis=1))
+    bare_tension, pull = tension_of(bare, span.nodes), span.values(span.nodes) @ tension
+    slopes = [s.slope_squares * config.speed**2 for s in sections]
+    stiffness = [
+        s.elastic + config.speed**2 * s.softening + (bare_tension - pull[:, kind])[:, None, None] * slopes[kind]
+        for kind, s in enumerate(sections)
+    ]
+    forces = [force_samples(beam, config, span, basis) for beam in covered_blades(config, span)]
+    top, below = span.integral(np.stack([f[0] for f in forces], axis=1)), span.integral(np.stack([f[1] for f in forces], axis=1))
+    return Contributions(
+        span=span,
+        bare_frequencies=frequencies,
+        bare_gyroscopic=config.speed * basis.T @ bare.matrices.gyroscopic @ basis,
+        line_load=basis.T @ bare.line_load(),
+        stiffness=np.concatenate([beyond_bare(span, stiffness), stacked(span, slopes)]),
+        mass=beyond_bare(span, [s.mass for s in sections]),
+        gyroscopic=config.speed * beyond_bare(span, [s.gyroscopic for s in sections]),
+        tension=tension,
+        actuator_force=np.stack([top[:, TOP], top[:, BOTH] - top[:, TOP]]),
+        sensor_force=layout.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
+    )
+
+
+def covered_blades(config: BladeConfig, span: ChebyshevSpan) -> list[RotatingBeam]:
+    """The blade bare, and with its walls covered over the whole span of patches; all bare where patches are not passive."""
+    bare, layout = config.beam.build(), config.patches
+    if not layout.passive:
+        return [bare] * len(COVERED_WALLS)
+    sheets = {wall: layout.patch.inlay(wall, 0.0, span.end, layout.width) for wall in (ACTUATOR_WALL, SENSOR_WALL)}
+    return [replace(bare, inlays=tuple(sheets[wall] for wall in walls)) for walls in COVERED_WALLS]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SectionSamples:
+    """Integrands of the blade's matrices at the nodes, (nodes, N, N), of one kind of section."""
+
+    elastic: Array
+    mass: Array
+    gyroscopic: Array
+    softening: Array
+    slope_squares: Array
+    pull: Array
+    """(nodes,): m (R₀ + z), kg."""
+
+    @classmethod
+    def of(cls, beam: RotatingBeam, span: ChebyshevSpan, basis: Array) -> SectionSamples:
+        """Sample a blade whose sections are all of one kind over the span of patches."""
+        walls = beam.walls_at(span.nodes)
+        rows = {key: row @ basis for key, row in beam.space.evaluate(span.nodes).items()}
+        strain, motion = generalised_strains(rows), generalised_displacements(rows)
+        inertia = walls.inertia()
+        half = quadratic(motion, 2.0 * inertia.lag_span)
+        slopes = np.stack([rows["u", 1], rows["v", 1], rows["phi", 1]], axis=1)
+        radius = (inertia.polar / inertia.mass_per_length)[:, None]
+        share = np.concatenate([np.ones((len(radius), 2)), radius], axis=1)
+        return cls(
+            elastic=quadratic(strain, walls.stiffness()),
+            mass=quadratic(motion, inertia.mass),
+            gyroscopic=half - half.transpose(0, 2, 1),
+            softening=quadratic(motion, inertia.spin_stiffness),
+            slope_squares=slopes.transpose(0, 2, 1) @ (share[..., None] * slopes),
+            pull=inertia.mass_per_length * (beam.hub_radius + span.nodes),
+        )
+
+    def added_pull(self, bare: SectionSamples) -> Array:
+        """m'(R₀ + z) (nodes,), kg."""
+        return self.pull - bare.pull
+
+
+def quadratic(rows: Array, section: Array) -> Array:
+    """rowsᵀ section rows (nodes, N, N) from (nodes, 9, N) and (nodes, 9, 9)."""
+    return rows.transpose(0, 2, 1) @ (section @ rows)
+
+
+def tension_of(bare: RotatingBeam, z: Array) -> Array:
+    """T₀ (nodes,) = ∫_z^L m (R₀ + σ) dσ of the bare blade, N per (rad/s)²."""
+    whole = ChebyshevSpan(bare.length, 2 * bare.terms + EXTRA_COEFFICIENTS)
+    mass = bare.walls_at(whole.nodes).inertia().mass_per_length
+    pulled = whole.integral(mass * (bare.hub_radius + whole.nodes))
+    return np.asarray((whole.values(np.array([bare.length])) - whole.values(z)) @ pulled)
+
+
+def force_samples(beam: RotatingBeam, config: BladeConfig, span: ChebyshevSpan, basis: Array) -> tuple[Array, Array]:
+    """Force per volt and metre (nodes, N) of a patch on the actuators' and on the sensors' wall."""
+    layout = config.patches
+    on_top, below = (force_per_span(beam, layout.patch, wall, layout.width, span.nodes) for wall in (ACTUATOR_WALL, SENSOR_WALL))
+    return on_top @ basis, below @ basis
+
+
+def stacked(span: ChebyshevSpan, samples: list[Array]) -> Array:
+    """Integrals of several samples (nodes, N, N), as triangles under each other: (len · k, T)."""
+    return np.concatenate([packed(span.integral(sample)) for sample in samples])
+
+
+def beyond_bare(span: ChebyshevSpan, samples: list[Array]) -> Array:
+    """What the covered kinds of section have and the bare one has not: (3 k, T)."""
+    return stacked(span, [sample - samples[BARE] for sample in samples[1:]])

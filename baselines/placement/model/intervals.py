@@ -1,0 +1,151 @@
+"""A layout as intervals of bare and covered span, and how much of every series of ``contributions`` each layout takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.placement.model.chebyshev import ChebyshevSpan
+from baselines.placement.model.contributions import BARE, COVERED_WALLS
+
+Array = NDArray[np.float64]
+
+KINDS = len(COVERED_WALLS)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PatchEdges:
+    """N layouts of patches ``length`` m long, with the Chebyshev polynomials at their edges."""
+
+    actuators: Array
+    """(N, a): root-side edges, m."""
+    sensors: Array
+    """(N, s)."""
+    length: float
+    span: ChebyshevSpan
+    starts: Array
+    ends: Array
+    """(N, a + s, k) each, actuators first."""
+
+    @classmethod
+    def of(cls, actuators: Array, sensors: Array, length: float, span: ChebyshevSpan) -> PatchEdges:
+        """Evaluate the polynomials."""
+        root_side = np.concatenate([actuators, sensors], axis=1)
+        starts, ends = np.split(span.values(np.concatenate([root_side, root_side + length], axis=1)), 2, axis=1)
+        return cls(actuators, sensors, length, span, starts, ends)
+
+    def force_shares(self) -> tuple[Array, Array]:
+        """(N, a, 2, k) and (N, s, 2, k): how much of the two force series each actuator and each sensor takes."""
+        count = self.actuators.shape[1]
+        first, second = self.actuators[:, :, None], self.sensors[:, None, :]
+        actuator_first = (first <= second)[..., None]
+        actuator_start, sensor_start = self.starts[:, :count, None], self.starts[:, None, count:]
+        actuator_end, sensor_end = self.ends[:, :count, None], self.ends[:, None, count:]
+        common = np.where(actuator_first, actuator_end - sensor_start, sensor_end - actuator_start)
+        common *= (np.abs(first - second) < self.length)[..., None]
+        covered = self.ends - self.starts
+        own = np.stack([covered[:, :count], common.sum(axis=2)], axis=2)
+        return own, np.stack([covered[:, count:], common.sum(axis=1)], axis=2)
+
+    def force_share_slopes(self) -> tuple[Array, Array]:
+        """(N, a + s, a, 2, k) and (N, a + s, s, 2, k): derivatives of ``force_shares`` by every patch's position, 1/m."""
+        a, s = self.actuators.shape[1], self.sensors.shape[1]
+        root_side = np.concatenate([self.actuators, self.sensors], axis=1)
+        start, end = self.span.slopes(root_side), self.span.slopes(root_side + self.length)
+        first, second = self.actuators[:, :, None], self.sensors[:, None, :]
+        overlap = (np.abs(first - second) < self.length)[..., None]
+        actuator_first = (first <= second)[..., None]
+        by_actuator = overlap * np.where(actuator_first, end[:, :a, None], -start[:, :a, None])
+        by_sensor = overlap * np.where(actuator_first, -start[:, None, a:], end[:, None, a:])
+        top, below = (np.zeros((len(root_side), a + s, patches, 2, self.span.count)) for patches in (a, s))
+        own_top, own_below = np.arange(a), np.arange(s)
+        top[:, own_top, own_top, 0] = (end - start)[:, :a]
+        below[:, a + own_below, own_below, 0] = (end - start)[:, a:]
+        top[:, own_top, own_top, 1] = by_actuator.sum(axis=2)
+        top[:, a:, :, 1] = by_sensor.swapaxes(1, 2)
+        below[:, :a, :, 1] = by_actuator
+        below[:, a + own_below, own_below, 1] = by_sensor.sum(axis=1)
+        return top, below
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Intervals:
+    """N layouts cut at their E patch edges, root to tip: interval j lies between edge j and edge j + 1, edge 0 is the root."""
+
+    span: ChebyshevSpan
+    edges: Array
+    """(N, E + 1), m."""
+    values: Array
+    """(N, E + 1, k): the polynomials there."""
+    covered: Array
+    """(N, E, kinds): 1 for the kind of section that the interval has."""
+    patch: NDArray[np.intp]
+    """(N, E): number of the patch (actuators, then sensors) that edges 1 … E belong to."""
+
+    @classmethod
+    def of(cls, patches: PatchEdges) -> Intervals:
+        """Cut layouts at their patches' edges."""
+        starts = np.concatenate([patches.actuators, patches.sensors], axis=1)
+        count = starts.shape[1]
+        position = np.concatenate([starts, starts + patches.length], axis=1)
+        step = np.repeat([1, -1], count) * np.ones(position.shape, dtype=int)
+        on_top = np.tile(np.arange(count) < patches.actuators.shape[1], 2)
+        first_ends = np.where(step > 0, 1e-9 * patches.length, 0.0)  # touching patches: one ends before the next begins
+        order = np.argsort(position + first_ends, axis=1, kind="stable")
+        event = np.take_along_axis(step, order, axis=1)
+        above = np.where(on_top[order], event, 0).cumsum(axis=1) > 0
+        below = np.where(on_top[order], 0, event).cumsum(axis=1) > 0
+        kind = np.zeros(position.shape, dtype=int)
+        kind[:, 1:] = (above + 2 * below)[:, :-1]
+        edges = np.concatenate([np.zeros((len(starts), 1)), np.take_along_axis(position, order, axis=1)], axis=1)
+        root = np.broadcast_to(patches.span.values(np.zeros(1)), (len(starts), 1, patches.span.count))
+        at_edges = np.take_along_axis(np.concatenate([patches.starts, patches.ends], axis=1), order[..., None], axis=1)
+        values = np.concatenate([root, at_edges], axis=1)
+        covered = (kind[..., None] == np.arange(KINDS)).astype(float)
+        return cls(patches.span, edges, values, covered, np.tile(np.arange(count), 2)[order])
+
+    def share(self) -> Array:
+        """(N, 3 k): Σ over the intervals of a kind of T(end) − T(start), for covered kinds."""
+        steps = np.diff(self.values, axis=1)
+        return np.asarray(self.covered.transpose(0, 2, 1)[:, BARE + 1 :] @ steps).reshape(len(steps), -1)
+
+    def pulled_share(self, tension: Array) -> Array:
+        """(N, 4 k): the same for every kind, each interval times its c."""
+        steps = np.diff(self.values, axis=1)
+        weighted = self._pull(tension)[..., None] * self.covered
+        return np.asarray(weighted.transpose(0, 2, 1) @ steps).reshape(len(steps), -1)
+
+    def _pull(self, tension: Array) -> Array:
+        """The constants c (N, E): what patches further out pull, and h at the interval's own end."""
+        h = self.values @ tension
+        at_start = np.einsum("nek,nek->ne", self.covered, h[:, :-1])
+        at_end = np.einsum("nek,nek->ne", self.covered, h[:, 1:])
+        beyond = np.cumsum((at_end - at_start)[:, ::-1], axis=1)[:, ::-1]
+        return at_start + beyond
+
+    def share_slopes(self) -> Array:
+        """(N, patches, 3 k): derivatives of ``share`` by the patches' positions, 1/m."""
+        change = self.covered - np.pad(self.covered[:, 1:], ((0, 0), (0, 1), (0, 0)))
+        slope = self.span.slopes(self.edges[:, 1:])
+        return self._by_patch(change[..., BARE + 1 :, None] * slope[..., None, :])
+
+    def pulled_share_slopes(self, tension: Array) -> Array:
+        """(N, patches, 4 k): derivatives of ``pulled_share`` by the patches' positions, 1/m."""
+        pull, covered = self._pull(tension), self.covered
+        slope = self.span.slopes(self.edges[:, 1:])
+        weighted = pull[..., None] * covered
+        change = weighted - np.pad(weighted[:, 1:], ((0, 0), (0, 1), (0, 0)))
+        following = np.pad(covered[:, 1:], ((0, 0), (0, 1), (0, 0)))
+        pull_slope = np.einsum("nek,nek->ne", covered - following, slope @ tension)  # of every c up to this edge
+        steps = np.diff(self.values, axis=1)
+        inboard = np.cumsum(covered[..., None] * steps[..., None, :], axis=1)
+        return self._by_patch(change[..., None] * slope[..., None, :] + pull_slope[..., None, None] * inboard)
+
+    def _by_patch(self, by_edge: Array) -> Array:
+        """Sum (N, E, kinds, k) over the two edges of every patch: (N, patches, kinds k)."""
+        patches = self.patch.shape[1] // 2
+        belongs = (self.patch[..., None] == np.arange(patches)).astype(float)
+        flat = by_edge.reshape(*by_edge.shape[:2], -1)
+        return np.asarray(belongs.transpose(0, 2, 1) @ flat)

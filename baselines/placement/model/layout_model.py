@@ -1,0 +1,92 @@
+"""Layouts as matrices: what many blades, each with its patches elsewhere, are made of, by a few products each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.placement.model.contributions import Contributions
+from baselines.placement.model.intervals import Intervals, PatchEdges
+from baselines.placement.model.triangles import skew_from, symmetric_from
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LayoutMatrices:
+    """Full-order blades in the coordinates of ``Contributions``; without passive effect the first three have one row for all."""
+
+    stiffness: Array
+    """K (N, n, n)."""
+    mass: Array
+    """M (N, n, n)."""
+    gyroscopic: Array
+    """G (N, n, n), at the speed."""
+    forces: Array
+    """(N, n, a): per volt of every actuator."""
+    charges: Array
+    """(N, s, n): C per coordinate of every sensor."""
+
+
+def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, length: float, passive: bool) -> LayoutMatrices:
+    """Blades with patches ``length`` m long at ``actuators`` (N, a) and ``sensors`` (N, s), m from the root."""
+    n = len(parts.bare_frequencies)
+    patches = PatchEdges.of(actuators, sensors, length, parts.span)
+    stiffness, mass, gyroscopic = np.eye(n)[None], np.diag(parts.bare_frequencies**-2.0)[None], parts.bare_gyroscopic[None]
+    if passive:
+        cut = Intervals.of(patches)
+        share = cut.share()
+        both = np.concatenate([share, cut.pulled_share(parts.tension)], axis=1)
+        stiffness = stiffness + symmetric_from(both @ parts.stiffness, n)
+        mass = mass + symmetric_from(share @ parts.mass, n)
+        gyroscopic = gyroscopic + skew_from(share @ parts.gyroscopic, n)
+    top, below = patches.force_shares()
+    return LayoutMatrices(
+        stiffness=stiffness,
+        mass=mass,
+        gyroscopic=gyroscopic,
+        forces=along(top, parts.actuator_force).swapaxes(1, 2),
+        charges=along(below, parts.sensor_force),
+    )
+
+
+def along(shares: Array, series: Array) -> Array:
+    """Force vectors (…, n) from shares (…, 2, k) of the two series (2, k, n)."""
+    return np.asarray(shares.reshape(*shares.shape[:-2], -1) @ series.reshape(-1, series.shape[-1]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MatrixSlopes:
+    """Derivatives of one layout's matrices by its patches' positions (actuators, then sensors), p of them, per m."""
+
+    stiffness: Array
+    mass: Array
+    gyroscopic: Array
+    """(p, n, n) each."""
+    forces: Array
+    """(p, n, a)."""
+    charges: Array
+    """(p, s, n)."""
+
+
+def matrix_slopes(parts: Contributions, actuators: Array, sensors: Array, length: float, passive: bool) -> MatrixSlopes:
+    """Derivatives for one layout: ``actuators`` (a,) and ``sensors`` (s,), m from the root."""
+    n = len(parts.bare_frequencies)
+    patches = PatchEdges.of(actuators[None], sensors[None], length, parts.span)
+    stiffness = mass = gyroscopic = np.zeros((len(actuators) + len(sensors), n, n))
+    if passive:
+        cut = Intervals.of(patches)
+        share = cut.share_slopes()[0]
+        both = np.concatenate([share, cut.pulled_share_slopes(parts.tension)[0]], axis=1)
+        stiffness = symmetric_from(both @ parts.stiffness, n)
+        mass, gyroscopic = symmetric_from(share @ parts.mass, n), skew_from(share @ parts.gyroscopic, n)
+    top, below = patches.force_share_slopes()
+    return MatrixSlopes(
+        stiffness=stiffness,
+        mass=mass,
+        gyroscopic=gyroscopic,
+        forces=along(top[0], parts.actuator_force).swapaxes(1, 2),
+        charges=along(below[0], parts.sensor_force),
+    )

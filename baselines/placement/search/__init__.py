@@ -1,0 +1,1 @@
+"""Searching for the layout of least cost."""

@@ -1,0 +1,93 @@
+"""One interface to every search for positions."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from baselines.placement.cost.controllability import check_reach
+from baselines.placement.cost.problem import PlacementProblem
+from baselines.placement.search.evolution import Evolution
+from baselines.placement.search.genetic import Genetic
+from baselines.placement.search.grid import Grid
+from baselines.placement.search.placement import Placement, Progress, Recorder
+from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
+
+Array = NDArray[np.float64]
+
+
+class Method(Protocol):
+    """A search: it evaluates layouts through the recorder, which remembers the best."""
+
+    def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
+        """Search from ``start`` (count,), m, which has been evaluated already."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class InTurn:
+    """One search after another, each from the best so far (thesis Fig. 6.3: GA, then SQP)."""
+
+    stages: tuple[Method, ...]
+
+    def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
+        """Search."""
+        recorder.share = 1.0 / len(self.stages)
+        for stage in self.stages:
+            stage.run(recorder, recorder.positions, generator)
+            recorder.begun += recorder.share
+
+
+METHODS: Mapping[str, Method] = MappingProxyType(
+    {
+        "multistart": MultiStart(),
+        "ga+sqp": InTurn((Genetic(), SequentialQuadratic())),
+        "ga": Genetic(),
+        "sqp": SequentialQuadratic(),
+        "cma-es": Evolution(),
+        "grid": Grid(),
+    }
+)
+"""SQP from many starts, the thesis' way and its two halves, CMA-ES, and for one or two patches every layout."""
+
+
+def place(
+    problem: PlacementProblem,
+    method: str | Method = "multistart",
+    seed: int = 0,
+    start: ArrayLike | None = None,
+    progress: Progress | None = None,
+) -> Placement:
+    """Positions of least cost that a method finds, never dearer than its start; the same seed gives the same positions.
+
+    ``start`` (count,), m, is uniform unless given. Raises ``ValueError`` for an unknown method, a start that is not feasible, or
+    a blade with a mode that the patches cannot move (or sense).
+    """
+    if isinstance(method, str) and method not in METHODS:
+        raise ValueError(f"method = {method!r} must be one of {', '.join(METHODS)}.")
+    chosen = METHODS[method] if isinstance(method, str) else method
+    begin = problem.bounds.uniform() if start is None else problem.bounds.checked(start)
+    clock = time.perf_counter()
+    recorder = Recorder(problem, progress)
+    start_cost = float(recorder.costs(begin[None])[0])
+    recorder.note(0.0)
+    chosen.run(recorder, begin, np.random.default_rng(seed))
+    check_reach(problem, recorder.positions)
+    return Placement(
+        side=problem.side,
+        method=method if isinstance(method, str) else type(method).__name__,
+        seed=seed,
+        positions=tuple(recorder.positions.tolist()),
+        cost=recorder.cost,
+        start=tuple(begin.tolist()),
+        start_cost=start_cost,
+        history=tuple(recorder.history),
+        evaluations=recorder.evaluations,
+        seconds=time.perf_counter() - clock,
+    )

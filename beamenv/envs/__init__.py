@@ -1,0 +1,1 @@
+"""Gymnasium environments: a single blade, a batch, and wrappers for history and placement."""

@@ -1,0 +1,300 @@
+"""The natively batched environment that ``gymnasium.make_vec("beamenv/RotatingBeam-v0")`` makes."""
+
+from __future__ import annotations
+
+import operator
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from beamenv.blade.config import BladeConfig
+from beamenv.plant.plant import Plant
+from beamenv.scenarios.scenario import Scenario
+from beamenv.simulation.blades import Blades, Motion
+from beamenv.simulation.mixed_blades import MixedBlades
+from beamenv.task import INFO, Task, checked_action, information, reset_options, resolve_task
+
+if TYPE_CHECKING:
+    from beamenv.rendering import BatchRenderer
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Rows = NDArray[np.int64]
+
+
+class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
+    """``num_envs`` blades, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
+
+    In the scenarios with several plants (`off-speed`, `off-model`) every episode draws its own from one bank, in `spin-up` each
+    blade is at its own time of the run-up, and `delay` and `failure` draw faults blade by blade; ``rotor_speed`` (N,) and
+    ``design_state`` (N, d) are those of each blade.
+
+    ```python
+    >>> import gymnasium, beamenv
+    >>> envs = gymnasium.make_vec("beamenv/RotatingBeam-v0", num_envs=4096)
+    >>> observations, info = envs.reset(seed=0)
+    >>> observations.shape
+    (4096, 4)
+
+    ```
+
+    The arguments ``preset``, ``speed``, ``blade``, ``design``, ``scenario``, ``duration`` and ``physical_units`` are those of
+    ``RotatingBeamEnv``; the others are
+
+    - `num_envs`: how many blades, default 1.
+    - `autoreset_mode`: an `AutoresetMode` or its value. `"NextStep"` (Gymnasium's own default): the step after the last one of an
+      episode ignores the action, begins the next episode and returns its first observation with reward 0. `"SameStep"` (what
+      Stable-Baselines3 expects): the last step returns the first observation and info of the next episode, and those of the
+      finished one as `info["final_obs"]` and `info["final_info"]`.
+    - `max_episode_steps`: a time limit in control intervals, if it is to be shorter than `duration`.
+    - `render_mode`: None or `"rgb_array"`; `render_index`: which blade is drawn, default 0, or a sequence of several. `render`
+      returns a tuple of one picture for each of them. `gymnasium.wrappers.vector.RecordVideo` wants all: `range(num_envs)`.
+
+    **Seeds.** `reset(seed=7)` makes one generator for the whole batch: fast. `reset(seed=[7, 8, ...])`, one for each blade,
+    gives each blade its own, and with it exactly the load cases and noise, bit for bit, that `RotatingBeamEnv` has after
+    `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. `reset()` never re-seeds.
+
+    **Info.** `volts` (N, m) asked for, after saturation, `tip_displacement` (N, 2), `energy`, `effort` and `cost_increment` (N,),
+    each with Gymnasium's mask `_volts`, ….
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 50, "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        preset: str = "thesis",
+        speed: float | None = None,
+        blade: BladeConfig | Mapping[str, Any] | None = None,
+        design: BladeConfig | Mapping[str, Any] | str | None = None,
+        scenario: Scenario | Mapping[str, Any] | str | None = None,
+        duration: float = 0.5,
+        physical_units: bool = False,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        max_episode_steps: int | None = None,
+        render_mode: str | None = None,
+        render_index: int | Sequence[int] = 0,
+    ) -> None:
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
+        self.render_mode = render_mode
+        self.num_envs = _positive("num_envs", num_envs)
+        self._drawn = _rows("render_index", render_index, self.num_envs)
+        self._time_limit = sys.maxsize if max_episode_steps is None else _positive("max_episode_steps", max_episode_steps)
+        self._mode = _autoreset_mode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self._mode}
+        self._generators: np.random.Generator | list[np.random.Generator] | None = None
+        self.adopt([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
+
+    def adopt(self, tasks: Sequence[Task]) -> None:
+        """Take on one task for all blades, or one for each, in place of those before; what comes next must be ``reset``.
+
+        The tasks may differ in their blades alone, and these not in how many patches they have. ``task``, ``plant`` and
+        ``design_plant`` are then the first blade's.
+        """
+        self.task = tasks[0]
+        self.single_action_space = self.task.action_space()
+        self.single_observation_space = self.task.observation_space()
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self._blades: Blades | MixedBlades
+        if len(tasks) == 1:
+            self._blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units)
+        else:
+            self._blades = MixedBlades([task.bank for task in tasks], self.task.scenario, self.task.physical_units)
+        self._actions_shape = (self.num_envs, *self.single_action_space.shape)
+        self._steps = min(self.task.steps, self._time_limit)
+        self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
+        self._over: Rows = np.arange(0)  # rows whose episode ended at the last step, with NEXT_STEP
+        self._pictures = None if self.render_mode is None else self._make_pictures(tasks)
+
+    @property
+    def plant(self) -> Plant:
+        """The true plant, the one that moves."""
+        return self.task.plant
+
+    @property
+    def design_plant(self) -> Plant:
+        """The plant controllers are to be designed for."""
+        return self.task.design_plant
+
+    @property
+    def state(self) -> Array:
+        """(N, n) the true states, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
+        return self._blades.state
+
+    @property
+    def design_state(self) -> Array:
+        """(N, d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        return self._blades.design_state
+
+    @property
+    def rotor_speed(self) -> Any:
+        """(N,) rad/s: what a tachometer shows now."""
+        return self._blades.speed
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """What made this environment; its ``to_json`` works with an ``AutoresetMode`` too."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        if spec is not None and isinstance(mode := spec.kwargs.get("autoreset_mode"), AutoresetMode):
+            spec.kwargs = {**spec.kwargs, "autoreset_mode": mode.value}
+        self._spec = spec
+
+    _spec: EnvSpec | None = None
+
+    def reset(
+        self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Begin an episode of every blade. ``seed``: one for the batch, or a sequence of one for each blade.
+
+        ``options`` are those of ``RotatingBeamEnv``; its "initial_state" may be (N, n), one for each blade. "elapsed" (N,) takes
+        so many control intervals off each first episode: episodes that begin together otherwise stay in step for ever.
+        """
+        options = dict(options or {})
+        elapsed = _elapsed(options.pop("elapsed", 0), self._steps, self.num_envs)
+        scenario, initial_state = reset_options(self.task, options, self.num_envs)
+        self._seed(seed)
+        assert self._generators is not None
+        self._elapsed[:] = elapsed
+        self._over = np.arange(0)
+        motion = self._blades.begin(self._generators, scenario=scenario, initial_state=initial_state)
+        if self._pictures is not None:
+            self._pictures.begin(self._blades, motion)
+        return motion.observation, _masked(information(motion))
+
+    def _seed(self, seed: int | Sequence[int] | None) -> None:
+        if seed is None:
+            self._generators = self.np_random if self._generators is None else self._generators
+        elif isinstance(seed, (int, np.integer)):
+            super().reset(seed=int(seed))
+            self._generators = self.np_random
+        else:
+            self._generators = [seeding.np_random(number)[0] for number in _seeds(seed, self.num_envs)]
+
+    def step(self, actions: Array) -> tuple[Array, Array, Mask, Mask, dict[str, Any]]:
+        """Hold the voltages of every blade over one control interval."""
+        if self._generators is None:
+            raise gymnasium.error.ResetNeeded("Call reset before step.")
+        actions = checked_action(actions, self._actions_shape)
+        resting = self._over if len(self._over) else None
+        motion = self._blades.step(actions, self._generators, resting)
+        self._elapsed += 1
+        truncated = self._elapsed >= self._steps
+        if resting is not None:
+            truncated[resting] = False
+            self._begin(resting, motion)
+        if self._pictures is not None:
+            self._pictures.record(self._blades, motion, begun=resting)
+        over = motion.failed | truncated
+        info = information(motion)
+        if over.any():
+            rows = np.flatnonzero(over)
+            if self._mode is AutoresetMode.SAME_STEP:
+                return self._begun_at_once(rows, motion, truncated)
+            self._over = rows
+        elif resting is not None:
+            self._over = np.arange(0)
+        return motion.observation, motion.reward, motion.failed, truncated, _masked(info)
+
+    def _begin(self, rows: Rows, motion: Motion) -> None:
+        """Begin another episode of ``rows`` and put its start into their rows of ``motion``."""
+        assert self._generators is not None
+        start = self._blades.begin(self._generators, rows)
+        for each, first in zip(motion, start, strict=True):
+            each[rows] = first
+        self._elapsed[rows] = 0
+
+    def _begun_at_once(self, rows: Rows, motion: Motion, truncated: Mask) -> tuple[Array, Array, Mask, Mask, dict[str, Any]]:
+        """SAME_STEP: what a step returns after which ``rows`` begin another episode."""
+        final = {name: np.zeros_like(value) for name, value in information(motion).items()}
+        for name, value in information(motion).items():
+            final[name][rows] = value[rows]
+        final_obs = np.full(self.num_envs, None, dtype=object)
+        for row, observation in zip(rows.tolist(), motion.observation[rows], strict=True):
+            final_obs[row] = observation
+        reward, terminated, over = motion.reward.copy(), motion.failed.copy(), np.zeros(self.num_envs, dtype=np.bool_)
+        over[rows] = True
+        self._begin(rows, motion)
+        if self._pictures is not None:
+            self._pictures.begin(self._blades, motion, rows)
+        info = _masked(information(motion))
+        info.update(final_obs=final_obs, _final_obs=over, final_info=_masked(final, over), _final_info=over.copy())
+        return motion.observation, reward, terminated, truncated, info
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Pictures (540, 960, 3) of the blades in ``render_index``, as ``RotatingBeamEnv`` draws them."""
+        if self._pictures is None:
+            gymnasium.logger.warn('render was called without a render_mode: make the environment with render_mode="rgb_array".')
+            return None
+        if self._generators is None:
+            raise gymnasium.error.ResetNeeded("Call reset before render.")
+        return self._pictures.draw()
+
+    def _make_pictures(self, tasks: Sequence[Task]) -> BatchRenderer:
+        from beamenv.rendering import BatchRenderer
+
+        drawn = {row: tasks[row % len(tasks)] for row in self._drawn}
+        return BatchRenderer(drawn, self.task.observation_space().high)
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Nothing is open; but a closed environment must be reset before it is stepped."""
+        self._generators = None
+
+
+def _masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:
+    """Info with Gymnasium's mask "_key" beside every key: which rows it holds for, all if None."""
+    for name in INFO:
+        info[f"_{name}"] = np.ones(len(info[name]), dtype=np.bool_) if mask is None else mask.copy()
+    return info
+
+
+def _positive(name: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+        raise ValueError(f"{name} is {value!r}, but must be a positive integer.")
+    return int(value)
+
+
+def _rows(name: str, value: Any, count: int) -> tuple[int, ...]:
+    """Rows of the batch, from one number or a sequence."""
+    rows = np.atleast_1d(np.asarray(value))
+    if rows.ndim != 1 or rows.dtype.kind not in "iu" or not len(rows) or not np.all((rows >= 0) & (rows < count)):
+        raise ValueError(f"{name} is {value!r}, but must be an integer from 0 to {count - 1}, or a sequence of such integers.")
+    return tuple(rows.tolist())
+
+
+def _elapsed(value: Any, steps: int, count: int) -> Rows:
+    """Control intervals already over, one for each blade."""
+    elapsed = np.asarray(value)
+    if elapsed.shape not in ((), (count,)) or elapsed.dtype.kind not in "iu" or not np.all((elapsed >= 0) & (elapsed < steps)):
+        raise ValueError(f"options['elapsed'] is {value!r}, but must be integers from 0 to {steps - 1}, one or {count} of them.")
+    return elapsed.astype(np.int64)
+
+
+def _seeds(seed: Sequence[int], count: int) -> list[int]:
+    try:
+        seeds = [operator.index(number) for number in seed]
+    except TypeError:
+        seeds = [-1]
+    if len(seeds) != count or min(seeds) < 0:
+        raise ValueError(f"seed is {seed!r}, but must be an integer, or a sequence of {count} integers that are not negative.")
+    return seeds
+
+
+def _autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
+    selectable = (AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP)
+    for mode in selectable:
+        if value in (mode, mode.value):
+            return mode
+    raise ValueError(f"autoreset_mode is {value!r}, but must be one of {', '.join(repr(mode.value) for mode in selectable)}.")

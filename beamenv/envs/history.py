@@ -1,0 +1,148 @@
+"""Wrappers that show an agent the recent past: one reading cannot tell the state of the blade."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.utils import RecordConstructorArgs
+from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
+from gymnasium.vector.utils import batch_space
+from numpy.typing import ArrayLike, NDArray
+
+from beamenv.plant.plant import Plant, drive_limit
+
+Array = NDArray[np.floating[Any]]
+
+
+class RollingHistory:
+    """The last ``length`` instants of a batch of blades: the one definition of how a history is laid out.
+
+    A window (N, length · (p + m)) holds the oldest instant first. For each instant it has the p sensor readings and then
+    the m voltages that were held in the interval before it, both normalised; zeros where the episode had not begun.
+    """
+
+    def __init__(self, count: int, length: int, readings: int, voltages: int, dtype: Any = np.float32) -> None:
+        self.length, self.width = length, readings + voltages
+        self._readings = readings
+        self._buffer = np.zeros((count, 4 * length, self.width), dtype=dtype)
+        self._end = length
+
+    def begin(self, readings: ArrayLike, rows: Any = slice(None)) -> None:
+        """Forget the past of ``rows``; ``readings`` (len(rows), p) are all there is."""
+        self._buffer[rows, self._end - self.length : self._end] = 0.0
+        self._buffer[rows, self._end - 1, : self._readings] = readings
+
+    def append(self, readings: ArrayLike, voltages: ArrayLike) -> None:
+        """One more instant: ``readings`` (N, p) after ``voltages`` (N, m), both normalised."""
+        if self._end == self._buffer.shape[1]:
+            kept = self.length - 1
+            self._buffer[:, :kept] = self._buffer[:, self._end - kept : self._end]
+            self._end = kept
+        self._end += 1
+        self.replace_last(slice(None), readings, voltages)
+
+    def replace_last(self, rows: Any, readings: ArrayLike, voltages: ArrayLike) -> None:
+        """Put another last instant in the place of that of ``rows``."""
+        self._buffer[rows, self._end - 1, : self._readings] = readings
+        self._buffer[rows, self._end - 1, self._readings :] = voltages
+
+    def window(self, rows: Any = slice(None)) -> Array:
+        """The histories (len(rows), length · (p + m)), a copy."""
+        kept = np.array(self._buffer[rows, self._end - self.length : self._end], order="C")
+        return kept.reshape(len(kept), -1)
+
+
+class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
+    """Observes the last ``length`` readings and own voltages in place of the last reading; see ``RollingHistory``.
+
+    - `env`: a `RotatingBeamEnv` with normalised units.
+    - `length`: instants shown, default 12: at 0.5 ms they cover 6 ms, a sixth of the slowest mode's period and
+      two of the fastest retained one's.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
+        RecordConstructorArgs.__init__(self, length=length)
+        gymnasium.Wrapper.__init__(self, env)
+        plant = _normalised_plant(env.unwrapped, length)
+        self._drive = drive_limit(plant)
+        self._history = RollingHistory(1, length, len(plant.C), len(self._drive))
+        self.observation_space = _space(self._history)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begin an episode with an empty past."""
+        reading, info = self.env.reset(seed=seed, options=options)
+        self._history.begin(reading)
+        return self._history.window()[0], info
+
+    def step(self, action: Array) -> tuple[Array, Any, bool, bool, dict[str, Any]]:
+        """Step and show the past."""
+        reading, reward, terminated, truncated, info = self.env.step(action)
+        self._history.append(reading, info["volts"] / self._drive)
+        return self._history.window()[0], reward, terminated, truncated, info
+
+
+class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type parameters
+    """``SensorHistory`` for the batched environment, in both of its autoreset modes.
+
+    - `env`: a `RotatingBeamVectorEnv` with normalised units.
+    - `length`: instants shown, default 12.
+
+    With SAME_STEP `info["final_obs"]` holds the histories at the end of the finished episodes.
+    """
+
+    def __init__(self, env: VectorEnv[Any, Any, NDArray[Any]], length: int = 12) -> None:
+        super().__init__(env)
+        plant = _normalised_plant(env.unwrapped, length)
+        self._drive = drive_limit(plant)
+        self._history = RollingHistory(env.num_envs, length, len(plant.C), len(self._drive))
+        self.single_observation_space = _space(self._history)
+        self.observation_space = batch_space(self.single_observation_space, env.num_envs)
+        self._same_step = env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+        self._over = np.zeros(env.num_envs, dtype=np.bool_)
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begin every episode with an empty past."""
+        readings, info = self.env.reset(seed=seed, options=options)
+        self._history.begin(readings)
+        self._over[:] = False
+        return self._history.window(), info
+
+    def step(self, actions: Array) -> tuple[Array, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        """Step and show the past of each blade."""
+        readings, reward, terminated, truncated, info = self.env.step(actions)
+        self._history.append(readings, info["volts"] / self._drive)
+        if self._same_step:
+            self._finish(readings, info)
+        else:
+            if self._over.any():
+                rows = np.flatnonzero(self._over)
+                self._history.begin(readings[rows], rows)
+            self._over = terminated | truncated
+        return self._history.window(), reward, terminated, truncated, info
+
+    def _finish(self, readings: Array, info: dict[str, Any]) -> None:
+        """Put the whole histories of finished episodes into ``info``, and begin those of the next ones."""
+        if "final_obs" not in info:
+            return
+        rows = np.flatnonzero(info["_final_obs"])
+        self._history.replace_last(rows, np.stack(info["final_obs"][rows]), info["final_info"]["volts"][rows] / self._drive)
+        for row, window in zip(rows.tolist(), self._history.window(rows), strict=True):
+            info["final_obs"][row] = window
+        self._history.begin(readings[rows], rows)
+
+
+def _space(history: RollingHistory) -> Box:
+    return Box(-1.0, 1.0, (history.length * history.width,), np.float32)
+
+
+def _normalised_plant(unwrapped: Any, length: Any) -> Plant:
+    """The plant of the environment within; ValueError unless it and ``length`` will do."""
+    if isinstance(length, bool) or not isinstance(length, int) or length < 1:
+        raise ValueError(f"length is {length!r}, but must be a positive integer.")
+    if unwrapped.task.physical_units:
+        raise ValueError("env has physical_units=True, but a history is made of normalised readings and voltages.")
+    plant: Plant = unwrapped.plant
+    return plant

@@ -1,0 +1,215 @@
+"""Wrappers that put the patches elsewhere: at given positions, in a named layout, or anew in every episode."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import RecordConstructorArgs
+from gymnasium.vector import VectorEnv, VectorWrapper
+from numpy.typing import NDArray
+
+from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
+from beamenv.task import Task, reset_options
+
+Layout = Mapping[Side, Positions | Drawn]
+
+
+class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
+    """Puts the actuators and the sensors of a ``RotatingBeamEnv`` elsewhere.
+
+    - `env`: the environment; `actuators`, `sensors`: what to do with each side, as ``beamenv.blade.layouts.resolve`` takes it: None
+      (left where they are), positions in metres from the root, a number of patches (equally spaced), a name ("uniform",
+      "thesis-table-6.3" of actuators, "thesis-table-6.4" of sensors, "optimal", which is worked out once), or a range
+      {"low": …, "high": …, "count": …} to draw from at each reset.
+
+    Spaces follow the number of patches. `reset(options={"layout": …})` changes the layout, from this episode on, to a name or a
+    mapping {"actuators": …, "sensors": …}, with as many patches as before. `info["layout"]` tells the positions.
+    `unwrapped.plant` and `unwrapped.design_plant` are those of the layout: build controllers from them after `reset`. The data
+    acquisition stays the same when sensors move: an observation of 1 is the same current wherever they are.
+
+    Apply it next to the environment, before wrappers that look at its spaces or its plant. Raises ValueError for a layout that
+    does not fit the blade; nothing has changed then.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], actuators: Any = None, sensors: Any = None) -> None:
+        RecordConstructorArgs.__init__(self, actuators=actuators, sensors=sensors)
+        gymnasium.Wrapper.__init__(self, env)
+        self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
+        self._layout = _resolved(self._home.config, {"actuators": actuators, "sensors": sensors})
+        self._positions = {side: _first(self._layout[side]) for side in SIDES}
+        self._adopt(self._positions)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode, in another layout if ``options`` or the range say so."""
+        layout, rest = _changed(self._home.config, self._layout, options, self._positions)
+        reset_options(self._task(self._positions), rest, rows=1)  # what it refuses must be refused before anything has changed
+        drawn = any(isinstance(layout[side], Drawn) for side in SIDES)
+        if drawn:
+            self.env.reset(seed=seed)
+            seed = None
+        positions = {side: _drawn(layout[side], self.np_random) if drawn else _first(layout[side]) for side in SIDES}
+        self._layout = layout
+        if positions != self._positions:
+            self._adopt(positions)
+        observation, info = self.env.reset(seed=seed, options=rest)
+        return observation, {**info, "layout": dict(self._positions)}
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """Step, and tell the layout."""
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        info["layout"] = dict(self._positions)
+        return observation, reward, terminated, truncated, info
+
+    def _task(self, positions: Mapping[Side, Positions]) -> Task:
+        return _moved(self._home, positions)
+
+    def _adopt(self, positions: Mapping[Side, Positions]) -> None:
+        task = self._task(positions)
+        _ = task.plant, task.design_plant  # a layout that no plant can be built of is refused here
+        self.env.unwrapped.adopt(task)  # type: ignore[attr-defined]
+        self._positions = dict(positions)
+
+
+class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no type parameters
+    """``PlacementWrapper`` for the batched environment: one layout for all blades, or one for each.
+
+    - `env`: a `RotatingBeamVectorEnv`; `actuators`, `sensors`: as for `PlacementWrapper`.
+    - `layouts`: instead, one mapping {"actuators": …, "sensors": …} for each blade.
+    - `bank`: how many layouts are drawn from a range at each `reset`, default 16; blade k has layout k modulo `bank`. (A plant
+      takes some hundredths of a second to build.) An autoreset keeps the layout.
+
+    `reset(options={"layout": …})` takes a name or a mapping for all blades, or a sequence of one for each; a side that is left
+    out goes back to where `env` had it. `info["layout"]` has arrays (N, actuators) and (N, sensors). `unwrapped.plant` is the
+    first blade's.
+    """
+
+    def __init__(
+        self,
+        env: VectorEnv[Any, Any, NDArray[Any]],
+        actuators: Any = None,
+        sensors: Any = None,
+        layouts: Sequence[Mapping[str, Any]] | None = None,
+        bank: int = 16,
+    ) -> None:
+        super().__init__(env)
+        if isinstance(bank, bool) or not isinstance(bank, (int, np.integer)) or bank < 1:
+            raise ValueError(f"bank is {bank!r}, but must be a positive integer.")
+        self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
+        self._bank = int(bank)
+        self._own: np.random.Generator | None = None
+        """What layouts are drawn with when every blade has a seed of its own; the batch's generator otherwise."""
+        given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
+        self._layouts = self._resolved(given)
+        self._positions = [{side: _first(layout[side]) for side in SIDES} for layout in self._layouts]
+        self._adopt(self._positions)
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode of every blade."""
+        options = dict(options or {})
+        layouts = self._resolved(options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
+        reset_options(_moved(self._home, self._positions[0]), options, rows=self.num_envs)
+        drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
+        if drawn:
+            self.env.reset(seed=seed)
+            if seed is not None:
+                self._own = None if isinstance(seed, (int, np.integer)) else np.random.default_rng(list(seed))
+            seed = None
+        positions = self._draw(layouts) if drawn else [{side: _first(layout[side]) for side in SIDES} for layout in layouts]
+        self._layouts = layouts
+        if positions != self._positions:
+            self._adopt(positions)
+        observations, info = self.env.reset(seed=seed, options=options)
+        return observations, self._told(info)
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """Step, and tell the layouts."""
+        observations, reward, terminated, truncated, info = self.env.step(actions)
+        return observations, reward, terminated, truncated, self._told(info)
+
+    def _resolved(self, given: Any, like: Mapping[Side, Positions] | None = None) -> list[Layout]:
+        """One layout for all blades, or one for each."""
+        if isinstance(given, (str, Mapping)):
+            return [_resolved(self._home.config, given, like)]
+        if not isinstance(given, Sequence) or len(given) != self.num_envs:
+            raise ValueError(f"layouts is {given!r}, but must be one layout, or a sequence of {self.num_envs}, one for each blade.")
+        layouts = [_resolved(self._home.config, each, like) for each in given]
+        counts = {tuple(len(_first(layout[side])) for side in SIDES) for layout in layouts}
+        if len(counts) > 1:
+            raise ValueError(f"layouts have {sorted(counts)} actuators and sensors, but those of one batch must have equally many.")
+        return layouts
+
+    def _draw(self, layouts: Sequence[Layout]) -> list[dict[Side, Positions]]:
+        generator = self.np_random if self._own is None else self._own
+        number = len(layouts) if len(layouts) > 1 else min(self._bank, self.num_envs)
+        return [{side: _drawn(layouts[k % len(layouts)][side], generator) for side in SIDES} for k in range(number)]
+
+    def _adopt(self, positions: list[dict[Side, Positions]]) -> None:
+        tasks = [_moved(self._home, each) for each in positions]
+        spread = tasks if len(tasks) == 1 else [tasks[k % len(tasks)] for k in range(self.num_envs)]
+        self.env.unwrapped.adopt(spread)  # type: ignore[attr-defined]
+        self._positions = positions
+
+    def _told(self, info: dict[str, Any]) -> dict[str, Any]:
+        which = np.arange(self.num_envs) % len(self._positions)
+        everywhere = np.ones(self.num_envs, dtype=np.bool_)
+        layout: dict[str, Any] = {side: np.array([each[side] for each in self._positions])[which] for side in SIDES}
+        layout.update({f"_{side}": everywhere.copy() for side in SIDES})
+        return {**info, "layout": layout, "_layout": everywhere}
+
+
+def _with_fixed_range(task: Task) -> Task:
+    """The task with the data acquisition that its blades have now, wherever their sensors go."""
+
+    def held(config: BladeConfig) -> BladeConfig:
+        return replace(config, sensor_full_scale=float(build_plant(config).sensor_full_scale[0]))
+
+    return replace(task, config=held(task.config), design_config=held(task.design_config))
+
+
+def _moved(task: Task, positions: Mapping[Side, Positions]) -> Task:
+    """The task with the patches of the true and of the design blade at other positions."""
+    return replace(task, config=with_positions(task.config, positions), design_config=with_positions(task.design_config, positions))
+
+
+def _resolved(config: BladeConfig, given: Any, like: Mapping[Side, Positions] | None = None) -> Layout:
+    """Each side's layout; ``ValueError`` for what does not fit, or has other numbers of patches than ``like``."""
+    asked = _both_sides(given)
+    layout = {side: resolve(config, side, asked.get(side)) for side in SIDES}
+    for side in SIDES:
+        count = len(_first(layout[side]))
+        if like is not None and count != len(like[side]):
+            raise ValueError(f"options['layout'] has {count} {side}, but the spaces are made for {len(like[side])}.")
+    return layout
+
+
+def _both_sides(given: Any) -> Mapping[str, Any]:
+    if isinstance(given, str):
+        return dict.fromkeys(SIDES, given)
+    if not isinstance(given, Mapping) or (unknown := sorted(set(given) - set(SIDES))):
+        wrong = repr(given) if not isinstance(given, Mapping) else f"a mapping with the key {unknown[0]!r}"
+        raise ValueError(f"layout is {wrong}, but must be a name or a mapping with the keys {' and '.join(SIDES)}.")
+    return given
+
+
+def _changed(
+    config: BladeConfig, layout: Layout, options: Mapping[str, Any] | None, positions: Mapping[Side, Positions]
+) -> tuple[Layout, dict[str, Any]]:
+    """The layout that the options of a reset ask for, and the other options."""
+    rest = dict(options or {})
+    if "layout" not in rest:
+        return layout, rest
+    return _resolved(with_positions(config, positions), rest.pop("layout"), positions), rest
+
+
+def _first(layout: Positions | Drawn) -> Positions:
+    """Positions to begin with: a range's are equally spaced."""
+    return tuple(layout.bounds.uniform().tolist()) if isinstance(layout, Drawn) else layout
+
+
+def _drawn(layout: Positions | Drawn, generator: np.random.Generator) -> Positions:
+    return layout.draw(generator) if isinstance(layout, Drawn) else layout

@@ -1,0 +1,289 @@
+"""The Gymnasium environment ``beamenv/RotatingBeam-v0``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.blade.config import BladeConfig
+from beamenv.plant.plant import Plant
+from beamenv.scenarios.scenario import Scenario
+from beamenv.simulation.blades import Blades, Motion
+from beamenv.task import Task, checked_action, information, reset_options, resolve_task
+
+if TYPE_CHECKING:
+    from beamenv.rendering import BladeRenderer, Instant
+
+Array = NDArray[np.float64]
+
+
+class RotatingBeamEnv(gymnasium.Env[Any, Any]):
+    """Damp the vibration of a rotating composite blade with piezoelectric patches.
+
+    ## Description
+
+    A rotating thin-walled composite blade, pretwisted and clamped to its hub, is struck or pushed and vibrates in lag and
+    flap. Piezoelectric actuators (macro-fibre composites, MFC) in its top wall can bend it; sensors of the same kind in its
+    bottom wall give a current in proportion to the rate of their strain. The aim is to damp the vibration with little
+    actuator effort.
+
+    The plant is linear: the first 11 modes of the structural model (thesis chapters 2 to 5), advanced exactly from one sample
+    to the next, cost included. What is not linear is enforced here: the drive saturates, the sensors clip. The true plant
+    that moves and the design plant that a controller is built from are two arguments, and two attributes: `plant` and
+    `design_plant`.
+
+    The default blade is the thesis' box (2.023 m, plies at 30°, pretwist 30°) at 200 rad/s with 4 actuators and 4 sensors
+    equally spaced over 0 … 0.7 of the span.
+
+    ## Action Space
+
+    `Box(-1, 1, (4,), float64)`: one voltage for each actuator, from root to tip, in units of the drive limit. It is clipped
+    to the limits and held over one control interval. With `physical_units=True` it is in volts.
+
+    | Num | Action                       | Min | Max | Unit   |
+    |-----|------------------------------|-----|-----|--------|
+    | 0   | voltage of actuator 1 (root) | -1  | 1   | 1500 V |
+    | 1   | voltage of actuator 2        | -1  | 1   | 1500 V |
+    | 2   | voltage of actuator 3        | -1  | 1   | 1500 V |
+    | 3   | voltage of actuator 4        | -1  | 1   | 1500 V |
+
+    Limits that are not symmetric, say the −500 … 1500 V of the data sheet, keep the larger one as the unit: −500 V is then an
+    action of −1/3, and what lies below has no more effect.
+
+    ## Observation Space
+
+    `Box(-1, 1, (4,), float64)`: one reading of each sensor, from root to tip, in units of its full scale, with noise of 2 %
+    of full scale, clipped as a data acquisition clips. Full scale is twice the largest current that a sudden 30 N/m brings
+    about, so that clipping is rare (one reading in 10⁵ in the default scenario). With `physical_units=True` it is in amperes.
+
+    | Num | Observation                | Min | Max | Unit       |
+    |-----|----------------------------|-----|-----|------------|
+    | 0   | current of sensor 1 (root) | -1  | 1   | full scale |
+    | 1   | current of sensor 2        | -1  | 1   | full scale |
+    | 2   | current of sensor 3        | -1  | 1   | full scale |
+    | 3   | current of sensor 4        | -1  | 1   | full scale |
+
+    One reading cannot tell the state: an agent needs memory, or the `beamenv.envs.history.SensorHistory` of what it read and did.
+    `reset` returns the reading at t₀; the voltages chosen from the reading at t_k act over [t_k, t_k + Δt], and `step`
+    returns the reading at t_k + Δt: no delay beyond the sampling itself.
+
+    ## Rewards
+
+    *r = −(1/s) ∫ (x<sup>T</sup>Q x + u<sup>T</sup>R u) dt* over the control interval: vibration energy, in joules, plus the
+    energy that the actuators store, exactly integrated. It is the very cost that LQG is designed for. The scale *s* is fixed
+    by the plant alone: the energy of the static deflection under 30 N/m in flap, times Δt. A blade that is left alone so
+    earns about −1 a step.
+
+    ## Starting State
+
+    At rest, or released from a static deflection. Each episode has one load case, drawn from the `scenario`, a uniform line
+    load held constant over each control interval. In the default scenario it is, with equal chances,
+
+    - a **step** of 15 … 45 N/m that sets in at 0 … 50 ms and stays,
+    - a rectangular **pulse** of 15 … 45 N/m that sets in at 0 … 50 ms and lasts 5 … 50 ms,
+    - an initial **deflection** as under 15 … 45 N/m, released at t = 0,
+    - a **harmonic** load of 1.5 … 4.5 N/m at 0.5 … 2 times the first natural frequency,
+
+    in any direction between lag and flap. White line loads (3 N/m in each direction in every interval) act besides. ±1500 V
+    are enough to make a difference at 30 N/m: LQG then saturates now and then, and halves the time to settle.
+    `beamenv.scenarios.scenario` gives the reason of each number.
+
+    ## Scenarios
+
+    A scenario is what may happen to a blade in an episode: loads, noises, and what is wrong with it. Those of the benchmark are
+    TOML files, each an environment of its own: `beamenv/RotatingBeam-overload-v0`. What is not named is as in the default.
+
+    | Scenario     | What it has                                                                                            |
+    |--------------|--------------------------------------------------------------------------------------------------------|
+    | `nominal`    | the plant that controllers are designed for, the load cases above                                      |
+    | `off-speed`  | rotor speed 0.7 … 1.3 times the design's, one of 128 plants drawn for each episode                     |
+    | `off-model`  | ply angles, moduli and mass within 10 %, damping ratio 0.003 … 0.02: one of 128 plants                 |
+    | `spin-up`    | 100 to 300 rad/s within the episode, on a cycloid, with Euler's force; no need of a load to vibrate    |
+    | `spillover`  | 22 modes, of which the design plant has 5                                                              |
+    | `hysteresis` | free strain of the actuators with a loop of 20 % of the stroke; drive −500 … 1500 V                    |
+    | `delay`      | voltages 1 … 3 control intervals late; 5 % of the readings lost: the last one is shown again           |
+    | `failure`    | one actuator dead; one sensor dead (noise alone), or biased by 5 … 20 % of full scale                  |
+    | `rotor`      | 6, 4, 2, 1 N/m, times 0.5 … 1.5, at 1 … 4 per revolution; turbulence of 5 N/m and 20 ms; pulses, releases |
+    | `overload`   | steps of 500 N/m: the actuators saturate, the sensors clip                                             |
+
+    A file of one's own (`scenario="gusts.toml"`) or a dictionary may depart from any of them by `preset`, table by table:
+
+    ```python
+    >>> import gymnasium, beamenv
+    >>> env = gymnasium.make("beamenv/RotatingBeam-v0", scenario={"preset": "rotor", "drive": {"delay": 1}})
+
+    ```
+
+    Two attributes are for laws that know more than the sensors: `rotor_speed`, rad/s, what a tachometer shows now, and
+    `design_state`, the true state in the coordinates of the design plant, by displacements and velocities.
+
+    ## Episode End
+
+    1. Termination: the blade fails, that is its spanwise strain exceeds 0.45 %, what an MFC is rated for, or its state is no
+       longer finite. The default scenario stays tens of times below.
+    2. Truncation: `duration` is over.
+
+    ## Arguments
+
+    ```python
+    >>> import gymnasium, beamenv
+    >>> env = gymnasium.make("beamenv/RotatingBeam-v0", scenario="pulse", blade={"damping_ratio": 0.02})
+    >>> observation, info = env.reset(seed=7, options={"load": {"case": "step", "magnitude": 30.0, "direction_deg": 90.0}})
+    >>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+
+    ```
+
+    - `preset`: the configuration to begin with, one of `beamenv.PRESETS`; default `"thesis"`.
+    - `speed`: rotor speed in rad/s, in place of the preset's (200).
+    - `blade`: the true blade: changes to the preset as a (nested) dictionary, or a whole `BladeConfig`.
+    - `design`: the blade that controllers are designed for: the name of a preset, changes to `preset` (at `speed`, without
+      the changes in `blade`), or a whole `BladeConfig`; default: the true one.
+    - `scenario`: a name in `beamenv.SCENARIOS`, the path of a `.toml` file, a dictionary of fields (with "preset" to depart from
+      a named one), or a `Scenario`.
+    - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
+      40 % of it.
+    - `physical_units`: volts and amperes in place of normalised numbers; default False.
+    - `render_mode`: None, `"rgb_array"` (pictures 540 × 960 from `render`) or `"human"` (a window that shows every step); both
+      need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life.
+
+    The control interval is 0.5 ms, a field of the configuration: more than four samples a period of the 11th mode
+    (2.7 krad/s), the last one retained.
+
+    `reset(options={"load": {...}})` fixes the load case of one episode: "case", and as a number or a range any of "magnitude"
+    (N/m), "direction_deg" (0: lag, 90: flap), "onset" (s), "duration" (s), "frequency_ratio" and "phase_deg". What is left
+    out is drawn as ever. `reset(options={"initial_state": x})` starts in the state x (n,), in energy coordinates.
+
+    A bad argument, option or action raises ValueError in one sentence, and nothing has changed.
+
+    ## Info
+
+    | Key                | Unit | What                                                       |
+    |--------------------|------|------------------------------------------------------------|
+    | `volts`            | V    | (4,) voltages asked for, after saturation                  |
+    | `tip_displacement` | m    | (2,) lag and flap of the tip now                           |
+    | `energy`           | J    | vibration energy now                                       |
+    | `effort`           | J s  | the actuators' share of `cost_increment`                   |
+    | `cost_increment`   | J s  | the cost of this step; the reward is minus it over *s*     |
+
+    ## Version History
+
+    * v0: Initial version.
+    """
+
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 50}
+    _renderer: BladeRenderer | None = None
+
+    def __init__(
+        self,
+        preset: str = "thesis",
+        speed: float | None = None,
+        blade: BladeConfig | Mapping[str, Any] | None = None,
+        design: BladeConfig | Mapping[str, Any] | str | None = None,
+        scenario: Scenario | Mapping[str, Any] | str | None = None,
+        duration: float = 0.5,
+        physical_units: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
+        self.render_mode = render_mode
+        self.adopt(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
+
+    def adopt(self, task: Task) -> None:
+        """Take on a task, and with it a blade, in place of the one before; what comes next must be ``reset``."""
+        self.task = task
+        self.action_space = task.action_space()
+        self.observation_space = task.observation_space()
+        self._blade = Blades(task.bank, task.scenario, None, task.physical_units)
+        self._action_shape = (self.plant.B.shape[1],)
+        self._steps = task.steps
+        self._elapsed = 0
+        self._generators: list[np.random.Generator] | None = None
+        self.close()
+        self._renderer = None if self.render_mode is None else self._make_renderer()
+
+    @property
+    def plant(self) -> Plant:
+        """The true plant, the one that moves."""
+        return self.task.plant
+
+    @property
+    def design_plant(self) -> Plant:
+        """The plant controllers are to be designed for."""
+        return self.task.design_plant
+
+    @property
+    def state(self) -> Array:
+        """(n,) the true state, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
+        return self._blade.state
+
+    @property
+    def design_state(self) -> Array:
+        """(d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        return self._blade.design_state
+
+    @property
+    def rotor_speed(self) -> Any:
+        """() rad/s: what a tachometer shows now."""
+        return self._blade.speed
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begin an episode; ``options`` may fix its "load" or give its "initial_state" (see the class)."""
+        scenario, initial_state = reset_options(self.task, options, rows=1)
+        super().reset(seed=seed)
+        self._generators = [self.np_random]
+        self._elapsed = 0
+        motion = self._blade.begin(self._generators, scenario=scenario, initial_state=initial_state)
+        if self._renderer is not None:
+            self._renderer.begin(self._instant(motion))
+        return motion.observation, information(motion)
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Hold the voltages over one control interval."""
+        if self._generators is None:
+            raise gymnasium.error.ResetNeeded("Call reset before step.")
+        motion = self._blade.step(checked_action(action, self._action_shape), self._generators)
+        self._elapsed += 1
+        if self._renderer is not None:
+            self._renderer.record(self._instant(motion))
+        return motion.observation, float(motion.reward), bool(motion.failed), self._elapsed >= self._steps, information(motion)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """A picture (540, 960, 3) of the blade, deflection magnified, with its patches and the last 0.2 s of the episode.
+
+        None with `"human"`, whose window shows every step by itself.
+        """
+        if self._renderer is None:
+            gymnasium.logger.warn('render was called without a render_mode: make the environment with render_mode="rgb_array".')
+            return None
+        if self._generators is None:
+            raise gymnasium.error.ResetNeeded("Call reset before render.")
+        return None if self.render_mode == "human" else self._renderer.draw()
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._renderer is not None:
+            self._renderer.close()
+
+    def _make_renderer(self) -> BladeRenderer:
+        from beamenv.rendering import BladeRenderer
+
+        return BladeRenderer(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)
+
+    def _instant(self, motion: Motion) -> Instant:
+        from beamenv.rendering import Instant
+
+        reading = motion.observation / self.plant.sensor_full_scale if self.task.physical_units else motion.observation
+        return Instant(
+            state=self.state,
+            plant=int(self._blade.index[0]),
+            speed=float(self.rotor_speed),
+            tip_displacement=motion.tip_displacement,
+            volts=motion.volts,
+            reading=reading,
+            cost_increment=float(motion.cost_increment),
+        )

@@ -1,0 +1,5 @@
+"""The reduced plant: its matrices, its sampling, its reduction from a blade, its fingerprint."""
+
+from beamenv.plant.plant import Plant, SampledPlant, sample
+
+__all__ = ["Plant", "SampledPlant", "sample"]

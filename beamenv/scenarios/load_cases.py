@@ -1,0 +1,108 @@
+"""Load cases: the uniform line loads that act on a batch of blades besides white noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beamenv.plant.plant import Plant
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+CASES = ("step", "pulse", "deflection", "harmonic", "none")
+"""Names of the load cases; ``LoadCases.case`` holds positions in this tuple."""
+
+NEVER = np.iinfo(np.int64).max
+"""The step at which a load that does not end, ends."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadCases:
+    """One load case for each of N blades, held constant over every control interval.
+
+    In interval k = 0, 1, … the line load of a blade is
+
+        d(k) = amplitude · [onset ≤ k < end] · (sin(rate k + phase) if rate > 0 else 1)
+
+    and besides, with h = 1, 2, … per revolution of the rotor, Σ cosine_h cos(h revolution k) + sine_h sin(h revolution k). The
+    blade starts from rest in the static deflection under the uniform line load ``deflection``.
+    """
+
+    case: Integers
+    """(N,) positions in ``CASES``."""
+    amplitude: Array
+    """(N, 2), N/m: lag, flap."""
+    deflection: Array
+    """(N, 2), N/m: the load the blade is released from, zero but for the case "deflection"."""
+    onset: Integers
+    """(N,) first control interval in which the load acts."""
+    end: Integers
+    """(N,) first control interval in which it no longer does."""
+    rate: Array
+    """(N,) rad per control interval; 0 for a load that does not oscillate."""
+    phase: Array
+    """(N,) rad."""
+    cosine: Array
+    """(N, H, 2), N/m: lag, flap."""
+    sine: Array
+    """(N, H, 2), N/m: lag, flap."""
+    revolution: Array
+    """(N,) rad per control interval: the rotor's."""
+    oscillating: Integers = field(init=False, repr=False)
+    """Rows with ``rate`` > 0, kept so that sines are evaluated for them alone."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "oscillating", np.flatnonzero(self.rate > 0.0))
+        for each in fields(self):
+            getattr(self, each.name).setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.case)
+
+    def gain(self, step: int | Integers) -> Array:
+        """Share of the amplitude that acts in interval ``step``, an integer or an array that broadcasts against (N,): (…, N)."""
+        gain = ((self.onset <= step) & (step < self.end)).astype(np.float64)
+        rows = self.oscillating
+        if len(rows):
+            steps = step[..., rows] if isinstance(step, np.ndarray) and step.shape[-1] > 1 else step
+            gain[..., rows] *= np.sin(self.rate[rows] * steps + self.phase[rows])
+        return gain
+
+    def at(self, step: int | Integers) -> Array:
+        """Line loads (…, N, 2) in N/m in interval ``step``, an integer or an array that broadcasts against (N,)."""
+        load = self.amplitude * self.gain(step)[..., None]
+        return load + self.of_rotor(step) if self.has_harmonics else load
+
+    @property
+    def has_harmonics(self) -> bool:
+        """Whether the rotor's harmonics act."""
+        return self.cosine.shape[1] > 0
+
+    def of_rotor(self, step: int | Integers) -> Array:
+        """The rotor's harmonics (…, N, 2) in N/m in interval ``step``."""
+        orders = np.arange(1, self.cosine.shape[1] + 1)
+        angle = orders * (self.revolution * step)[..., None]
+        products = (np.einsum("...nh,nhk->...nk", f(angle), part) for f, part in ((np.cos, self.cosine), (np.sin, self.sine)))
+        return np.asarray(sum(products))
+
+    def rows(self, rows: Integers) -> LoadCases:
+        """The load cases of some of the blades, in the order given."""
+        return LoadCases(**{each.name: getattr(self, each.name)[rows] for each in fields(self) if each.init})
+
+    def replace(self, rows: Integers, others: LoadCases) -> LoadCases:
+        """These load cases with those of ``rows`` exchanged for ``others``, one for each row."""
+        exchanged = {}
+        for each in fields(self):
+            if each.init:
+                exchanged[each.name] = getattr(self, each.name).copy()
+                exchanged[each.name][rows] = getattr(others, each.name)
+        return LoadCases(**exchanged)
+
+
+def static_deflection(plant: Plant, line_load: ArrayLike) -> Array:
+    """State (…, n) at rest under constant uniform line loads (…, 2) in N/m: x = −A⁻¹ E d."""
+    compliance = -np.linalg.solve(plant.A, plant.disturbance_input)
+    return np.asarray(line_load, dtype=np.float64) @ compliance.T

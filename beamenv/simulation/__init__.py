@@ -1,0 +1,1 @@
+"""Blades in motion: the stepping kernel, the plants that move, the signals that act on them."""

@@ -1,0 +1,270 @@
+"""A batch of blades in motion: what the single and the batched environment both wrap. The physics is ``kernel.advance``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant.plant import Plant, drive_limit, normalised
+from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.scenarios.load_cases import static_deflection
+from beamenv.scenarios.scenario import Scenario, draw_load_cases, draw_uniforms
+from beamenv.simulation.kernel import advance, row_dot, row_product
+from beamenv.simulation.memory import batch_shape, columns_first, place
+from beamenv.simulation.plants.allotment import Allotment
+from beamenv.simulation.plants.bank import Bank
+from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
+from beamenv.simulation.signals.electronics import Electronics
+from beamenv.simulation.signals.faults import DRAWS
+from beamenv.simulation.strain_limit import FAILURE_STRAIN as FAILURE_STRAIN
+from beamenv.simulation.strain_limit import safe_energy, strained_too_much
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+Generators = np.random.Generator | Sequence[np.random.Generator]
+
+_FULL, _MINUS_FULL = np.array(1.0), np.array(-1.0)
+"""NumPy is quicker with these than with Python numbers, which tells with a blade alone."""
+
+
+class Motion(NamedTuple):
+    """What one control interval brought to each blade, in fresh arrays; "…" is N, or nothing for a single blade."""
+
+    observation: Array
+    """(…, p) sensor readings, clipped to full scale."""
+    reward: Array
+    """(…,)"""
+    failed: NDArray[np.bool_]
+    """(…,) strained beyond ``FAILURE_STRAIN``, or no longer finite."""
+    volts: Array
+    """(…, m), V, asked for, after saturation: what the patches get unless delay, hysteresis or failure are between."""
+    tip_displacement: Array
+    """(…, 2), m: lag, flap, at the end of the interval."""
+    energy: Array
+    """(…,), J: vibration energy at the end of the interval."""
+    effort: Array
+    """(…,), J s: the actuators' share uᵀRu Δt of the cost increment."""
+    cost_increment: Array
+    """(…,), J s: ∫(xᵀQx + uᵀRu)dt over the interval."""
+
+
+def reward_scale(plant: Plant) -> float:
+    """Cost of one control interval, J s, that is a reward of −1: xᵀQx Δt in the static deflection under 30 N/m in flap.
+
+    It depends on the plant alone, so the return of an episode is −J over a constant whatever the scenario and the controller.
+    Without control a default episode comes to about −1 a step, 6.7 µJ s for the default blade.
+    """
+    state = static_deflection(plant, (0.0, REFERENCE_LOAD))
+    return float(state @ plant.state_weight @ state) * plant.control_interval
+
+
+def _alike(values: Array) -> Array:
+    """One number () in place of equal ones (k,): it broadcasts faster."""
+    return np.array(values[0]) if np.all(values == values[0]) else values
+
+
+class Blades:
+    """A batch of ``count`` blades, advanced together; ``count=None`` is a blade alone, without a batch axis.
+
+    ``plant`` is the one plant of them all, or a bank of plants, of which each episode has one. ``generators`` is one generator
+    for all blades or a sequence of one for each, whichever ``begin`` was first given. With ``physical_units`` actions are volts
+    and readings amperes, else both are normalised.
+    """
+
+    def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
+        self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
+        self.plant, self.scenario, self.count = self.bank.plant, scenario, count
+        self.shape = self._shape = batch_shape(count)
+        self._physical = physical_units
+        self._normalised = normalised(self.plant)
+        self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
+        self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
+        self._reward_per_cost = -1.0 / reward_scale(self.plant)
+        self._safe_energy = safe_energy(self.bank.strain)
+        self._disturbances: SharedDisturbances | SeededDisturbances | None = None
+        self.electronics = Electronics(self.plant, scenario, count or 1) if scenario.imperfect else None
+        self.plants = Allotment(self.bank, self._shape, np.zeros(count or 1, dtype=np.int64))
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        """Column by column for one plant, blade by blade for several: each as BLAS likes it."""
+        n, m = self.plant.B.shape
+        widths = n + m + 2, self.bank.operators.fused.shape[-1], m
+        if len(self.bank) == 1:
+            self._joined, self._product, self._weighted = (columns_first(self._shape, width)[1] for width in widths)
+        else:
+            self._joined, self._product, self._weighted = (np.zeros((*self._shape, width)) for width in widths)
+        self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        moving = self._joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
+        return self.bank, self.scenario, self.count, self._physical, *moving
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        """Views must be views again of what they show, or a copied batch would come to a halt."""
+        *arguments, joined, disturbances, electronics, index = state
+        self.__init__(*arguments)  # type: ignore[misc]
+        self._joined[...] = joined
+        self._disturbances, self.electronics = disturbances, electronics
+        self.plants = Allotment(self.bank, self._shape, index)
+
+    @property
+    def state(self) -> Array:
+        """(…, n) true states in energy coordinates: ½ xᵀx is the vibration energy in joules."""
+        return self._by_blade(self._state)
+
+    @property
+    def index(self) -> Rows:
+        """(N,) place of each blade's plant in the bank."""
+        return self.plants.index
+
+    @property
+    def disturbances(self) -> SharedDisturbances | SeededDisturbances:
+        """Loads and noise, from the first ``begin`` on."""
+        assert self._disturbances is not None
+        return self._disturbances
+
+    @property
+    def design_state(self) -> Array:
+        """(…, d) the true states as the design plant has its own: by displacements and velocities."""
+        if self.bank.to_design is None:
+            raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
+        state = self.state
+        if len(self.bank) == 1:
+            return np.asarray(state @ self.bank.to_design[0])
+        seen = row_product(np.atleast_2d(state), self.bank.to_design[self.plants.index])
+        return np.asarray(seen if self._shape else seen[0])
+
+    @property
+    def speed(self) -> Array:
+        """(…,) rad/s: what a tachometer shows."""
+        speeds = self.bank.speeds[self.plants.index]
+        return speeds if self._shape else speeds[0]
+
+    def begin(
+        self,
+        generators: Generators,
+        rows: Rows | None = None,
+        scenario: Scenario | None = None,
+        initial_state: Array | None = None,
+    ) -> Motion:
+        """Start the episodes of ``rows``, or of all blades, and return their motion at t = 0.
+
+        ``scenario`` and ``initial_state`` ((n,) or (len(rows), n), in place of the load case's) hold for these episodes only.
+        """
+        scenario = self.scenario if scenario is None else scenario
+        if rows is None:
+            rows = np.arange(self.count or 1)
+            kind = SharedDisturbances if isinstance(generators, np.random.Generator) else SeededDisturbances
+            turbulence = Turbulence.of(self.plant, scenario)
+            self._disturbances = kind(noise_factor(self._normalised, scenario), self._shape, turbulence)
+        assert self._disturbances is not None
+        own = generators if isinstance(generators, np.random.Generator) else [generators[row] for row in rows]
+        self._draw_plants_and_faults(rows, own)
+        index = self.plants.index[rows]
+        cases = draw_load_cases(scenario, self.plant, own, len(rows), self.bank.speeds[index])
+        noise = self._disturbances.begin(rows, cases, generators)  # type: ignore[arg-type]
+        state = row_product(cases.deflection, self.bank.release[index])
+        if self.bank.start is not None:
+            state += self.bank.start
+        if initial_state is not None:
+            state[...] = initial_state
+        at = place(rows, self._shape)
+        self._joined[at] = 0.0
+        self._state[at] = state
+        motion = self._undriven(state, noise, rows)
+        return motion if self._shape else Motion(*(field[0] for field in motion))
+
+    def _draw_plants_and_faults(self, rows: Rows, own: Generators) -> None:
+        """Which plant each blade has, and what is wrong with it; nothing is drawn where a scenario leaves nothing to chance."""
+        drawn, first = self.plants.drawn, np.zeros(len(rows), dtype=np.int64)
+        uniforms = draw_uniforms(own, len(rows), DRAWS) if drawn or self.electronics is not None else None
+        self.plants.allot(rows, (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn and uniforms is not None else first)
+        if self.electronics is not None and uniforms is not None:
+            self.electronics.begin(rows, uniforms)
+
+    def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
+        """Motion at the start of an episode, one row for each state (rows, n)."""
+        count = len(state)
+        index = self.plants.index[rows]
+        output, noise = row_product(state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
+        if self.electronics is None:
+            reading = np.clip(output + noise, -1.0, 1.0)
+        else:
+            reading = self.electronics.first_reading(rows, output, noise)
+        return Motion(
+            observation=self._in_units(reading),
+            reward=np.zeros(count),
+            failed=np.zeros(count, dtype=np.bool_),
+            volts=np.zeros((count, self.plant.B.shape[1])),
+            tip_displacement=row_product(state, self.bank.tip[index]),
+            energy=0.5 * row_dot(state, state),
+            effort=np.zeros(count),
+            cost_increment=np.zeros(count),
+        )
+
+    def step(self, actions: Array, generators: Generators, resting: Rows | None = None) -> Motion:
+        """Hold ``actions`` (…, m) over one control interval.
+
+        ``resting`` are rows whose episode is over and that are about to begin another: no disturbance is drawn for them.
+        """
+        assert self._disturbances is not None
+        held = actions / self._drive if self._physical else actions
+        held = np.maximum(np.minimum(held, self._highest), self._lowest)
+        acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
+        self._voltages[...] = acting.reshape(self._voltages.shape)
+        self._disturbances.loads(self._loads)
+        following, reading, tip, increment = advance(self.plants.operators, self._joined, out=self._product)
+        self._state[...] = following
+        noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
+        energy = 0.5 * row_dot(self._state, self._state)
+        effort = row_dot(row_product(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
+        self.elapse()
+        if self._shape:
+            increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
+        return Motion(
+            self._observed(reading, noise),
+            increment * self._reward_per_cost,
+            self._failed(energy),
+            held * self._drive,
+            self._by_blade(tip),
+            energy,
+            effort,
+            increment,
+        )
+
+    def elapse(self) -> None:
+        """One control interval later: where plants follow one another, the next is on."""
+        if self.bank.runs:
+            self.plants.follow()
+
+    def _by_blade(self, columns: Array) -> Array:
+        """A copy (…, columns) of what is laid out in blocks."""
+        return np.array(columns, order="C").reshape(self.count or 1, -1) if self._shape else columns.copy()
+
+    def _observed(self, output: Array, noise: Array) -> Array:
+        """Readings (…, p) as the data acquisition gives them, in full scales or in amperes."""
+        if self.electronics is not None:
+            flat = self.electronics.acquire(np.atleast_2d(self._by_blade(output)), np.atleast_2d(self._by_blade(noise)))
+            return self._in_units(flat if self._shape else flat[0])
+        output += noise[..., : output.shape[-1]]
+        reading = self._by_blade(output)
+        np.minimum(reading, _FULL, out=reading)
+        np.maximum(reading, _MINUS_FULL, out=reading)
+        return self._in_units(reading)
+
+    def _in_units(self, reading: Array) -> Array:
+        return reading * self._full_scale if self._physical else reading
+
+    def _failed(self, energy: Array) -> NDArray[np.bool_]:
+        """Only a blade with enough energy can have failed, and only then are its strains worked out."""
+        failed = np.zeros(energy.shape, dtype=np.bool_)
+        most = energy.max() if self._shape else energy
+        if not most <= self._safe_energy:  # a NaN is not safe either
+            rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
+            state = np.atleast_2d(self.state)[rows]
+            np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[self.plants.index[rows]], state)
+        return failed

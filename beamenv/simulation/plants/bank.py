@@ -1,0 +1,72 @@
+"""A bank of discretised plants: what an episode's true plant is drawn from. Built once; a blade in a batch has an index into it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant.plant import Plant, normalised
+from beamenv.scenarios.load_cases import static_deflection
+from beamenv.simulation.kernel import Operators
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bank:
+    """K plants of n states with the same drive and data acquisition; voltages and readings normalised to these.
+
+    Every plant has energy coordinates of its own: ½ xᵀx is the energy, in joules, whichever it is.
+    """
+
+    plant: Plant
+    """The one all others depart from."""
+    operators: Operators
+    """``fused`` (K, …), or of one plant."""
+    readout: Array
+    """(K, n, p): state to noise-free readings, in full scales."""
+    tip: Array
+    """(K, n, 2), m per √J."""
+    strain: Array
+    """(K, k, n) per √J."""
+    release: Array
+    """(K, 2, n): static deflection per N/m of line load, lag and flap."""
+    speeds: Array
+    """(K,), rad/s."""
+    effort_weight: Array
+    """(K, m, m), J s: uᵀRu Δt of normalised voltages."""
+    to_design: Array | None
+    """(K, n, d): state to the design plant's coordinates; None where the two blades' displacements cannot be compared."""
+    start: Array | None = None
+    """(n,): what a blade's state at the start of an episode is increased by."""
+    runs: bool = False
+    """Whether the plants follow one another, one each control interval, instead of being drawn."""
+
+    def __len__(self) -> int:
+        return len(self.speeds)
+
+    @classmethod
+    def single(cls, plant: Plant, speed: float = 0.0, to_design: Array | None = None) -> Bank:
+        """The bank of one plant."""
+        bank = cls.gather(plant, [plant], np.array([speed]), None if to_design is None else to_design[None])
+        return replace(bank, operators=Operators.from_plant(normalised(plant)))
+
+    @classmethod
+    def gather(cls, plant: Plant, plants: Sequence[Plant], speeds: Array, to_design: Array | None) -> Bank:
+        """The bank of several plants."""
+        units = [normalised(each) for each in plants]
+        parts = [Operators.from_plant(unit) for unit in units]
+        return cls(
+            plant=plant,
+            operators=replace(parts[0], fused=np.stack([part.fused for part in parts])),
+            readout=np.stack([unit.C.T for unit in units]),
+            tip=np.stack([each.tip_displacement.T for each in plants]),
+            strain=np.stack([each.strain for each in plants]),
+            release=np.stack([static_deflection(each, np.eye(2)) for each in plants]),
+            speeds=speeds,
+            effort_weight=np.stack([unit.input_weight * unit.control_interval for unit in units]),
+            to_design=to_design,
+        )

@@ -1,0 +1,1 @@
+"""What acts on a blade and on its sensors: loads, noise, faults, hysteresis."""

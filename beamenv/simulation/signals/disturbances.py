@@ -1,0 +1,223 @@
+"""Disturbances: for a batch of blades, the line loads and the sensor noise of one sampling instant after another.
+
+At instant k each blade has one row [load case + white load (2), N/m, held over [t_k, t_k + Δt] | sensor noise (p) of the
+reading at t_k]. The white parts are normals times a factor of their covariance, factorised once. Where a scenario asks for
+them, two more normals drive the turbulence, and p standard normals tell which readings are lost:
+[loads (2) | sensor noise (p) | lost (p) | turbulence (2)].
+
+There are two ways to draw them. ``SharedDisturbances`` has one generator for the whole batch: fast. ``SeededDisturbances``
+has a generator for each blade, so that a blade meets the same episode whatever else is in its batch. Neither keeps a
+generator: it is handed in at every call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant.plant import Plant
+from beamenv.scenarios.load_cases import LoadCases
+from beamenv.scenarios.scenario import Scenario
+from beamenv.simulation.memory import columns_first, place
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+Generator = np.random.Generator
+
+BLOCK = 64
+"""Instants that ``SeededDisturbances`` draws at a time: enough to make a generator's call cheap."""
+
+
+def noise_factor(plant: Plant, scenario: Scenario) -> Array:
+    """F (c, c): standard normals (…, c) @ F are [white loads, N/m | sensor noise, in the plant's unit | lost | turbulence].
+
+    The columns of lost readings (p standard normals) and of turbulence (2, N/m) are there where the scenario has any.
+    """
+    p = len(plant.C)
+    lost, gusts = (p if scenario.acquisition.dropout else 0), (2 if scenario.rotor.turbulence else 0)
+    factor = np.zeros((2 + p + lost + gusts,) * 2)
+    if scenario.white_load:
+        factor[:2, :2] = _square_root(plant.process_noise / plant.control_interval)
+    if scenario.sensor_noise:
+        factor[2 : 2 + p, 2 : 2 + p] = _square_root(plant.sensor_noise / plant.control_interval)
+    factor[2 + p : 2 + p + lost, 2 + p : 2 + p + lost] = np.eye(lost)
+    factor[2 + p + lost :, 2 + p + lost :] = scenario.rotor.turbulence * np.eye(gusts)
+    return factor
+
+
+@dataclass(frozen=True, slots=True)
+class Turbulence:
+    """First-order Gauss–Markov loads, sampled exactly: g⁺ = a g + √(1 − a²) n, with a = exp(−Δt/τ), started in steady state."""
+
+    decay: float
+    """a"""
+
+    @classmethod
+    def of(cls, plant: Plant, scenario: Scenario) -> Turbulence | None:
+        """That of a scenario; None without any."""
+        rotor = scenario.rotor
+        return cls(math.exp(-plant.control_interval / rotor.turbulence_time)) if rotor.turbulence else None
+
+    def following(self, gusts: Array, normals: Array) -> Array:
+        """The loads (…, 2) of the next instant, from this one's and normals of the right size."""
+        return self.decay * gusts + math.sqrt(1.0 - self.decay**2) * normals
+
+
+def _square_root(covariance: Array) -> Array:
+    """Symmetric root: unlike a Cholesky factor it exists for a singular covariance too."""
+    values, vectors = np.linalg.eigh(covariance)
+    return (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+
+
+class SharedDisturbances:
+    """Disturbances of N blades from one generator, drawn anew at every instant.
+
+    ``shape`` is that of the batch: () for one blade, (blocks, size) for more. Memory is (blocks, column, blade).
+    """
+
+    def __init__(self, factor: Array, shape: tuple[int, ...], turbulence: Turbulence | None = None) -> None:
+        self._turbulence, self._gusts = turbulence, np.zeros((*shape, 2))
+        self._factor = factor if np.any(factor - np.diag(np.diagonal(factor))) else np.diagonal(factor).copy()
+        self._normals, self._rows = columns_first(shape, len(factor))
+        _, self._amplitude = columns_first(shape, 2)
+        self._steps = np.zeros(math.prod(shape), dtype=np.int64)
+        self._cases: LoadCases | None = None
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        carried = self._rows.copy(), self._amplitude.copy(), self._steps, self._cases, self._gusts
+        return self._factor, self._rows.shape[:-1], self._turbulence, *carried
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        """Views must be views again of what they show, or a copied batch would come to a halt."""
+        factor, shape, turbulence, rows, amplitude, steps, cases, gusts = state
+        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, shape, turbulence)  # type: ignore[misc]
+        self._rows[...], self._amplitude[...] = rows, amplitude
+        self._steps, self._cases, self._gusts = steps, cases, gusts
+
+    def begin(self, rows: Rows, cases: LoadCases, generator: Generator) -> Array:
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2)."""
+        self._cases = merged(self._cases, rows, cases)
+        self._steps[rows] = 0
+        at = place(rows, self._rows.shape[:-1])
+        self._amplitude[at] = cases.amplitude
+        disturbance = self._scaled(generator.standard_normal((len(rows), self._rows.shape[-1])))
+        self._rows[at] = disturbance
+        if self._turbulence is not None:
+            self._gusts[at] = disturbance[:, -2:]
+        return disturbance[:, 2:]
+
+    def loads(self, out: Array) -> None:
+        """Write the line loads of this instant to ``out`` (…, 2)."""
+        assert self._cases is not None
+        np.multiply(self._amplitude, self._cases.gain(self._steps).reshape(*out.shape[:-1], 1), out=out)
+        np.add(out, self._rows[..., :2], out=out)
+        if self._cases.has_harmonics:
+            out += self._cases.of_rotor(self._steps).reshape(out.shape)
+        if self._turbulence is not None:
+            out += self._gusts
+
+    def next(self, generator: Generator, resting: Rows | None = None) -> Array:
+        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − 2). ``resting`` makes no difference here."""
+        self._steps += 1
+        generator.standard_normal(out=self._normals)
+        if self._factor.ndim == 1:
+            np.multiply(self._rows, self._factor, out=self._rows)
+        else:
+            self._rows[...] = self._rows @ self._factor
+        if self._turbulence is not None:
+            self._gusts = self._turbulence.following(self._gusts, self._rows[..., -2:])
+        return self._rows[..., 2:]
+
+    def _scaled(self, normals: Array) -> Array:
+        return normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
+
+
+class SeededDisturbances:
+    """Disturbances of N blades, each from its own generator.
+
+    The rows of the next ``BLOCK`` instants lie in a ring that all blades read at the same place; each blade's part is
+    drawn again whenever its own episode has used up its block. ``shape`` is that of the batch: () or (blocks, size).
+    """
+
+    def __init__(self, factor: Array, shape: tuple[int, ...], turbulence: Turbulence | None = None) -> None:
+        count = math.prod(shape)
+        self._turbulence, self._gusts = turbulence, np.zeros((count, 2))
+        self._factor, self._shape = factor, shape
+        self._ring = np.zeros((BLOCK, count, len(factor)))
+        self._see_ring()
+        self._at = 0
+        self._begun = np.zeros(count, dtype=np.int64)  # place in the ring where a blade's blocks begin
+        self._due: dict[int, Rows] = {}
+        self._drawn = np.zeros(count, dtype=np.int64)  # instants drawn so far, of each blade's episode
+        self._cases: LoadCases | None = None
+
+    def _see_ring(self) -> None:
+        seen = self._ring.reshape(BLOCK, *self._shape, len(self._factor))
+        self._loads, self._noise = list(seen[..., :2]), list(seen[..., 2:])
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name not in ("_loads", "_noise")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._see_ring()
+
+    def begin(self, rows: Rows, cases: LoadCases, generators: Sequence[Generator]) -> Array:
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2)."""
+        self._cases = merged(self._cases, rows, cases)
+        self._begun[rows] = self._at
+        self._due = {start: np.flatnonzero(self._begun == start) for start in np.unique(self._begun).tolist()}
+        self._drawn[rows] = 0
+        self._draw(rows, generators)
+        return self._ring[self._at, rows, 2:]
+
+    def loads(self, out: Array) -> None:
+        """Write the line loads of this instant to ``out`` (…, 2)."""
+        out[...] = self._loads[self._at]
+
+    def next(self, generators: Sequence[Generator], resting: Rows | None = None) -> Array:
+        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − 2).
+
+        Nothing is drawn for blades that are ``resting``: their episode is over, their generator waits for the next.
+        """
+        self._at = (self._at + 1) % BLOCK
+        due = self._due.get(self._at)
+        if due is not None:
+            self._draw(due if resting is None else np.setdiff1d(due, resting), generators)
+        return self._noise[self._at]
+
+    def _draw(self, rows: Rows, generators: Sequence[Generator]) -> None:
+        """Draw the next block of ``rows``, whose blocks begin here."""
+        if not len(rows):
+            return
+        assert self._cases is not None
+        normals = np.empty((len(rows), BLOCK, len(self._factor)))
+        for row, tape in zip(rows.tolist(), normals, strict=True):
+            generators[row].standard_normal(out=tape)
+        disturbance = (normals @ self._factor).swapaxes(0, 1)
+        cases = self._cases if len(rows) == len(self._cases) else self._cases.rows(rows)
+        disturbance[..., :2] += cases.at(self._drawn[rows] + np.arange(BLOCK)[:, None])
+        if self._turbulence is not None:
+            self._add_turbulence(disturbance, rows)
+        self._ring[(self._at + np.arange(BLOCK)[:, None]) % BLOCK, rows] = disturbance
+        self._drawn[rows] += BLOCK
+
+    def _add_turbulence(self, disturbance: Array, rows: Rows) -> None:
+        """Put the turbulence of a block onto its loads; an episode's first one is drawn from the steady state."""
+        assert self._turbulence is not None
+        begins, gusts = (self._drawn[rows] == 0)[:, None], self._gusts[rows]
+        for k, instant in enumerate(disturbance):
+            following = self._turbulence.following(gusts, instant[:, -2:])
+            gusts = np.where(begins, instant[:, -2:], following) if k == 0 else following
+            instant[:, :2] += gusts
+        self._gusts[rows] = gusts
+
+
+def merged(cases: LoadCases | None, rows: Rows, others: LoadCases) -> LoadCases:
+    """``cases`` with those of ``rows`` exchanged for ``others``."""
+    return others if cases is None or len(rows) == len(cases) else cases.replace(rows, others)

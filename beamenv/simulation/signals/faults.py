@@ -1,0 +1,99 @@
+"""What lies between a controller and the blade's patches, where a scenario makes it imperfect: delay, hysteresis, dead actuators
+on the way in; dead and biased sensors, lost readings on the way out. Pure functions of a batch of N blades, NumPy and torch alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.scenarios.tables import Failures
+from beamenv.simulation.kernel import namespace
+from beamenv.simulation.signals.hysteresis import Hysteresis
+
+DRAWS = 6
+"""Uniform numbers that faults take: plant, delay, actuator, sensor, dead or biased, bias."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Faults:
+    """What is wrong with each of N blades in this episode."""
+
+    delay: Any
+    """(N,) control intervals."""
+    actuator_gain: Any
+    """(N, m): 0 for a dead one."""
+    sensor_gain: Any
+    """(N, p): 0 for a dead one."""
+    sensor_bias: Any
+    """(N, p), of full scale."""
+
+    def replace(self, rows: Any, others: Faults) -> Faults:
+        """These faults with those of ``rows`` exchanged for ``others``."""
+        exchanged = {each.name: getattr(self, each.name).copy() for each in fields(self)}
+        for name, values in exchanged.items():
+            values[rows] = getattr(others, name)
+        return Faults(**exchanged)
+
+    def rows(self, rows: Any) -> Faults:
+        """The faults of some of the blades."""
+        return self.convert(lambda values: values[rows])
+
+    def convert(self, to_array: Callable[[Any], Any]) -> Faults:
+        """The same faults with each array passed through ``to_array``."""
+        return replace(self, **{each.name: to_array(getattr(self, each.name)) for each in fields(self)})
+
+
+class SignalMemory(NamedTuple):
+    """What the electronics remember of the past."""
+
+    commands: Any
+    """(N, D + 1, m): the last voltages asked for, newest first."""
+    plays: Any
+    """(N, m, J): outputs of the hysteresis operator's plays."""
+    readings: Any
+    """(N, p): the last readings shown."""
+
+
+def draw_faults(failures: Failures, delay: tuple[int, int], uniforms: NDArray[np.float64], actuators: int, sensors: int) -> Faults:
+    """Faults of N blades from uniform numbers (N, ``DRAWS``)."""
+    count = len(uniforms)
+    bias = failures.bias[0] + (failures.bias[1] - failures.bias[0]) * np.abs(2.0 * uniforms[:, 5] - 1.0)
+    faulty = _drawn(uniforms[:, 3], failures.faulty_sensors, sensors)
+    biased = (uniforms[:, 4] < failures.biased_share)[:, None]
+    return Faults(
+        delay=delay[0] + np.floor(uniforms[:, 1] * (delay[1] - delay[0] + 1)).astype(np.int64),
+        actuator_gain=1.0 - _drawn(uniforms[:, 2], failures.dead_actuators, actuators),
+        sensor_gain=np.where(faulty & ~biased, 0.0, np.ones((count, sensors))),
+        sensor_bias=np.where(faulty & biased, (np.sign(uniforms[:, 5] - 0.5) * bias)[:, None], 0.0),
+    )
+
+
+def _drawn(uniform: NDArray[np.float64], count: int, among: int) -> NDArray[np.bool_]:
+    """(N, among): ``count`` neighbours, in a ring, are drawn; each is as likely as any other."""
+    first = np.floor(uniform * among).astype(np.int64)
+    return ((np.arange(among) - first[:, None]) % among) < min(count, among)
+
+
+def drive(faults: Faults, hysteresis: Hysteresis | None, memory: SignalMemory, asked: Any) -> tuple[Any, SignalMemory]:
+    """Voltages (N, m) that act on the blade, from those asked for, and the memory after them."""
+    array = namespace(asked)
+    commands = array.concatenate([asked[:, None], memory.commands[:, :-1]], axis=1)
+    acting = commands[array.arange(len(asked)), faults.delay] if commands.shape[1] > 1 else asked
+    plays = memory.plays
+    if hysteresis is not None:
+        acting, plays = hysteresis.step(acting, plays)
+    return acting * faults.actuator_gain, memory._replace(commands=commands, plays=plays)
+
+
+def acquire(faults: Faults, memory: SignalMemory, output: Any, noise: Any, lost: Any) -> tuple[Any, SignalMemory]:
+    """Readings (N, p) in full scales, clipped, from the blade's noise-free output, noise and what is ``lost`` (N, p) or None."""
+    array = namespace(output)
+    readings = array.clip(output * faults.sensor_gain + faults.sensor_bias + noise, -1.0, 1.0)
+    if lost is not None:
+        readings = array.where(lost, memory.readings, readings)
+    return readings, memory._replace(readings=readings)

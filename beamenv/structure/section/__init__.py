@@ -1,0 +1,1 @@
+"""Sections: stiffness and inertia of a closed contour of walls."""

@@ -1,0 +1,253 @@
+"""Sections: polygonal single cells, and their stiffness matrices at many stations at once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.checks import is_number
+from beamenv.structure.section.inertia import SectionInertia
+from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
+from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
+from beamenv.structure.walls.wall_kinematics import (
+    GX,
+    GY,
+    PHI,
+    SHEAR_FLOWS,
+    SHEAR_THEORIES,
+    TX,
+    TY,
+    LawTable,
+    ShearFlow,
+    W,
+    motion_rows,
+    shear_flow_of,
+    strain_rows,
+    transverse_shear_rows,
+    transverse_shear_stiffness,
+)
+
+Array = NDArray[np.float64]
+
+
+class Section(ABC):
+    """A closed single-cell thin-walled section with walls of one thickness."""
+
+    thickness: float
+    """m."""
+
+    @property
+    @abstractmethod
+    def vertices(self) -> Array:
+        """(K, 2): x, y (m) of the mid-line's corners at the root, counter-clockwise."""
+
+    @property
+    @abstractmethod
+    def walls(self) -> tuple[str, ...]:
+        """The wall that each of the K edges belongs to; edge k runs from vertex k to vertex k + 1."""
+
+    @property
+    @abstractmethod
+    def thickness_limit(self) -> float:
+        """Wall thickness (m) at which the walls would fill the section."""
+
+    def check_thickness(self, scale: float = 1.0) -> None:
+        """``ValueError`` unless the wall is thinner than its limit in a section of ``scale`` times the size."""
+        limit = scale * self.thickness_limit
+        if not (is_number(self.thickness) and self.thickness > 0.0):
+            raise ValueError(f"thickness = {self.thickness!r} of the section must be a positive number of metres.")
+        if not self.thickness < limit:
+            where = "" if scale == 1.0 else " at its narrow end"
+            raise ValueError(f"thickness = {self.thickness!r} of the section must be below {limit:.6g} m{where}, where walls meet.")
+
+    def wall_width(self, wall: str) -> float:
+        """Length (m) along the contour of a wall; ``ValueError`` unless it is one straight edge."""
+        edges = [k for k, name in enumerate(self.walls) if name == wall]
+        if len(edges) != 1:
+            raise ValueError(f"wall = {wall!r} must name one straight wall of the section: {', '.join(dict.fromkeys(self.walls))}.")
+        start, end = self.vertices[edges[0]], self.vertices[(edges[0] + 1) % len(self.walls)]
+        return float(np.hypot(*(end - start)))
+
+    def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str = "consistent") -> Array:
+        """Classical stiffness (4, 4) for (w', θx', θy', φ'): EA, EI_flap, EI_lag, GJ on the diagonal and the couplings.
+
+        The transverse shear strains are condensed out (Berdichevsky, Armanios and Badir, Composites Engineering 2, 1992).
+        Units N, N m, N m². Raises ``ValueError`` for an unknown ``shear`` theory or ``shear_flow`` and for a lay-up of other walls.
+        """
+        layup.check_walls(self.walls)
+        walls = SpanWalls.build(self, layup, z=np.zeros(1), scale=np.ones(1), angle=np.zeros(1), shear=shear, shear_flow=shear_flow)
+        full = walls.stiffness()[0]
+        kept = [W, TX, TY, PHI]
+        if shear == "rigid":
+            return full[np.ix_(kept, kept)]
+        shears = [GX, GY]
+        return full[np.ix_(kept, kept)] - full[np.ix_(kept, shears)] @ np.linalg.solve(
+            full[np.ix_(shears, shears)], full[np.ix_(shears, kept)]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class BoxSection(Section):
+    """A rectangular box: mid-line ``width`` along x, ``depth`` along y, wall ``thickness``, all in m.
+
+    Its walls are right, top, left and bottom. Raises ``ValueError`` for a dimension that is not positive or a wall too thick.
+    """
+
+    width: float
+    depth: float
+    thickness: float
+
+    def __post_init__(self) -> None:
+        for name in ("width", "depth"):
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0.0):
+                raise ValueError(f"{name} = {value!r} of the section must be a positive number of metres.")
+        self.check_thickness()
+
+    @property
+    def vertices(self) -> Array:
+        """(4, 2), from the right wall's lower end."""
+        c, b = 0.5 * self.width, 0.5 * self.depth
+        return np.array([[c, -b], [c, b], [-c, b], [-c, -b]])
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """right, top, left, bottom."""
+        return ("right", "top", "left", "bottom")
+
+    @property
+    def thickness_limit(self) -> float:
+        """The smaller of width and depth."""
+        return min(self.width, self.depth)
+
+
+@dataclass(frozen=True, slots=True)
+class PolygonSection(Section):
+    """Any closed polygon: corners (x, y) of the mid-line in m, counter-clockwise, the wall name of each edge, the wall thickness.
+
+    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, names that are not one an edge,
+    or a wall too thick.
+    """
+
+    corners: tuple[tuple[float, float], ...]
+    edge_walls: tuple[str, ...]
+    thickness: float
+
+    def __post_init__(self) -> None:
+        if len(self.corners) < 3 or len(self.edge_walls) != len(self.corners):
+            raise ValueError(f"corners = {self.corners!r} must be at least three, with one wall name for each edge.")
+        if not (self._area > 0.0 and np.all(self._edge_lengths > 0.0)):
+            raise ValueError(f"corners = {self.corners!r} must be distinct, go round counter-clockwise and enclose an area.")
+        self.check_thickness()
+
+    @property
+    def vertices(self) -> Array:
+        """(K, 2)."""
+        return np.array(self.corners, dtype=float)
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """As given."""
+        return self.edge_walls
+
+    @property
+    def thickness_limit(self) -> float:
+        """4 area/perimeter: the diameter of the inscribed circle where one touches every edge, never less in a convex polygon."""
+        return float(4.0 * self._area / self._edge_lengths.sum())
+
+    @property
+    def _area(self) -> float:
+        x, y = self.vertices.T
+        return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+    @property
+    def _edge_lengths(self) -> Array:
+        return np.asarray(np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpanWalls:
+    """The walls at S stations of the span: geometry, laws and shear flow, ready to be integrated around the contour."""
+
+    points: WallPoints
+    laws: LawTable
+    flow: ShearFlow
+    shear: str
+
+    @classmethod
+    def build(
+        cls,
+        section: Section,
+        layup: Layup,
+        z: Array,
+        scale: Array,
+        angle: Array,
+        shear: str,
+        shear_flow: str,
+        inlays: Sequence[Inlay] = (),
+        cuts: Sequence[tuple[str, float]] = (),
+    ) -> SpanWalls:
+        """Walls at stations z (m) of a section scaled and turned (rad) station by station, with inlays let in.
+
+        ``cuts`` are further (wall, width) at which walls are split, so that a patch without passive effect can be integrated over.
+        """
+        check_theory(shear, shear_flow)
+        widths = [*cuts, *((inlay.wall, inlay.width) for inlay in inlays)]
+        vertices, edges = split_walls(scale[:, None, None] * section.vertices, section.walls, widths)
+        points = wall_points(rotated(vertices, angle), edges)
+        hosts = {wall: Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls}
+        laws, index = lay_out_laws(hosts, points, inlays, z)
+        table = LawTable.gather(laws, index)
+        return cls(points=points, laws=table, flow=shear_flow_of(points, table, shear_flow), shear=shear)
+
+    def strain_rows(self) -> Array:
+        """(S, P, 6, 9)."""
+        return strain_rows(self.points, self.flow, self.laws.thickness, self.shear)
+
+    def stiffness(self) -> Array:
+        """Section stiffness (S, 9, 9) for the generalised strains."""
+        rows = self.strain_rows()
+        weighted = self.points.ds[..., None, None] * (self.laws.stiffness @ rows)
+        stations = len(rows)
+        membrane = rows.reshape(stations, -1, 9).transpose(0, 2, 1) @ weighted.reshape(stations, -1, 9)
+        if self.shear == "rigid":
+            return membrane
+        normal = transverse_shear_rows(self.points)
+        weight = self.points.ds * transverse_shear_stiffness(self.laws, self.shear)
+        return membrane + normal.transpose(0, 2, 1) @ (weight[..., None] * normal)
+
+    def inertia(self) -> SectionInertia:
+        """Section inertia matrices."""
+        motion = motion_rows(self.points, self.flow, self.laws.thickness, self.shear)
+        return SectionInertia.integrate(motion, self.laws.density, self.points.ds)
+
+
+def check_theory(shear: str, shear_flow: str) -> None:
+    """``ValueError`` unless both names are known."""
+    if shear not in SHEAR_THEORIES:
+        raise ValueError(f"shear = {shear!r} must be one of {', '.join(SHEAR_THEORIES)}.")
+    if shear_flow not in SHEAR_FLOWS:
+        raise ValueError(f"shear_flow = {shear_flow!r} must be one of {', '.join(SHEAR_FLOWS)}.")
+
+
+def lay_out_laws(
+    hosts: dict[str, Laminate], points: WallPoints, inlays: Sequence[Inlay], z: Array
+) -> tuple[list[WallLaw], NDArray[np.intp]]:
+    """The distinct wall laws and, for every station and point (S, P), which one holds there."""
+    known: dict[Laminate, int] = {}
+
+    def number(laminate: Laminate) -> int:
+        return known.setdefault(laminate, len(known))
+
+    index = np.empty((len(z), len(points.edges)), dtype=np.intp)
+    host = {wall: number(laminate) for wall, laminate in hosts.items()}
+    index[:] = [host[edge.wall] for edge in points.edges]
+    for inlay in inlays:
+        law = number(hosts[inlay.wall].with_outer_layer(inlay.ply, inlay.thickness))
+        under = [edge.lies_under(inlay) for edge in points.edges]
+        index[np.ix_(inlay.covers(z), np.array(under))] = law
+    return [wall_law(laminate) for laminate in known], np.repeat(index, 2, axis=1)

@@ -1,0 +1,1 @@
+"""Walls: materials, laminates, the contour they follow, and how they deform."""

@@ -1,0 +1,125 @@
+"""Closed polygonal mid-lines: Gauss points on every edge, at many stations of the span at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.walls.laminate import Ply
+
+Array = NDArray[np.float64]
+
+GAUSS_POSITIONS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
+"""Two points an edge: exact, since every section integrand is at most quadratic along a straight edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inlay:
+    """A rectangle of foreign material let into the outer face of a wall, centred on it and flush with it."""
+
+    wall: str
+    start: float
+    """Root-side edge, m from the clamp."""
+    length: float
+    """m along the span."""
+    width: float
+    """m along the contour."""
+    ply: Ply
+    """Material and fibre angle."""
+    thickness: float
+    """m."""
+
+    def covers(self, z: Array) -> NDArray[np.bool_]:
+        """Which stations (m from the clamp) lie inside the inlay."""
+        return (z > self.start) & (z < self.start + self.length)
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A straight piece of a wall."""
+
+    wall: str
+    reach: float
+    """Largest distance (m) of the piece from the wall's centre where inlays split the wall, infinite elsewhere."""
+
+    def lies_under(self, inlay: Inlay) -> bool:
+        """Whether the inlay spans this piece of its wall."""
+        return self.wall == inlay.wall and self.reach <= 0.5 * inlay.width * (1.0 + 1e-9)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WallPoints:
+    """Gauss points of a contour at S stations, P = 2K points each, in the directions of the blade's x and y."""
+
+    edges: tuple[Edge, ...]
+    x: Array
+    y: Array
+    l: Array  # noqa: E741 - the field's name for dy/ds
+    m: Array
+    ds: Array
+    """(S, P) each: position (m), outward normal (l, m) and integration weight (m)."""
+    along: Array
+    """(S, P): distance (m) from the start of the point's edge."""
+
+    @property
+    def normal_distance(self) -> Array:
+        """r_n = x l + y m (S, P), m: distance of the wall's tangent from the origin."""
+        return self.x * self.l + self.y * self.m
+
+    @property
+    def tangential_distance(self) -> Array:
+        """A = m x − l y (S, P), m."""
+        return self.m * self.x - self.l * self.y
+
+    def around(self, values: Array) -> Array:
+        """∮ value ds (S, …) of values (S, P, …)."""
+        return np.einsum("sp,sp...->s...", self.ds, values)
+
+    def integral_from_start(self, slope: Array) -> Array:
+        """∫₀ˢ slope ds at the points (S, P) for a slope that is constant along each edge."""
+        edge_length = 2.0 * self.ds[:, ::2]
+        per_edge = slope[:, ::2] * edge_length
+        start = np.cumsum(per_edge, axis=1) - per_edge
+        return np.repeat(start, 2, axis=1) + slope * self.along
+
+
+def split_walls(vertices: Array, walls: Sequence[str], inlay_widths: Sequence[tuple[str, float]]) -> tuple[Array, tuple[Edge, ...]]:
+    """Cut walls where inlays begin and end: vertices (S, K, 2) to (S, K', 2), with what each new edge is."""
+    points, edges = [], []
+    following = np.roll(vertices, -1, axis=1)
+    for k, wall in enumerate(walls):
+        start, end = vertices[:, k], following[:, k]
+        length = np.hypot(*(end - start).T)[:, None]
+        halves = sorted({0.5 * width for name, width in inlay_widths if name == wall})
+        cuts = [-half for half in reversed(halves)] + halves
+        points += [start, *(0.5 * (start + end) + cut * (end - start) / length for cut in cuts)]
+        limits = [-np.inf, *cuts, np.inf]
+        edges += [Edge(wall, max(abs(a), abs(b))) for a, b in zip(limits[:-1], limits[1:], strict=True)]
+    return np.stack(points, axis=1), tuple(edges)
+
+
+def wall_points(vertices: Array, edges: tuple[Edge, ...]) -> WallPoints:
+    """Gauss points on the closed polygon with the given vertices (S, K, 2), counter-clockwise."""
+    step = np.roll(vertices, -1, axis=1) - vertices
+    length = np.hypot(step[..., 0], step[..., 1])
+    # An inlay as wide as its wall leaves edges of no length on both sides: no weight, any direction.
+    direction = step / np.where(length > 0.0, length, 1.0)[..., None]
+    points = (vertices[:, :, None, :] + GAUSS_POSITIONS[:, None] * step[:, :, None, :]).reshape(len(vertices), -1, 2)
+    return WallPoints(
+        edges=edges,
+        x=points[..., 0],
+        y=points[..., 1],
+        l=np.repeat(direction[..., 1], 2, axis=1),
+        m=np.repeat(-direction[..., 0], 2, axis=1),
+        ds=np.repeat(0.5 * length, 2, axis=1),
+        along=(length[:, :, None] * GAUSS_POSITIONS).reshape(len(vertices), -1),
+    )
+
+
+def rotated(vertices: Array, angle: Array) -> Array:
+    """Vertices (S, K, 2) turned about the span by the angle (S,) in rad (thesis Eq. 2.38)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return vertices @ np.stack([np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)], axis=-2)

@@ -1,0 +1,162 @@
+"""Walls as stacks of plies: moments through the thickness, and the wall law with the hoop resultant condensed out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.checks import is_number
+from beamenv.structure.walls.materials import Lamina
+
+Array = NDArray[np.float64]
+
+# The wall strains, as (stress component, power of n): ε_ss, then ε0, ε1, ε3 (spanwise) and γ0, γ1, γ2 (membrane shear).
+WALL_STRAINS = ((0, 0), (1, 0), (1, 1), (1, 3), (2, 0), (2, 1), (2, 2))
+COMPONENT = np.array([component for component, _ in WALL_STRAINS])
+POWER = np.array([power for _, power in WALL_STRAINS])
+HIGHEST_MOMENT = 2 * int(POWER.max())
+
+
+@dataclass(frozen=True, slots=True)
+class Ply:
+    """One layer: its material and the angle of its fibres from the contour tangent (0 = hoop, 90 = spanwise), degrees."""
+
+    material: Lamina
+    angle_deg: float
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.material, Lamina):
+            raise ValueError(f"material = {self.material!r} of a ply must be a Lamina.")
+        if not is_number(self.angle_deg):
+            raise ValueError(f"angle_deg = {self.angle_deg!r} must be a finite number of degrees.")
+
+
+@dataclass(frozen=True, slots=True)
+class Layup:
+    """Plies of each wall, inner to outer face, all of one wall equally thick."""
+
+    default: tuple[Ply, ...] | None
+    walls: Mapping[str, tuple[Ply, ...]] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "walls", MappingProxyType(dict(self.walls)))
+
+    def __reduce__(self) -> tuple[type[Layup], tuple[tuple[Ply, ...] | None, dict[str, tuple[Ply, ...]]]]:
+        # A mapping proxy cannot be pickled, and blades travel to worker processes.
+        return Layup, (self.default, dict(self.walls))
+
+    @classmethod
+    def uniform(cls, material: Lamina, angles_deg: Sequence[float]) -> Layup:
+        """The same plies all around the contour: a circumferentially uniform stiffness (CUS) box, say."""
+        return cls(default=stack(material, angles_deg, "angles_deg"))
+
+    @classmethod
+    def by_wall(cls, material: Lamina, **angles_deg: Sequence[float]) -> Layup:
+        """Plies wall by wall, by the names of the section's walls (a box: top, bottom, left, right)."""
+        return cls(default=None, walls={wall: stack(material, angles, wall) for wall, angles in angles_deg.items()})
+
+    def plies(self, wall: str) -> tuple[Ply, ...]:
+        """The plies of a wall; ``ValueError`` when the lay-up has none for it."""
+        plies = self.walls.get(wall, self.default)
+        if plies is None:
+            raise ValueError(f"layup has no plies for wall {wall!r}; it has them for {', '.join(sorted(self.walls))}.")
+        return plies
+
+    def check_walls(self, walls: Sequence[str]) -> None:
+        """``ValueError`` unless there are plies for every one of ``walls`` and for no other."""
+        for wall in walls:
+            self.plies(wall)
+        unknown = sorted(set(self.walls) - set(walls))
+        if unknown:
+            raise ValueError(f"layup has plies for wall {unknown[0]!r}; the section has {', '.join(dict.fromkeys(walls))}.")
+
+    def mirrored(self) -> Layup:
+        """Every ply angle with its sign changed."""
+
+        def mirror(plies: tuple[Ply, ...]) -> tuple[Ply, ...]:
+            return tuple(Ply(ply.material, -ply.angle_deg) for ply in plies)
+
+        default = None if self.default is None else mirror(self.default)
+        return Layup(default, {wall: mirror(plies) for wall, plies in self.walls.items()})
+
+
+def stack(material: Lamina, angles_deg: Sequence[float], name: str) -> tuple[Ply, ...]:
+    """Plies of one material at the given angles, inner to outer face."""
+    angles = [float(angle) if is_number(angle) else angle for angle in angles_deg] if isinstance(angles_deg, Iterable) else []
+    if not angles:
+        raise ValueError(f"{name} = {angles_deg!r} must hold at least one ply angle.")
+    return tuple(Ply(material, angle) for angle in angles)
+
+
+@dataclass(frozen=True, slots=True)
+class Laminate:
+    """A wall of given thickness: layers between ascending coordinates n (m, zero at the mid-line, outward positive)."""
+
+    interfaces: tuple[float, ...]
+    plies: tuple[Ply, ...]
+
+    @classmethod
+    def equal_plies(cls, plies: tuple[Ply, ...], thickness: float) -> Laminate:
+        """Equally thick plies filling ``thickness`` (m)."""
+        return cls(tuple(np.linspace(-0.5 * thickness, 0.5 * thickness, len(plies) + 1).tolist()), plies)
+
+    @property
+    def thickness(self) -> float:
+        """Metres."""
+        return self.interfaces[-1] - self.interfaces[0]
+
+    def with_outer_layer(self, ply: Ply, thickness: float) -> Laminate:
+        """The same wall with its outermost ``thickness`` (m) replaced by ``ply``, flush with the outer face."""
+        if not 0.0 < thickness < self.thickness:
+            raise ValueError(f"thickness = {thickness!r} of an inlay must be positive and below the wall's {self.thickness:.6g} m.")
+        level = self.interfaces[-1] - thickness
+        kept = [k for k, start in enumerate(self.interfaces[:-1]) if start < level - 1e-12 * self.thickness]
+        starts = tuple(self.interfaces[k] for k in kept)
+        return Laminate((*starts, level, self.interfaces[-1]), (*(self.plies[k] for k in kept), ply))
+
+    def moments(self, values: Array, highest: int = HIGHEST_MOMENT) -> Array:
+        """∫ value(n) nʲ dn for j = 0 … highest, from one value (any shape) a ply: (highest + 1, …)."""
+        return np.tensordot(power_integrals(np.array(self.interfaces), highest), values, axes=1)
+
+
+def power_integrals(interfaces: Array, highest: int) -> Array:
+    """∫ nʲ dn over each layer, (highest + 1, layers)."""
+    exponents = np.arange(1, highest + 2)[:, None]
+    return np.diff(interfaces[None, :] ** exponents, axis=1) / exponents
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WallLaw:
+    """What a wall contributes to a section, per unit area."""
+
+    thickness: float
+    stiffness: Array
+    """(6, 6) for (ε0, ε1, ε3, γ0, γ1, γ2), with N_ss = 0."""
+    hoop_coupling: Array
+    """(6,): −∂ε_ss/∂(wall strains) under N_ss = 0; what a hoop stress does to the six resultants."""
+    transverse_shear: Array
+    """(7,): moments of Q̄44."""
+    density: Array
+    """(7,): moments of ρ."""
+
+
+@lru_cache(maxsize=64)
+def wall_law(laminate: Laminate) -> WallLaw:
+    """Integrate a laminate through its thickness and condense out the hoop strain (N_ss = 0)."""
+    angles = np.radians([ply.angle_deg for ply in laminate.plies])
+    pairs = list(zip(laminate.plies, angles, strict=True))
+    q_bar = laminate.moments(np.stack([ply.material.transformed_stiffness(angle) for ply, angle in pairs]))
+    full = q_bar[POWER[:, None] + POWER[None, :], COMPONENT[:, None], COMPONENT[None, :]]
+    hoop_coupling = full[0, 1:] / full[0, 0]
+    return WallLaw(
+        thickness=laminate.thickness,
+        stiffness=full[1:, 1:] - np.outer(full[0, 1:], hoop_coupling),
+        hoop_coupling=hoop_coupling,
+        transverse_shear=laminate.moments(np.array([ply.material.transverse_shear_stiffness(angle) for ply, angle in pairs])),
+        density=laminate.moments(np.array([ply.material.density for ply in laminate.plies])),
+    )

@@ -1,0 +1,78 @@
+"""Orthotropic laminae."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.checks import check_positive, is_number
+
+
+@dataclass(frozen=True, slots=True)
+class Lamina:
+    """A unidirectional ply in its material axes: 1 along the fibres, 2 across them in the plane, 3 through the thickness.
+
+    Raises ``ValueError`` for a modulus or density that is not positive and for |ν12| ≥ √(E1/E2), where the ply would
+    store negative energy.
+    """
+
+    E1: float
+    """Pa."""
+    E2: float
+    """Pa."""
+    G12: float
+    """Pa."""
+    G13: float
+    """Pa."""
+    G23: float
+    """Pa."""
+    nu12: float
+    """Contraction along 2 per extension along 1."""
+    density: float
+    """kg/m³."""
+
+    def __post_init__(self) -> None:
+        check_positive(**{field.name: getattr(self, field.name) for field in fields(self) if field.name != "nu12"})
+        if not (is_number(self.nu12) and abs(self.nu12) < np.sqrt(self.E1 / self.E2)):
+            raise ValueError(
+                f"nu12 = {self.nu12!r} must be smaller in magnitude than sqrt(E1/E2) = {np.sqrt(self.E1 / self.E2):.4g}."
+            )
+
+    @classmethod
+    def isotropic(cls, E: float, nu: float, density: float) -> Lamina:
+        """An isotropic sheet with Young's modulus E (Pa), Poisson's ratio nu and density (kg/m³)."""
+        check_positive(E=E, density=density)
+        if not (is_number(nu) and -1.0 < nu < 0.5):
+            raise ValueError(f"nu = {nu!r} must lie between -1 and 0.5.")
+        shear_modulus = E / (2.0 * (1.0 + nu))
+        return cls(E1=E, E2=E, G12=shear_modulus, G13=shear_modulus, G23=shear_modulus, nu12=nu, density=density)
+
+    def reduced_stiffness(self) -> NDArray[np.float64]:
+        """Plane-stress stiffness Q (3, 3) in Pa for (ε1, ε2, γ12); Jones, Mechanics of Composite Materials, Eq. 2.70."""
+        determinant = 1.0 - self.nu12**2 * self.E2 / self.E1
+        q12 = self.nu12 * self.E2 / determinant
+        return np.array([[self.E1 / determinant, q12, 0.0], [q12, self.E2 / determinant, 0.0], [0.0, 0.0, self.G12]])
+
+    def transformed_stiffness(self, angle: float) -> NDArray[np.float64]:
+        """Q̄ (3, 3) in Pa for (ε_ss, ε_zz, γ_sz) with the fibres ``angle`` (rad) from s towards z; Jones, Eq. 2.84."""
+        to_material = strain_rotation(angle)
+        return to_material.T @ self.reduced_stiffness() @ to_material
+
+    def transverse_shear_stiffness(self, angle: float) -> float:
+        """Q̄44 in Pa for γ_nz: G23 cos² + G13 sin²."""
+        return float(self.G23 * np.cos(angle) ** 2 + self.G13 * np.sin(angle) ** 2)
+
+
+def strain_rotation(angle: float) -> NDArray[np.float64]:
+    """(3, 3): engineering strains (ε_ss, ε_zz, γ_sz) of the wall to (ε1, ε2, γ12) of a ply turned by ``angle`` (rad)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]])
+
+
+GRAPHITE_EPOXY = Lamina(E1=206.8e9, E2=5.17e9, G12=3.1e9, G13=3.1e9, G23=2.5511e9, nu12=0.25, density=1528.15)
+"""The thesis' blade (Table 5.1)."""
+
+AS4_3501_6 = Lamina(E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8)
+"""The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992)."""

@@ -1,0 +1,1 @@
+"""Training, comparison and benchmark of controllers, the thesis reproduced, and the command line."""

@@ -1,0 +1,81 @@
+"""Who takes part: contenders, trained agents, and what the caller brings along."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from train.benchmark.entrants.models import UNTRUSTED
+from train.benchmark.entrants.sources import Classical, Given, ModelFile, Source, Trained
+from train.controllers.contenders import KINDS, discover
+from train.controllers.shipped import FOLDER, shipped
+
+GENERALIST = "generalist"
+"""Trained on every scenario at once, and therefore run in every one."""
+
+ORDER = (*KINDS, "learned", "own")
+"""Kinds, as tables and figures order them."""
+
+INDISPENSABLE = ("none", "lqg")
+"""What every cost is relative to, and what everyone is compared with in pairs."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Entrant:
+    """A controller of the table, with its training runs if it has learned."""
+
+    name: str
+    kind: str
+    everywhere: Mapping[str, Source] = field(default_factory=dict)
+    """Runs by name that are put into every scenario."""
+    only_in: Mapping[str, Mapping[str, Source]] = field(default_factory=dict)
+    """Runs by scenario, of a specialist."""
+
+    def runs(self, scenario: str) -> Mapping[str, Source]:
+        """Those in a scenario, none if it has nothing to do there."""
+        return self.everywhere or self.only_in.get(scenario, {})
+
+
+def entrants(
+    controllers: Sequence[str] | None, own: Mapping[str, Any], models: Sequence[Path], trusted: bool, trained: Path = FOLDER
+) -> list[Entrant]:
+    """Everyone named, all contenders and shipped agents if ``controllers`` is None, and what the caller brings.
+
+    No control and LQG are always among them. Raises ValueError for an unknown name, two of one name, an object without
+    ``predict``, and models that nobody vouches for.
+    """
+    if models and not trusted:
+        raise ValueError(UNTRUSTED)
+    classical = [Entrant(name, each.kind, {"": Classical(each)}) for name, each in discover().items()]
+    known = {each.name: each for each in [*classical, *agents(trained)]}
+    names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
+    if unknown := [name for name in names if name not in known]:
+        raise ValueError(f"controller = {unknown[0]!r} must be one of {', '.join(known)}.")
+    brought = [Entrant(name, "own", {"": _given(name, each)}) for name, each in own.items()]
+    brought += [Entrant(path.stem, "own", {"": ModelFile(path)}) for path in models]
+    chosen = [*(known[name] for name in names), *brought]
+    if doubled := [each.name for index, each in enumerate(chosen) if each.name in {other.name for other in chosen[:index]}]:
+        raise ValueError(f"controller {doubled[0]!r} is there twice: give yours another name.")
+    return sorted(chosen, key=lambda each: ORDER.index(each.kind))
+
+
+def _given(name: str, controller: Any) -> Given:
+    if not callable(getattr(controller, "predict", None)):
+        raise ValueError(f"controller {name!r} is of type {type(controller).__name__}, but must have Stable-Baselines3's predict.")
+    return Given(controller)
+
+
+def agents(folder: Path) -> list[Entrant]:
+    """The trained agents in a folder: of each the generalist and the specialists, with all their training runs."""
+    homes: dict[str, dict[str, dict[str, Source]]] = {}
+    for each in shipped(folder):
+        homes.setdefault(each.agent, {}).setdefault(each.scenario, {})[str(each.seed)] = Trained(each.folder)
+    found = []
+    for agent, runs in homes.items():
+        if general := runs.pop(GENERALIST, {}):
+            found.append(Entrant(f"{agent}-{GENERALIST}", "learned", general))
+        if runs:
+            found.append(Entrant(f"{agent}-specialist", "learned", only_in=runs))
+    return found

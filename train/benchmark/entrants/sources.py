@@ -1,0 +1,95 @@
+"""Where a controller comes from: a contender, the folder of a trained agent, a model file, or an object the caller gives."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from baselines import Controller
+from beamenv.task import Task
+from train.benchmark.entrants.models import fitted, load_model
+from train.controllers.contenders import Contender
+from train.controllers.policy_files import load_policy
+
+
+class Source(Protocol):
+    """What a controller is made from, in whichever process."""
+
+    def build(self, task: Task) -> Controller:
+        """The controller for a task; ``ValueError`` says why there is none."""
+        ...
+
+    def fingerprint(self) -> str:
+        """Changes with what the controller is made from; empty if that cannot be told."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Classical:
+    """A contender."""
+
+    contender: Contender
+
+    def build(self, task: Task) -> Controller:
+        """From the design plant."""
+        return self.contender.build(task)
+
+    def fingerprint(self) -> str:
+        """Of its file."""
+        return digest(inspect.getsource(inspect.getmodule(self.contender.build) or self.contender.build).encode())
+
+
+@dataclass(frozen=True, slots=True)
+class Trained:
+    """The folder of a trained agent."""
+
+    folder: Path
+
+    def build(self, task: Task) -> Controller:
+        """The agent, within the drive limits of this task; refused if it was trained on other plants."""
+        return load_policy(self.folder, task.design_plant)
+
+    def fingerprint(self) -> str:
+        """Of its weights and what is said of them."""
+        return digest(*((self.folder / name).read_bytes() for name in ("agent.json", "weights.npz")))
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFile:
+    """A model of Stable-Baselines3 in a file that the caller trusts: loading it may run code."""
+
+    path: Path
+
+    def build(self, task: Task) -> Controller:
+        """The model, shown what it was trained to see."""
+        return fitted(load_model(self.path), task.design_plant)
+
+    def fingerprint(self) -> str:
+        """Of the file."""
+        return digest(self.path.read_bytes()) if self.path.is_file() else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """An object with ``predict``."""
+
+    controller: Any
+
+    def build(self, task: Task) -> Controller:
+        """The object itself, or a model of Stable-Baselines3 shown what it was trained to see."""
+        return fitted(self.controller, task.design_plant)
+
+    def fingerprint(self) -> str:
+        """Empty: what an object will do nobody knows beforehand, so its cells are measured anew."""
+        return ""
+
+
+def digest(*contents: bytes) -> str:
+    """Sixteen hexadecimal digits."""
+    total = hashlib.sha256()
+    for content in contents:
+        total.update(len(content).to_bytes(8, "big") + content)
+    return total.hexdigest()[:16]

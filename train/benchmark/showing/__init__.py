@@ -1,0 +1,1 @@
+"""The table as files, pictures and pages."""

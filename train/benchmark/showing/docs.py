@@ -1,0 +1,37 @@
+"""The last full run as a page of the documentation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from train.benchmark.showing.heat_map import heat_map
+from train.benchmark.showing.report import markdown
+from train.benchmark.table import BenchmarkTable
+from train.comparison.figures import save
+from train.shared.files import write_whole
+
+INTRODUCTION = """\
+# The benchmark
+
+Every controller in every scenario on the same held-out episodes. Controllers are built from the design plant and agents are shipped
+as trained; what a scenario does to the true blade neither is told. The scenarios are the files in `beamenv/scenarios/named/`, the
+controllers those in `train/controllers/contenders/`: another file there is another row or column.
+"""
+
+
+def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
+    """``benchmark.md`` with its heat map in ``images/``."""
+    save(heat_map(table), folder / "images" / "benchmark.png")
+    write_whole(folder / "benchmark.md", page(table, command))
+
+
+def page(table: BenchmarkTable, command: str) -> str:
+    """The page: how it was made, the picture, and the table."""
+    made = f"Made by\n\n```sh\n{command}\n```\n\nwith {told(table.configuration['versions'])}."
+    return f"{INTRODUCTION}\n{made}\n\n![J over J without control](images/benchmark.png)\n\n{markdown(table)}"
+
+
+def told(versions: Mapping[str, str]) -> str:
+    """Versions in a line."""
+    return ", ".join(f"{name} {version}" for name, version in versions.items())

@@ -1,0 +1,45 @@
+"""The episode that the benchmark's page shows: LQG and the best agent that ships, side by side."""
+
+from __future__ import annotations
+
+from baselines import lqg
+from beamenv.scenarios.scenario import scenario
+from train.benchmark.table import BenchmarkTable, Row
+from train.controllers.shipped import load_shipped, shipped
+from train.learning.agents import task_of
+from train.page import RecordedEpisode, record_episode
+from train.shared.held_out import HELD_OUT
+
+
+def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
+    """The first held-out episode of the scenario in which a shipped agent gains most on LQG, and what to say of it.
+
+    Scenarios whose plant is drawn or changes are passed over: their blades have other shapes than the configured one. None without
+    a shipped agent.
+    """
+    ships = {f"{each.agent}-{'generalist' if each.scenario == 'generalist' else 'specialist'}": each.agent for each in shipped()}
+    environment = table.configuration.get("environment", {})
+    candidates = [row for row in table.rows if row.controller in ships and row.measured and _one_plant(row.scenario)]
+    if not candidates:
+        return None, ""
+    best = min(candidates, key=lambda row: row.estimates["difference_to_lqg"].value)
+    arguments = {**environment, "scenario": best.scenario}
+    plant = task_of(arguments).design_plant
+    try:
+        agent = load_shipped(ships[best.controller], _home(best), plant=plant)
+    except ValueError:  # the table's blade is another one than that which agents ship for
+        return None, ""
+    note = f"Scenario {best.scenario}, held-out episode of seed {HELD_OUT}: LQG, and the agent that gains most on it."
+    return record_episode(arguments, HELD_OUT, (lqg(plant), agent)), note
+
+
+def _home(row: Row) -> str:
+    return "generalist" if row.controller.endswith("-generalist") else row.scenario
+
+
+def _one_plant(name: str) -> bool:
+    try:
+        plants = scenario(name).plants
+    except ValueError:
+        return False
+    return not plants.varies and plants.spin_up is None

@@ -1,0 +1,60 @@
+"""The benchmark as one page that needs no network."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from train.benchmark.showing.episode import shown_episode
+from train.benchmark.showing.heat_map import columns, relative_costs, unstable_shares
+from train.benchmark.showing.report import COLUMNS, legend, text
+from train.benchmark.table import BenchmarkTable, Row
+from train.benchmark.targets import findings
+from train.controllers.shipped import shipped
+from train.page import Cell, HeatMap, LearningCurves, PageContent, Table, write_page
+
+
+def write_report(path: Path, table: BenchmarkTable) -> None:
+    """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration."""
+    episode, told = shown_episode(table)
+    wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
+    content = PageContent(
+        title="Controllers of a rotating blade across scenarios",
+        note="\n".join([*(each.sentence for each in findings(table)), *wrong]),
+        table=page_table(table),
+        heat_map=HeatMap(table.scenarios, columns(table), relative_costs(table), unstable_shares(table)),
+        episode=episode,
+        episode_note=told,
+        learning=learning_curves(table),
+        configuration=table.configuration,
+    )
+    write_page(path, content)
+
+
+def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
+    """How the agents that ship for the nominal blade learned, the first run of each, beside LQG on it; None without any."""
+    level = next((row for row in table.rows if (row.scenario, row.controller) == ("nominal", "lqg") and row.measured), None)
+    own = {row.controller.removesuffix("-specialist") for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
+    curves = {}
+    for each in shipped():
+        if each.agent in own and each.scenario == "nominal" and each.agent not in curves:
+            with (each.folder / "learning.csv").open(encoding="utf-8", newline="") as file:
+                rows = [[row[name] for name in ("elapsed", "steps", "cost")] for row in csv.DictReader(file)]
+            curves[each.agent] = np.array(rows, dtype=np.float64)
+    if level is None or not curves:
+        return None
+    return LearningCurves(curves, {level.title: level.estimates["relative_cost"].value})
+
+
+def page_table(table: BenchmarkTable) -> Table:
+    """All rows, to be sorted by a click."""
+    headings = ("scenario", "controller", "kind", "runs", *(heading for _, heading, *_ in COLUMNS))
+    return Table(headings, tuple(_cells(row) for row in table.rows), legend(table))
+
+
+def _cells(row: Row) -> tuple[Cell, ...]:
+    about = (Cell(row.scenario), Cell(row.controller), Cell(row.kind), Cell(str(row.runs), row.runs))
+    found = ((row.estimates.get(name), factor, form, wide) for name, _, factor, form, wide in COLUMNS)
+    return about + tuple(Cell(text(each, *how), None if each is None else each.value) for each, *how in found)

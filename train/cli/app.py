@@ -1,0 +1,189 @@
+"""The command ``beamenv``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from train.cli.benchmark import benchmark
+from train.cli.options import (
+    BladeOption,
+    JsonOption,
+    PresetOption,
+    ScenarioOption,
+    SpeedOption,
+    environment_arguments,
+    one_sentence,
+    print_json,
+)
+from train.cli.place import place
+from train.cli.train import train
+
+app = typer.Typer(
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
+)
+app.command()(place)
+app.command()(train)
+app.command()(benchmark)
+
+
+@app.command()
+def frequencies(
+    preset: PresetOption = "thesis",
+    speed: Annotated[
+        list[float] | None, typer.Option(help="Rotor speed in rad/s; repeat for more. 0 and the preset's if left out.")
+    ] = None,
+    count: Annotated[int, typer.Option(help="How many modes.")] = 6,
+    gyroscopic: Annotated[bool, typer.Option(help="With gyroscopic coupling.")] = True,
+    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
+    blade: BladeOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Natural frequencies of a blade, each with the family its motion belongs to."""
+    with one_sentence():
+        from beamenv.blade.config import blade_config, build_beam, load_config
+
+        config = blade_config(preset, load_config(blade) if blade else None)
+        beam = build_beam(config) if patches else config.beam.build()
+        speeds = speed or sorted({0.0, config.speed})
+        found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
+    if as_json:
+        rows = [
+            {"speed": each, "natural_frequencies": modes.natural_frequencies.tolist(), "families": list(modes.families)}
+            for each, modes in zip(speeds, found, strict=True)
+        ]
+        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows})
+        return
+    table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
+    table.add_column("mode", justify="right")
+    for each in speeds:
+        table.add_column(f"at {each:g} rad/s", justify="right")
+    for mode in range(count):
+        table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
+    Console().print(table)
+
+
+def _frequency(modes: Any, mode: int) -> str:
+    frequency = modes.natural_frequencies[mode]
+    return f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f}) {modes.families[mode]}"
+
+
+@app.command()
+def evaluate(
+    controller: Annotated[
+        str, typer.Argument(help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder.")
+    ],
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    scenario: ScenarioOption = "default",
+    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Run one controller through held-out episodes and compare it with no control on the same ones."""
+    with one_sentence():
+        import gymnasium as gym
+
+        import baselines
+        import beamenv
+        from train.controllers.choice import chosen
+        from train.shared.held_out import held_out
+
+        arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
+        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
+        law = chosen(controller, envs.unwrapped.task, scenario, trained_seed)
+        evaluation = baselines.evaluate(law, envs, held_out(seeds))
+    if as_json:
+        print_json(evaluation.to_dict())
+    else:
+        from train.comparison.table import screen_table
+
+        Console().print(screen_table([evaluation]))
+
+
+@app.command()
+def compare(
+    folder: Annotated[Path, typer.Argument(help="Where tables, figures and agents are written.")] = Path("results/compare"),
+    minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 5.5,
+    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    scenario: ScenarioOption = "default",
+    as_json: JsonOption = False,
+) -> None:
+    """Train two agents and compare every controller on the same held-out episodes: tables, figures, models.
+
+    An interrupted run goes on from what its folder holds.
+    """
+    with one_sentence():
+        from train.cli.progress import Progressbar
+        from train.comparison.compare import Comparison
+        from train.comparison.compare import compare as run
+        from train.comparison.table import screen_table
+
+        default = Comparison().budget
+        share = 60.0 * minutes / sum(default.values())
+        budget = {name: share * length for name, length in default.items()} if minutes else {}
+        comparison = Comparison({**environment_arguments(preset, speed, blade), "scenario": scenario}, budget, seeds)
+        with Progressbar(budget) as bar:
+            evaluations = run(comparison, folder, bar)
+    if as_json:
+        print_json([evaluation.row() for evaluation in evaluations])
+    else:
+        Console().print(screen_table(evaluations))
+        Console().print(f"written to {folder}")
+
+
+@app.command()
+def speed(as_json: JsonOption = False) -> None:
+    """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
+    from train.tools.speed import show
+    from train.tools.speed import speed as run
+
+    results = run()
+    if as_json:
+        print_json(results)
+    else:
+        show(results)
+
+
+@app.command()
+def explore(
+    port: Annotated[int, typer.Option(help="Where the page is served; 0 takes any free one.")] = 8050,
+    host: Annotated[str, typer.Option(help="A loopback address: the page is for this computer alone.")] = "127.0.0.1",
+) -> None:
+    """Serve a page whose sliders redraw a blade's frequencies, mode shapes, damping and step response. Ctrl-C ends it."""
+    with one_sentence():
+        from train.explore import serve
+
+        server = serve(port, host)
+    Console().print(f"http://{host}:{server.port} (Ctrl-C ends it)")
+    server.serve_forever()
+
+
+@app.command()
+def reproduce(
+    names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
+    output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
+    fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
+    docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
+) -> None:
+    """Regenerate the thesis' tables and figures and judge its statements. About two minutes.
+
+    An interrupted run goes on from what its folder holds.
+    """
+    with one_sentence():
+        from train.cli.reproduce import reproduce as run
+
+        status = run(names or [], output, fresh, docs)
+    if status:
+        raise typer.Exit(status)

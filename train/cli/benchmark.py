@@ -1,0 +1,122 @@
+"""The command ``beamenv benchmark``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from train.cli.options import JsonOption, one_sentence, print_json
+
+if TYPE_CHECKING:
+    from train.benchmark.table import BenchmarkTable, Row
+
+
+def benchmark(
+    scenario: Annotated[
+        list[str] | None, typer.Option(help="Name or TOML file of a scenario; repeat for more. All of the benchmark's if left out.")
+    ] = None,
+    controller: Annotated[
+        list[str] | None, typer.Option(help="Name of a controller or shipped agent; repeat for more. All of them if left out.")
+    ] = None,
+    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 128,
+    folder: Annotated[Path, typer.Option(help="Where cells, tables, heat map and page are written.")] = Path("results/benchmark"),
+    model: Annotated[
+        list[Path] | None,
+        typer.Option(help="Stable-Baselines3 model to take part. Such a file can run code when it is loaded: see --trust."),
+    ] = None,
+    trust: Annotated[bool, typer.Option("--trust", help="Load --model files: I know where they are from.")] = False,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes at work side by side.")] = 2,
+    docs: Annotated[Path | None, typer.Option(help="Folder that gets benchmark.md and its heat map.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Every controller in every scenario on the same held-out episodes. At most ten minutes on two cores.
+
+    An interrupted run goes on from what its folder holds. What cannot be served is told in one sentence each, and the rest goes
+    on; the status is then 1.
+    """
+    with one_sentence():
+        from train.benchmark.campaign import benchmark as run
+        from train.benchmark.showing.report import as_json as content
+
+        with _Bar() as bar:
+            table = run(
+                scenarios=scenario or None,
+                controllers=controller or None,
+                seeds=seeds,
+                folder=folder,
+                models=model or (),
+                trusted=trust,
+                jobs=jobs,
+                progress=bar.show,
+            )
+        if docs is not None:
+            from train.benchmark.showing.docs import write_docs
+
+            write_docs(docs, table, shlex.join(["beamenv", *sys.argv[1:]]))
+    if as_json:
+        print_json(content(table))
+    else:
+        _show(table, folder)
+    for where, sentence in table.sentences.items():
+        print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
+    if table.sentences:
+        raise typer.Exit(1)
+
+
+class _Bar:
+    """Cells done, on standard error; Ctrl-C says that nothing is lost."""
+
+    def __init__(self) -> None:
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        columns = (TextColumn("{task.description:>44}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        self._bars = Progress(*columns, console=Console(stderr=True))
+        self._task = self._bars.add_task("building the blades", total=None)
+
+    def __enter__(self) -> _Bar:
+        self._bars.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        self._bars.stop()
+        if kind is not None and issubclass(kind, KeyboardInterrupt):
+            self._bars.console.print("interrupted: what was finished is kept, and the same command goes on.")
+            raise typer.Exit(130)
+
+    def show(self, done: int, total: int, cell: object) -> None:
+        name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))
+        self._bars.update(self._task, description=name.strip(), completed=done, total=total)
+
+
+def _show(table: BenchmarkTable, folder: Path) -> None:
+    """Two digits of each cell, never cut off however narrow the terminal is; the files hold the rest."""
+    from rich import box
+    from rich.table import Table
+
+    from train.benchmark.targets import findings
+
+    caption = f"▲ some episodes unstable. Written to {folder}"
+    shown = Table(title="J / J without control", caption=caption, box=box.SIMPLE, padding=(0, 1, 0, 0))
+    shown.add_column("controller", no_wrap=True)
+    for name in table.scenarios:
+        shown.add_column(name, justify="right", no_wrap=True)
+    for name in table.controllers:
+        shown.add_row(name, *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
+    console = Console()
+    Console(width=max(console.width, console.measure(shown, options=console.options.update(width=1000)).maximum)).print(shown)
+    for each in findings(table):
+        console.print(each.sentence, highlight=False, markup=False)
+
+
+def _brief(row: Row | None) -> str:
+    from train.benchmark.showing.report import number
+
+    if row is None or not row.measured:
+        return "–" if row is None else "✕"
+    value = row.estimates["relative_cost"].value
+    return number(value, "{:.2f}" if value < 10.0 else "{:.0f}") + ("▲" if row.estimates["unstable"].value else "")

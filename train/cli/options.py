@@ -1,0 +1,47 @@
+"""What the commands of ``beamenv`` have in common: options, one sentence for bad input, JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+PresetOption = Annotated[
+    str, typer.Option(help="Configuration to begin with: thesis, thesis-untwisted, thesis-pretwisted, chandra-chopra.")
+]
+SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
+BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
+ScenarioOption = Annotated[str, typer.Option(help="Load cases: default, step, pulse, deflection, harmonic, white, quiet.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
+
+
+def environment_arguments(preset: str, speed: float | None, blade: Path | None) -> dict[str, Any]:
+    """Keyword arguments of the environment that the options stand for."""
+    from beamenv.blade.config import load_config, to_dict
+
+    arguments: dict[str, Any] = {"preset": preset}
+    if speed is not None:
+        arguments["speed"] = speed
+    if blade is not None:
+        arguments["blade"] = to_dict(load_config(blade))
+    return arguments
+
+
+@contextmanager
+def one_sentence() -> Iterator[None]:
+    """Bad input ends with its one sentence on standard error and status 2, not with a traceback."""
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        print(f"beamenv: {error}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        raise typer.Exit(2) from None
+
+
+def print_json(content: Any) -> None:
+    """To standard output, as JSON."""
+    print(json.dumps(content, indent=2, allow_nan=False))  # noqa: T201 - for machines

@@ -1,0 +1,101 @@
+"""The command ``beamenv place``: where the patches belong, with the proof."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json
+from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
+
+
+def place(
+    actuators: Annotated[int | None, typer.Option(help="How many actuators to place.")] = None,
+    sensors: Annotated[int | None, typer.Option(help="How many sensors to place.")] = None,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    passive: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
+    method: Annotated[
+        str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
+    ] = "multistart",
+    seed: Annotated[int, typer.Option(help="Of the search.")] = 0,
+    picture: Annotated[Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Where the patches belong: least tr(P) of the regulator for actuators, least tr(S) of the filter for sensors.
+
+    Both sides are placed, with as many patches as the blade has, unless the options name one.
+    """
+    with one_sentence():
+        from beamenv.blade.config import blade_config, load_config
+        from beamenv.blade.layouts import SIDES, positions_of
+
+        config = blade_config(preset, load_config(blade) if blade else None, speed)
+        config = config if passive else replace(config, patches=replace(config.patches, passive=False))
+        counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
+        counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
+        with bars(counts) as told:
+            sides = place_sides(config, counts, method, seed, told)
+        if picture is not None or not as_json:
+            from train.placement.picture import draw_placement
+
+            drawn = picture or Path("results/placement.png")
+            draw_placement(sides, drawn)
+    if as_json:
+        print_json([side.to_dict() for side in sides])
+        return
+    show(sides, Console())
+    Console().print(f"picture in {drawn}")
+
+
+@contextmanager
+def bars(sides: Any) -> Iterator[Callable[[str, float, float], None]]:
+    """A bar for each side, on standard error."""
+    columns = TextColumn("{task.description:>9}"), BarColumn(), TextColumn("{task.fields[cost]}"), TimeElapsedColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        tasks = {side: progress.add_task(side, total=1.0, cost="") for side in sides}
+
+        def told(side: str, done: float, cost: float) -> None:
+            name, unit = UNITS[side]
+            progress.update(tasks[side], completed=done, cost=f"{name} {cost:.4g} {unit}")
+
+        yield told
+
+
+def show(sides: list[PlacedSide], console: Console) -> None:
+    """Positions, traces and damping ratios on the screen."""
+    for side in sides:
+        placement, (name, unit) = side.placement, UNITS[side.placement.side]
+        positions = Table(title=f"{placement.side}, {side.problem.config.speed:g} rad/s: root-side edges, m")
+        for column in ("layout", *map(str, range(1, len(placement.positions) + 1)), f"{name}, {unit}", "of uniform"):
+            positions.add_column(column, justify="left" if column == "layout" else "right")
+        for label, layout, cost in (
+            ("uniform", side.problem.bounds.uniform(), side.uniform_cost),
+            (placement.method, placement.positions, placement.cost),
+        ):
+            positions.add_row(label, *(f"{z:.4f}" for z in layout), f"{cost:.5g}", f"{100.0 * cost / side.uniform_cost:.2f} %")
+        console.print(positions)
+        console.print(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
+        console.print(damping_table(side))
+
+
+def damping_table(side: PlacedSide) -> Table:
+    """Damping ratios, mode by mode."""
+    law = LAWS[side.placement.side]
+    table = Table(title=f"damping ratios of the {law}, %")
+    for column in ("mode", "left alone", "uniform", side.placement.method):
+        table.add_column(column, justify="right")
+    longest = max(len(side.left_alone), len(side.uniform), len(side.placed))
+    for mode in range(longest):
+        cells = [f"{100.0 * each[mode]:.2f}" if mode < len(each) else "" for each in (side.left_alone, side.uniform, side.placed)]
+        table.add_row(str(mode + 1), *cells)
+    return table

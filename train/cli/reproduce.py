@@ -1,0 +1,86 @@
+"""What ``beamenv reproduce`` does: run, show progress, write the page, sum up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from train.reproduce.catalogue import STUDIES, chosen
+from train.reproduce.judging.ledger import ROWS, counts
+from train.reproduce.judging.study import Study
+from train.reproduce.judging.verdicts import Verdict
+from train.reproduce.report import html_page, markdown_page
+from train.reproduce.runner import Record, load, run, write
+
+
+def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:
+    """Run the named studies (all for none), write the page, and return the exit status.
+
+    0: done; 1: a study failed; 130: interrupted, and the same call goes on from there. ``ValueError`` for an unknown name.
+    """
+    studies = chosen(names)
+    records: list[Record] = []
+    interrupted = False
+    try:
+        run_with_progress(studies, output, fresh, records)
+    except KeyboardInterrupt:
+        interrupted = True
+    write_pages(output, records, docs)
+    report(records, output)
+    if interrupted:
+        typer.echo("Interrupted: the same command goes on from here.", err=True)
+        return 130
+    return int(any(record.error for record in records))
+
+
+def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, records: list[Record]) -> None:
+    """Run the studies under a progress bar, adding each record as it is finished."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    with Progress(TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()) as progress:
+        task = progress.add_task(studies[0].name, total=len(studies))
+        following = iter([*(study.name for study in studies[1:]), "finished"])
+
+        def finished(record: Record) -> None:
+            records.append(record)
+            progress.update(task, advance=1, description=next(following))
+
+        run(studies, output, fresh=fresh, finished=finished)
+
+
+def write_pages(output: Path, records: list[Record], docs: Path | None) -> None:
+    """The page of everything that is finished in ``output``, in this run or before."""
+    shown = with_earlier(output, records)
+    write(output / "report.html", html_page(shown, output).encode())
+    write(output / "report.md", markdown_page(shown).encode())
+    if docs is not None:
+        write(docs / "thesis.md", markdown_page(shown, "figures").encode())
+        for record in shown:
+            if not record.error:
+                write(docs / "figures" / f"{record.name}.png", (output / f"{record.name}.png").read_bytes())
+
+
+def with_earlier(output: Path, records: list[Record]) -> list[Record]:
+    """The records of this run, and of earlier ones from the same sources."""
+    known = {record.name: record for record in records}
+    fingerprint = records[0].fingerprint if records else None
+    earlier = [load(output, study.name, fingerprint) for study in STUDIES if study.name not in known]
+    return [*records, *(record for record in earlier if record is not None)]
+
+
+def report(records: list[Record], output: Path) -> None:
+    """What came out, in a few lines."""
+    by_name = {study.name: study for study in STUDIES}
+    verdicts = counts(
+        [verdict for record in records if not record.error for verdict in by_name[record.name].verdicts(record.judgements)]
+    )
+    typer.echo("Statements: " + ", ".join(f"{number} {verdict.value}" for verdict, number in verdicts.items()))
+    judgements = {record.name: record.judgements for record in with_earlier(output, records) if not record.error}
+    rows = counts([row.verdict(judgements) for row in ROWS])
+    if sum(rows.values()) > rows[Verdict.UNTESTABLE]:
+        typer.echo("Conclusions: " + ", ".join(f"{number} {verdict.value}" for verdict, number in rows.items()))
+    for record in records:
+        if record.error:
+            typer.echo(f"{record.name} failed: {record.error}", err=True)
+    typer.echo(f"{output / 'report.html'}")

@@ -1,0 +1,54 @@
+"""The command ``beamenv train``."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from train.cli.options import BladeOption, PresetOption, SpeedOption, environment_arguments, one_sentence
+
+
+def train(
+    agent: Annotated[str, typer.Argument(help="A recipe: gradient, ppo, sac, tqc, recurrent-ppo, …; or the agent of --recipe.")],
+    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all named ones at once.")] = "nominal",
+    minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
+    updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of the training.")] = 0,
+    folder: Annotated[
+        Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
+    ] = None,
+    recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
+    start: Annotated[Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the folder's checkpoint, with the same arguments.")] = False,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+) -> None:
+    """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then tells how good it is.
+
+    The folder gets the policy, its learning curve, checkpoints and TensorBoard's files.
+    """
+    with one_sentence():
+        from train.cli.progress import Progressbar
+        from train.learning.job import Assignment, carry_out
+        from train.learning.recipe import load_recipe, named_recipe
+        from train.learning.session import Course
+
+        chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
+        if minutes is not None and updates is not None:
+            raise ValueError("minutes and updates must not both be given.")
+        if minutes is not None:
+            course = Course(seconds=60.0 * minutes)
+        else:
+            course = Course(updates=chosen.updates if updates is None else updates)
+        environment = environment_arguments(preset, speed, blade)
+        home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
+        assignment = Assignment(agent, chosen, scenario, seed, course, environment, start)
+        total, unit = (course.updates, "updates") if math.isinf(course.seconds) else (course.seconds, "s")
+        with Progressbar({agent: total}, unit) as bar:
+            places = carry_out(assignment, home, lambda progress: bar.training(agent, total, progress), resume)
+    Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True)

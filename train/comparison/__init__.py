@@ -1,0 +1,1 @@
+"""``beamenv compare``: every controller on the same held-out episodes."""

@@ -1,0 +1,152 @@
+"""The main job: train the agents, run every controller through the same held-out episodes, write what came of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+import beamenv
+from baselines import Controller, Evaluation, LinearController, evaluate
+from beamenv.blade.config import to_dict
+from beamenv.plant.plant import Plant, fingerprint
+from train.comparison.figures import write_figures
+from train.comparison.table import write_tables
+from train.controllers.contenders import contender
+from train.controllers.policy_files import load_policy, save_policy
+from train.learning.agents import AGENTS, train_agent
+from train.learning.training import Progress
+from train.shared.files import check_folder, write_csv, write_json
+from train.shared.held_out import HELD_OUT, held_out
+
+Array = NDArray[np.float64]
+
+CURVE = ("elapsed", "steps", "cost")
+"""Columns of a learning curve."""
+
+CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
+"""The contenders that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What is compared, and for how long agents are trained."""
+
+    environment: Mapping[str, Any] = field(default_factory=dict)
+    """Keyword arguments of the environment, as JSON can hold them."""
+    budget: Mapping[str, float] = field(default_factory=lambda: {"gradient": 75.0, "ppo": 255.0})
+    """Seconds of training of each agent; none are trained where it is empty."""
+    seeds: int = 64
+    """Held-out episodes."""
+    training_seed: int = 0
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.budget if name not in AGENTS]
+        if unknown:
+            raise ValueError(f"budget has the agent {unknown[0]!r}, but must name only {', '.join(AGENTS)}.")
+        for name, seconds in self.budget.items():
+            if not (np.isfinite(seconds) and seconds > 0.0):
+                raise ValueError(f"budget of {name} = {seconds!r} must be a positive number of seconds.")
+        if not (isinstance(self.seeds, int) and self.seeds >= 2):
+            raise ValueError(f"seeds = {self.seeds!r} must be at least 2: intervals need more than one episode.")
+
+
+class Listener:
+    """What a comparison tells while it runs; by default nothing."""
+
+    def training(self, name: str, budget: float, progress: Progress) -> None:
+        """Called as the training of an agent goes on."""
+
+    def evaluated(self, evaluation: Evaluation) -> None:
+        """Called for each controller."""
+
+
+def compare(comparison: Comparison, folder: Path, listener: Listener | None = None) -> list[Evaluation]:
+    """Train, evaluate, write tables, models, configuration, figures and a page to ``folder``, and return the evaluations.
+
+    Each piece is written as soon as it is there. A folder that holds trained agents of the same comparison is gone on from;
+    ``ValueError`` if it holds another comparison.
+    """
+    from train.comparison.page import write_comparison_page  # plotly takes a while, and others want this module's names alone
+
+    listener = listener or Listener()
+    envs = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
+    try:
+        plant = envs.unwrapped.plant
+        claim(folder, comparison, envs.unwrapped.task)
+        agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
+        laws: dict[str, Any] = {name: contender(name).build(envs.unwrapped.task) for name in CLASSICAL}
+        evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
+    finally:
+        envs.close()
+    write_tables(folder, evaluations)
+    by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
+    levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
+    drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "lqg-thesis", "lqg")]
+    curves = {name: read_curve(folder, name) for name in agents}
+    write_figures(folder, plant, evaluations, drawn, curves, levels)
+    configuration = json.loads((folder / "configuration.json").read_text())
+    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, configuration)
+    return evaluations
+
+
+def claim(folder: Path, comparison: Comparison, task: Any) -> None:
+    """Write the configuration, or see that the folder already holds this very one."""
+    check_folder(folder)
+    path = folder / "configuration.json"
+    content = {
+        "comparison": {**asdict(comparison), "held_out_seeds": [HELD_OUT, HELD_OUT + comparison.seeds - 1]},
+        "blade": to_dict(task.config),
+        "design": to_dict(task.design_config),
+        "scenario": task.scenario.to_dict(),
+        "agents": {name: asdict(AGENTS[name].settings()) for name in comparison.budget},
+    }
+    content = json.loads(json.dumps(content))
+    if path.exists() and json.loads(path.read_text()) != content:
+        raise ValueError(f"folder = {str(folder)!r} holds another comparison: name another folder, or empty this one.")
+    write_json(path, content)
+
+
+def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, listener: Listener) -> Controller:
+    """The agent of an earlier run, or a freshly trained one, saved with its learning curve."""
+    home = folder / "agents" / name
+    if (home / "agent.json").exists():
+        return load_policy(home, plant)
+    curve: list[Progress] = []
+
+    def report(progress: Progress) -> None:
+        curve.append(progress)
+        listener.training(name, comparison.budget[name], progress)
+
+    agent = train_agent(name, comparison.environment, comparison.budget[name], comparison.training_seed, report)
+    rows = [{column: getattr(progress, column) for column in CURVE} for progress in curve]
+    write_csv(folder / f"learning_{name}.csv", rows, CURVE)  # training may end before its first report
+    save_policy(agent, home, {"plants": {str(comparison.environment.get("scenario", "default")): fingerprint(plant)}})
+    return agent
+
+
+def read_curve(folder: Path, name: str) -> Array:
+    """(k, 3): seconds, steps, running cost relative to no control."""
+    rows = (folder / f"learning_{name}.csv").read_text().splitlines()[1:]
+    return np.array([row.split(",") for row in rows], dtype=np.float64).reshape(-1, 3)
+
+
+def evaluate_all(
+    controllers: Mapping[str, Controller], envs: Any, comparison: Comparison, folder: Path, listener: Listener
+) -> list[Evaluation]:
+    """Every controller on the same held-out seeds, each written as it is finished."""
+    seeds = held_out(comparison.seeds)
+    evaluations: list[Evaluation] = []
+    for name, controller in controllers.items():
+        reference = evaluations[0].reference if evaluations else None
+        evaluation = evaluate(controller, envs, seeds, reference=reference)
+        write_json(folder / "evaluations" / f"{name}.json", evaluation.to_dict())
+        evaluations.append(evaluation)
+        listener.evaluated(evaluation)
+    return evaluations

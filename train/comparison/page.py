@@ -1,0 +1,53 @@
+"""The comparison as a page: ``report.html``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import Controller, Evaluation, LinearController, closed_loop_poles
+from beamenv.plant.plant import Plant
+from train.comparison.figures import clearest_episode
+from train.page import LearningCurves, PageContent, comparison_table, record_episode, write_page
+
+Array = NDArray[np.float64]
+
+
+def write_comparison_page(
+    folder: Path,
+    plant: Plant,
+    evaluations: Sequence[Evaluation],
+    controllers: Mapping[str, Controller],
+    curves: Mapping[str, Array],
+    levels: Mapping[str, float],
+    configuration: Mapping[str, Any],
+) -> None:
+    """Write ``report.html``; ``controllers`` are in the order of the ``evaluations``, ``curves`` and ``levels`` as in ``figures``.
+
+    The blade is shown in the episode of ``figures`` under the best law with sensors and the best agent; without agents, under
+    no control and the best law.
+    """
+    seed = evaluations[0].episodes.seeds[clearest_episode(evaluations[0])]
+    linear = {law.name: law for law in controllers.values() if isinstance(law, LinearController)}
+    content = PageContent(
+        title="Controllers compared on a rotating blade",
+        table=comparison_table(evaluations),
+        episode=record_episode(configuration["comparison"]["environment"], seed, shown_pair(evaluations, controllers)),
+        episode_note=f"Held-out episode of seed {seed}, whose load makes the tip swing most.",
+        poles={name: closed_loop_poles(plant, law) for name, law in linear.items() if law.observes == "observation"},
+        learning=LearningCurves(curves, levels),
+        configuration=configuration,
+    )
+    write_page(folder / "report.html", content)
+
+
+def shown_pair(evaluations: Sequence[Evaluation], controllers: Mapping[str, Controller]) -> tuple[Controller, Controller]:
+    """Best law with sensors and best agent, or no control, the first of ``controllers``, and the best law."""
+    ranked = sorted(zip(evaluations, controllers.values(), strict=True), key=lambda each: each[0].relative_cost.value)
+    laws = [law for _, law in ranked if isinstance(law, LinearController) and law.observes == "observation"]
+    agents = [law for _, law in ranked if not isinstance(law, LinearController)]
+    return (laws[0], agents[0]) if agents else (next(iter(controllers.values())), laws[0])

@@ -1,0 +1,1 @@
+"""A controller by its name: contenders, trained policies, those that ship."""

@@ -1,0 +1,171 @@
+"""Trained policies as arrays and formulae: NumPy alone runs them, and loading one executes no code."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Policy:
+    """An agent with Stable-Baselines3's ``predict`` that reads the sensors and its own voltages, both normalised.
+
+    Its memory (N, k) ends in the voltages it asked for last, as the drive limits let them through.
+    """
+
+    kind: ClassVar[str]
+    name: str
+    """What tables and figures call it."""
+    weights: Mapping[str, Array]
+    settings: Mapping[str, Any]
+    """Whatever ``weights`` do not tell; JSON can hold it."""
+    lowest: Array
+    highest: Array
+    """(m,) drive limits in units of the larger one."""
+
+    def predict(
+        self,
+        observation: ArrayLike,
+        state: Array | None = None,
+        episode_start: ArrayLike | None = None,
+        deterministic: bool = True,
+    ) -> tuple[Array, Array]:
+        """Action (m,) or (N, m) and the next memory; ``observation`` (p,) or (N, p) as the environment gives it."""
+        readings = np.asarray(observation, dtype=np.float32)
+        single = readings.ndim == 1
+        rows = np.atleast_2d(readings)
+        memory = np.zeros((len(rows), self.memory_size), np.float32) if state is None else state
+        if state is not None and episode_start is not None:
+            memory = np.where(np.reshape(episode_start, (-1, 1)), np.float32(0.0), memory)
+        action, following = self.act(rows, memory)
+        action = np.clip(action, self.lowest, self.highest)
+        following[:, -action.shape[1] :] = action
+        return (action[0] if single else action), following
+
+    def knowing(self, memory: Array, voltages: Array) -> Array:
+        """The memory (N, k) after its last action was overruled: (N, m) ``voltages`` were held in its place."""
+        return np.hstack([memory[:, : -voltages.shape[1]], voltages])
+
+    @property
+    def memory_size(self) -> int:
+        """Numbers in a blade's memory, k."""
+        raise NotImplementedError
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """Action (N, m) before saturation, and the next memory, whose voltages the caller fills in."""
+        raise NotImplementedError
+
+
+class HistoryPolicy(Policy):
+    """A network on the last instants, laid out as ``beamenv.envs.history.RollingHistory`` does, asked every few instants.
+
+    Its settings are ``input_gain``, ``held`` and, if they are not "tanh" and false, ``activation`` ("tanh" or "relu") of the
+    hidden layers and ``squashed``: whether the output is a tanh, too.
+
+    Its memory is [window | intervals the voltages have been held | voltages].
+    """
+
+    __slots__ = ()
+    kind = "history"
+
+    @property
+    def memory_size(self) -> int:
+        """The window, a count and the last voltages."""
+        return int(self.weights["weight0"].shape[1]) + 1 + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """Shift the window; where it is time, layer by layer to new voltages."""
+        m = len(self.lowest)
+        instant = readings.shape[1] + m
+        age, voltages = memory[:, -m - 1 : -m], memory[:, -m:]
+        window = np.hstack([memory[:, instant : -m - 1], readings, voltages])
+        action = np.where(age == 0.0, self._network(window), voltages)
+        return action, np.hstack([window, (age + 1.0) % self.settings["held"], voltages]).astype(np.float32)
+
+    def _network(self, window: Array) -> Array:
+        hidden, depth = window * np.float32(self.settings["input_gain"]), len(self.weights) // 2
+        activation = _rectified if self.settings.get("activation") == "relu" else np.tanh
+        for layer in range(depth):
+            hidden = hidden @ self.weights[f"weight{layer}"].T + self.weights[f"bias{layer}"]
+            hidden = activation(hidden) if layer < depth - 1 else hidden
+        return np.tanh(hidden) if self.settings.get("squashed") else hidden
+
+
+def _rectified(values: Array) -> Array:
+    return np.maximum(values, np.float32(0.0))
+
+
+class RecurrentPolicy(Policy):
+    """A gated recurrent unit with a tanh output (Cho et al. 2014, as torch's ``GRUCell`` has it)."""
+
+    __slots__ = ()
+    kind = "recurrent"
+
+    @property
+    def memory_size(self) -> int:
+        """Hidden units, and the last voltages."""
+        return int(self.weights["weight_hh"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """One step of the unit, then the output layer."""
+        units = self.weights["weight_hh"].shape[1]
+        hidden, voltages = memory[:, :units], memory[:, units:]
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages])
+        hidden, action = gated_unit(self.weights, inputs, hidden)
+        return action, np.hstack([hidden, np.zeros_like(action)])
+
+
+class ResidualPolicy(Policy):
+    """Adds to a linear controller and weighs it: u = clip((1 + g) ∘ u_lin + r), [g, r] the tanh output of a gated recurrent unit.
+
+    The controller is told readings as ``train.learning.through_plant.linear_base`` has it: its filter knows that they clip.
+    Its memory is [hidden units | the controller's | voltages].
+    """
+
+    __slots__ = ()
+    kind = "residual"
+
+    @property
+    def memory_size(self) -> int:
+        """Hidden units, the controller's memory and the last voltages."""
+        return int(self.weights["weight_hh"].shape[1]) + int(self.weights["feedback"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """The controller, the unit, and what both ask for."""
+        units, order = self.weights["weight_hh"].shape[1], self.weights["feedback"].shape[1]
+        hidden, linear, voltages = memory[:, :units], memory[:, units : units + order], memory[:, units + order :]
+        predicted = linear @ self.weights["readout"]
+        told = readings + predicted - np.clip(predicted, -1.0, 1.0)
+        product = np.hstack([linear, told]) @ self.weights["fused"]
+        asked = np.clip(product[:, order:], self.lowest, self.highest)
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked])
+        hidden, output = gated_unit(self.weights, inputs, hidden)
+        weight, added = np.split(output, 2, axis=1)
+        action = np.clip((1.0 + weight) * asked + added, self.lowest, self.highest)
+        return action, np.hstack([hidden, product[:, :order] + action @ self.weights["feedback"], action])
+
+    def knowing(self, memory: Array, voltages: Array) -> Array:
+        """The controller's estimate, too, goes by the voltages that were held."""
+        m, order = voltages.shape[1], self.weights["feedback"].shape[1]
+        linear = memory[:, -m - order : -m] + (voltages - memory[:, -m:]) @ self.weights["feedback"]
+        return np.hstack([memory[:, : -m - order], linear, voltages])
+
+
+def gated_unit(weights: Mapping[str, Array], inputs: Array, hidden: Array) -> tuple[Array, Array]:
+    """Hidden units (N, units) and tanh outputs of a gated recurrent unit, as torch's ``GRUCell`` and a linear layer have them."""
+    from_input = np.split(inputs @ weights["weight_ih"].T + weights["bias_ih"], 3, axis=1)
+    from_hidden = np.split(hidden @ weights["weight_hh"].T + weights["bias_hh"], 3, axis=1)
+    reset, update = (_sigmoid(a + b) for a, b in zip(from_input[:2], from_hidden[:2], strict=True))
+    candidate = np.tanh(from_input[2] + reset * from_hidden[2])
+    hidden = (1.0 - update) * candidate + update * hidden
+    return hidden, np.tanh(hidden @ weights["weight_out"].T + weights["bias_out"])
+
+
+def _sigmoid(values: Array) -> Array:
+    return np.asarray(0.5 * (1.0 + np.tanh(0.5 * values)))

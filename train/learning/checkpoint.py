@@ -1,0 +1,39 @@
+"""Checkpoints of a training: written whole or not at all, and read as tensors and numbers alone, so loading executes no code."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from train.shared.files import write_whole
+
+NAME = "checkpoint.pt"
+
+
+def write_checkpoint(folder: Path, content: Mapping[str, Any]) -> None:
+    """``checkpoint.pt``, of numbers, strings, lists, dictionaries and tensors."""
+    file = io.BytesIO()
+    torch.save(dict(content), file)
+    write_whole(folder / NAME, file.getvalue())
+
+
+def read_checkpoint(folder: Path) -> dict[str, Any]:
+    """What ``write_checkpoint`` wrote; ``ValueError`` if nothing is there, or something else."""
+    path = folder / NAME
+    if not path.is_file():
+        raise ValueError(f"folder = {str(folder)!r} must hold a checkpoint to go on from: {NAME} is not there.")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # torch only warns of a protocol that it never writes
+            content: dict[str, Any] = torch.load(path, weights_only=True)
+    except (OSError, EOFError, RuntimeError, UserWarning, pickle.UnpicklingError):
+        raise ValueError(
+            f"{str(path)!r} must be a checkpoint of tensors and numbers, but is damaged or holds something else."
+        ) from None
+    return content

@@ -1,0 +1,158 @@
+"""One training as ``beamenv train`` is told it: carried out in a folder, gone on from there, and saved with all it depends on."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from beamenv.plant.plant import fingerprint
+from beamenv.scenarios.named import NAMES
+from beamenv.task import Task
+from train.controllers.policies import Policy
+from train.controllers.policy_files import load_policy, save_policy
+from train.learning.agents import AGENTS, task_of
+from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
+from train.learning.recipe import Recipe
+from train.learning.scalars import Scalars
+from train.learning.session import Course, follow
+from train.learning.training import Progress, Report, Training, one_torch_thread
+from train.shared.files import check_folder, write_csv
+
+GENERALIST = "generalist"
+"""In place of a scenario: all named ones, in one training."""
+
+CURVE_POINTS = 200
+"""Rows of a learning curve, about."""
+
+LIBRARIES = ("numpy", "torch", "stable-baselines3", "sb3-contrib", "gymnasium")
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """What is to be trained, on what, and for how long."""
+
+    name: str
+    """Of the recipe."""
+    recipe: Recipe
+    scenario: str
+    seed: int
+    course: Course
+    environment: Mapping[str, Any]
+    """Keyword arguments of the environment but the scenario, as JSON can hold them."""
+    teacher: Path | None = None
+    """Folder of a trained policy to start from."""
+
+    def tasks(self) -> dict[str, Task]:
+        """The task of each scenario."""
+        names = NAMES if self.scenario == GENERALIST else (self.scenario,)
+        return {name: task_of({**self.environment, "scenario": name}) for name in names}
+
+    def identity(self) -> dict[str, Any]:
+        """What two runs must share for one to go on from the other."""
+        weights = None if self.teacher is None else sha256((self.teacher / "weights.npz").read_bytes()).hexdigest()
+        return {
+            "agent": self.name,
+            "recipe": self.recipe.to_dict(),
+            "scenario": self.scenario,
+            "environment": dict(self.environment),
+            "seed": self.seed,
+            "course": [str(self.course.updates), str(self.course.seconds)],
+            "teacher": weights,
+        }
+
+
+def carry_out(assignment: Assignment, folder: Path, report: Report, resume: bool = False) -> list[Path]:
+    """Train, with checkpoints, learning curves and TensorBoard's files in ``folder``; where the policies are.
+
+    Raises ValueError if the folder holds a training and it is not to be resumed, or if what is to be resumed is another one.
+    """
+    check_folder(folder)
+    identity = assignment.identity()
+    if not resume and (folder / NAME).exists():
+        raise ValueError(f"folder = {str(folder)!r} holds a training already: resume it, or name another folder.")
+    before = read_checkpoint(folder) if resume else None
+    if before is not None and before["identity"] != json.dumps(identity):
+        raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the very arguments it was begun with.")
+    tasks = assignment.tasks()
+    with one_torch_thread():
+        start = AGENTS[assignment.recipe.agent].training
+        training = start(list(tasks.values()), assignment.recipe.settings, assignment.seed, teacher_for(assignment.teacher, tasks))
+        journal = Journal(folder, assignment.course, training, json.dumps(identity), report)
+        try:
+            elapsed = 0.0 if before is None else journal.go_on(before)
+            policies = follow(training, assignment.course, journal.note, journal.keep, elapsed)
+        finally:
+            journal.scalars.close()
+            training.close()
+    return save_all(policies, folder, journal, identity, {name: fingerprint(task.design_plant) for name, task in tasks.items()})
+
+
+def teacher_for(folder: Path | None, tasks: Mapping[str, Task]) -> Policy | None:
+    """The policy in a folder, if one is named; ``ValueError`` if it does not know the plants of all tasks."""
+    if folder is None:
+        return None
+    policies = [load_policy(folder, task.design_plant) for task in tasks.values()]
+    return policies[0] if len(policies) == 1 else load_policy(folder)
+
+
+class Journal:
+    """The learning curve, the checkpoints and TensorBoard's files of a training."""
+
+    def __init__(self, folder: Path, course: Course, training: Training, identity: str, report: Report) -> None:
+        self.curve: list[Progress] = []
+        self.seconds = 0.0
+        self.scalars = Scalars(folder / "tensorboard")
+        self._folder, self._course, self._training, self._identity, self._report = folder, course, training, identity, report
+
+    def go_on(self, before: Mapping[str, Any]) -> float:
+        """Take up a checkpoint; the seconds spent until then."""
+        self._training.load(before["training"])
+        self.curve = [
+            Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]
+        ]
+        self.seconds = before["seconds"]
+        return self.seconds
+
+    def note(self, progress: Progress) -> None:
+        """A point of the curve where it is time, and report."""
+        self.seconds = progress.elapsed
+        if self._course.gone(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1:
+            self.curve.append(progress)
+            self.scalars.write(progress, self._training.losses)
+        self._report(progress)
+
+    def keep(self, elapsed: float) -> None:
+        """Write a checkpoint."""
+        curve = [[each.elapsed, each.steps, each.cost, each.updates, list(each.costs)] for each in self.curve]
+        state = {"training": self._training.state(), "seconds": elapsed, "curve": curve, "identity": self._identity}
+        write_checkpoint(self._folder, state)
+
+    def write_curve(self, folder: Path, run: int) -> None:
+        """``learning.csv`` of one of the runs."""
+        columns = ("elapsed", "steps", "updates", "cost")
+        rows = [dict(zip(columns, (each.elapsed, each.steps, each.updates, each.costs[run]), strict=True)) for each in self.curve]
+        write_csv(folder / "learning.csv", rows, columns)
+
+
+def save_all(
+    policies: list[Policy], folder: Path, journal: Journal, identity: Mapping[str, Any], plants: Mapping[str, str]
+) -> list[Path]:
+    """Each policy with its curve and what it depends on: in ``folder``, or, of several runs, in folders there."""
+    places = [folder] if len(policies) == 1 else [folder / str(run) for run in range(len(policies))]
+    last = journal.curve[-1] if journal.curve else Progress(journal.seconds, 0, float("nan"))
+    for run, (policy, place) in enumerate(zip(policies, places, strict=True)):
+        journal.write_curve(place, run)
+        about = {**identity, "run": run, "updates": last.updates, "steps": last.steps, "seconds": round(journal.seconds, 1)}
+        save_policy(policy, place, {**about, "versions": versions(), "plants": dict(plants)})
+    return places
+
+
+def versions() -> dict[str, str]:
+    """Of Python and of the libraries that a training depends on."""
+    return {"python": platform.python_version(), **{library: version(library) for library in LIBRARIES}}

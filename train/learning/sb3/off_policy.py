@@ -1,0 +1,171 @@
+"""Soft actor-critic (Haarnoja et al. 2018) by Stable-Baselines3, and truncated quantile critics (Kuznetsov et al. 2020) by
+sb3-contrib: on a batch of blades, with the same actor, critics on the true state, and a replay buffer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from sb3_contrib import TQC
+from stable_baselines3 import SAC
+from stable_baselines3.common.type_aliases import TrainFreq, TrainFrequencyUnit
+from torch import nn
+
+from beamenv.plant.plant import normalised
+from beamenv.task import Task
+from train.controllers.policies import HistoryPolicy, Policy
+from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
+from train.learning.sb3.cloning import Cloning, clone
+from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
+
+
+@dataclass(frozen=True, slots=True)
+class OffPolicySettings:
+    """One experiment."""
+
+    blades: int = 256
+    """Environments stepped together."""
+    history: int = 12
+    """Instants the agent sees, 6 ms."""
+    held: int = 4
+    """Control intervals for which an action is held, 2 ms."""
+    rollout: int = 4
+    """Actions of every blade between updates."""
+    critic_steps: int = 12
+    """Gradient steps of the critics alone, in an update."""
+    gradient_steps: int = 4
+    """Gradient steps of critics and actor after them: an actor that is quicker than its critics saturates."""
+    batch: int = 256
+    """Samples in a gradient step."""
+    buffer: int = 200_000
+    """Actions remembered."""
+    first: int = 10_000
+    """Actions remembered before learning begins."""
+    learning_rate: float = 1e-3
+    """Adam's, falling linearly to zero over the training."""
+    discount: float = 0.95
+    """γ: 20 actions, 40 ms."""
+    energy_horizon: float = 0.03
+    """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
+    reward_unit: float = 0.04
+    """Reward of a control interval without control, about, with its sign changed: values must outgrow untrained critics' noise."""
+    exploration: float = -1.4
+    """Logarithm of a standard deviation of the actions: its entropy is what the temperature is steered to."""
+    temperature: float = 0.003
+    """Weight of the entropy to begin with, in rewards."""
+    target_rate: float = 0.01
+    """At which target critics follow."""
+    units: int = 64
+    """Of each of two layers of the actor."""
+    critic_units: int = 128
+    """Of each of two layers of the critics."""
+    activation: str = "relu"
+    """Of all layers: tanh or relu."""
+    input_gain: float = 1.0
+    """Readings are a few per cent of full scale most of the time."""
+    critic_first: int = 50
+    """Updates that train the critics alone: an actor must not follow critics that know nothing."""
+    smoothing: float = 0.02
+    """Weight of the latest rollout in the running cost."""
+
+    def __post_init__(self) -> None:
+        if self.activation not in _ACTIVATIONS:
+            raise ValueError(f"activation = {self.activation!r} must be one of {', '.join(_ACTIVATIONS)}.")
+
+
+_ACTIVATIONS: dict[str, type[nn.Module]] = {"tanh": nn.Tanh, "relu": nn.ReLU}
+
+
+class OffPolicyTraining(SB3Training):
+    """Of a squashed network on the history; with a ``teacher``, from its clone on."""
+
+    algorithm: ClassVar[Any]
+    networks: ClassVar[Any]
+    name: ClassVar[str]
+
+    def __init__(self, tasks: Sequence[Task], settings: OffPolicySettings, seed: int, teacher: Policy | None = None) -> None:
+        envs = training_envs(
+            tasks,
+            settings.blades,
+            seed,
+            history=settings.history,
+            energy_horizon=settings.energy_horizon,
+            discount=settings.discount,
+            held=settings.held,
+            reward_unit=settings.reward_unit,
+        )
+        voltages = int(np.prod(envs.action_space.shape or ()))
+        model = self.algorithm(
+            self.networks,
+            envs,
+            learning_rate=lambda remaining: settings.learning_rate * max(remaining, 1e-3),
+            buffer_size=max(settings.buffer, settings.blades),
+            learning_starts=0,
+            batch_size=settings.batch,
+            tau=settings.target_rate,
+            gamma=settings.discount,
+            ent_coef=f"auto_{settings.temperature}",
+            target_entropy=voltages * (0.5 * math.log(2.0 * math.pi * math.e) + settings.exploration),
+            policy_kwargs={
+                "seen": envs.seen,
+                "actor_gain": settings.input_gain,
+                "net_arch": {"pi": [settings.units] * 2, "qf": [settings.critic_units] * 2},
+                "activation_fn": _ACTIVATIONS[settings.activation],
+            },
+            seed=seed,
+            device="cpu",
+        )
+        with torch.no_grad():  # it begins as PPO does: hardly any voltage but that of exploration
+            model.actor.mu.weight *= 0.01
+            model.actor.log_std.weight *= 0.01
+            model.actor.log_std.bias.fill_(settings.exploration)
+        if teacher is not None:
+            clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)
+        super().__init__(model, envs, tasks, settings, seed)
+
+    @staticmethod
+    def _actor(model: Any) -> list[nn.Module]:
+        return [model.actor.latent_pi, model.actor.mu]
+
+    def _held_back(self) -> list[nn.Parameter]:
+        return list(self.model.actor.parameters())
+
+    def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
+        model = self.model
+        return {"actor": model.actor.optimizer, "critic": model.critic.optimizer, "temperature": model.ent_coef_optimizer}
+
+    def _loose(self) -> dict[str, torch.Tensor]:
+        return {"temperature": self.model.log_ent_coef}
+
+    def _gather_and_learn(self) -> None:
+        frequency = TrainFreq(self.settings.rollout, TrainFrequencyUnit.STEP)
+        memory = self.model.replay_buffer
+        self.model.collect_rollouts(self.envs, self._callback, frequency, memory)
+        if memory.size() * self.envs.num_envs >= self.settings.first:
+            self._free(False)
+            self.model.train(self.settings.critic_steps, self.settings.batch)
+            self._free(self.updates >= self.settings.critic_first)
+            self.model.train(self.settings.gradient_steps, self.settings.batch)
+
+    def policy(self) -> HistoryPolicy:
+        """The actor's most likely action as arrays."""
+        weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
+        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
+        return HistoryPolicy(self.name, weights, {**asdict(self.settings), "squashed": True}, lowest, highest)
+
+
+class SACTraining(OffPolicyTraining):
+    """Two critics of the mean."""
+
+    algorithm, networks, name = SAC, AsymmetricSACPolicy, "SAC"
+
+
+class TQCTraining(OffPolicyTraining):
+    """Critics of quantiles, of which the highest are cut off."""
+
+    algorithm, networks, name = TQC, AsymmetricTQCPolicy, "TQC"

@@ -1,0 +1,122 @@
+"""Proximal policy optimisation (Schulman et al. 2017) by Stable-Baselines3 on hundreds of blades at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3 import PPO
+from torch import nn
+
+from beamenv.plant.plant import normalised
+from beamenv.task import Task
+from train.controllers.policies import HistoryPolicy, Policy
+from train.learning.sb3.asymmetric import AsymmetricPolicy
+from train.learning.sb3.cloning import Cloning, clone
+from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
+
+
+@dataclass(frozen=True, slots=True)
+class PPOSettings:
+    """One experiment."""
+
+    blades: int = 1024
+    """Environments stepped together."""
+    history: int = 12
+    """Instants the agent sees, 6 ms."""
+    held: int = 4
+    """Control intervals for which an action is held, 2 ms: exploration that lasts tells more of the slow modes than white noise
+    does, against the white load."""
+    rollout: int = 16
+    """Actions of every blade between updates."""
+    batch: int = 8192
+    """Samples in a gradient step."""
+    epochs: int = 4
+    """Passes over a rollout."""
+    learning_rate: float = 1e-3
+    """Adam's, falling linearly to zero over the training."""
+    discount: float = 0.95
+    """γ: 20 actions, 40 ms."""
+    trace: float = 0.8
+    """λ of the advantage estimate."""
+    energy_horizon: float = 0.03
+    """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
+    exploration: float = -1.4
+    """Logarithm of the standard deviation of the actions, constant."""
+    units: int = 64
+    """Of each of two tanh layers, actor and critic alike."""
+    clip: float = 0.2
+    """Of the probability ratio."""
+    gradient_norm: float = 1e3
+    """Gradients are clipped to it: hardly ever."""
+    input_gain: float = 1.0
+    """Readings are a few per cent of full scale most of the time."""
+    critic_first: int = 0
+    """Updates that train the critic alone, for an actor that is good already."""
+    smoothing: float = 0.2
+    """Weight of the latest rollout in the running cost."""
+
+
+class PPOTraining(SB3Training):
+    """Of a tanh network on the history; with a ``teacher``, from its clone on."""
+
+    model: PPO
+
+    def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
+        envs = training_envs(
+            tasks,
+            settings.blades,
+            seed,
+            history=settings.history,
+            energy_horizon=settings.energy_horizon,
+            discount=settings.discount,
+            held=settings.held,
+        )
+        model = PPO(
+            AsymmetricPolicy,
+            envs,
+            n_steps=settings.rollout,
+            batch_size=settings.batch,
+            n_epochs=settings.epochs,
+            learning_rate=lambda remaining: settings.learning_rate * max(remaining, 1e-3),
+            gamma=settings.discount,
+            gae_lambda=settings.trace,
+            clip_range=settings.clip,
+            max_grad_norm=settings.gradient_norm,
+            policy_kwargs={
+                "seen": envs.seen,
+                "actor_gain": settings.input_gain,
+                "units": settings.units,
+                "log_std_init": settings.exploration,
+            },
+            seed=seed,
+            device="cpu",
+        )
+        model.policy.log_std.requires_grad_(False)  # exploration that fades would leave nothing to learn from under the white load
+        if teacher is not None:
+            clone(nn.Sequential(*self._actor(model)), envs, teacher, settings.input_gain, Cloning(), seed)
+        super().__init__(model, envs, tasks, settings, seed)
+
+    @staticmethod
+    def _actor(model: PPO) -> list[nn.Module]:
+        policy: Any = model.policy
+        return [policy.mlp_extractor.policy_net, policy.action_net]
+
+    def _held_back(self) -> list[nn.Parameter]:
+        return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
+
+    def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
+        return {"policy": self.model.policy.optimizer}
+
+    def _gather_and_learn(self) -> None:
+        self.model.collect_rollouts(self.envs, self._callback, self.model.rollout_buffer, self.model.n_steps)
+        self.model.train()
+
+    def policy(self) -> HistoryPolicy:
+        """The actor's mean as arrays."""
+        weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
+        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
+        return HistoryPolicy("PPO", weights, asdict(self.settings), lowest, highest)

@@ -1,0 +1,160 @@
+"""Stable-Baselines3 driven update by update: what its agents have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3.common.callbacks import BaseCallback
+from torch import nn
+
+from beamenv.task import Task
+from train.controllers.policies import Policy
+from train.learning.sb3.side_by_side import SideBySide
+from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.through_plant.gradient import on_training_bank
+from train.learning.training import uncontrolled_cost
+
+Envs = BladeVecEnv | SideBySide
+
+
+def training_envs(tasks: Sequence[Task], blades: int, seed: int, **seen: Any) -> Envs:
+    """The batch that an agent trains on, its plants from the training bank; with several tasks the blades are divided among them.
+
+    ``seen`` are keyword arguments of ``BladeVecEnv``.
+    """
+    if blades < len(tasks):
+        raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
+    batches = []
+    for index, task in enumerate(map(on_training_bank, tasks)):
+        count = blades // len(tasks) + (index < blades % len(tasks))
+        reference = uncontrolled_cost(task)
+        batches.append(BladeVecEnv(count, task, seed + index, reference=reference, shows_state=True, **seen))
+    return batches[0] if len(batches) == 1 else SideBySide(batches)
+
+
+class Meter(BaseCallback):
+    """The running cost relative to no control."""
+
+    def __init__(self, envs: Envs) -> None:
+        super().__init__()
+        self._envs, self._sum, self._count = envs, 0.0, 0
+
+    def _on_step(self) -> bool:
+        self._sum += self._envs.relative_cost
+        self._count += 1
+        return True
+
+    def read(self) -> float:
+        """The mean since it was last read."""
+        mean = self._sum / max(self._count, 1)
+        self._sum, self._count = 0.0, 0
+        return mean
+
+
+class SB3Training:
+    """A training (``train.learning.training.Training``) of one of SB3's models.
+
+    Its state holds networks, optimisers and generators. Episodes begin anew when it is gone on from, and a replay buffer fills
+    anew: an interrupted training is no worse for it, but not bit for bit the uninterrupted one.
+    """
+
+    def __init__(self, model: Any, envs: Envs, tasks: Sequence[Task], settings: Any, seed: int) -> None:
+        self.model, self.envs, self.settings = model, envs, settings
+        self.steps = self.updates = 0
+        self.cost = float("nan")
+        self.losses: dict[str, float] = {}
+        """What SB3 logged in the last update, by its names."""
+        self._seed, self._design = seed, tasks[0].design_plant
+        self._meter = Meter(envs)
+        _, self._callback = model._setup_learn(2**62, self._meter)
+
+    def update(self, remaining: float) -> None:
+        """Gather experience and learn from it, at the share ``remaining`` of the learning rate."""
+        before = self.model.num_timesteps
+        self.model._current_progress_remaining = remaining
+        self._free(self.updates >= self.settings.critic_first)
+        self._gather_and_learn()
+        self.losses = {name: float(value) for name, value in self.model.logger.name_to_value.items()}
+        self.model.logger.name_to_value.clear()
+        self.updates += 1
+        self.steps += (self.model.num_timesteps - before) * self.envs.held
+        latest = min(self._meter.read(), 100.0)
+        weight = max(self.settings.smoothing, 1.0 / self.updates)
+        self.cost = latest if np.isnan(self.cost) else self.cost + weight * (latest - self.cost)
+
+    def _free(self, free: bool) -> None:
+        """Whether the actor is trained."""
+        for parameter in self._held_back():
+            parameter.requires_grad_(free)
+
+    def _gather_and_learn(self) -> None:
+        raise NotImplementedError
+
+    def _held_back(self) -> list[nn.Parameter]:
+        """Of the actor: what is not trained in the first ``critic_first`` updates."""
+        raise NotImplementedError
+
+    def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
+        raise NotImplementedError
+
+    def _loose(self) -> dict[str, torch.Tensor]:
+        """Tensors that are trained but belong to no module."""
+        return {}
+
+    def policy(self) -> Policy:
+        """The actor as arrays."""
+        raise NotImplementedError
+
+    def policies(self) -> list[Policy]:
+        """``policy`` alone."""
+        return [self.policy()]
+
+    def close(self) -> None:
+        """Close the batch."""
+        self.envs.close()
+
+    def state(self) -> dict[str, Any]:
+        """Networks, optimisers, generators and counters."""
+        kind, keys, position, has_gauss, cached = np.random.get_state(legacy=True)  # noqa: NPY002 - SB3's own generator
+        return {
+            "policy": self.model.policy.state_dict(),
+            "optimisers": {name: each.state_dict() for name, each in self._optimisers().items()},
+            "loose": {name: each.detach().clone() for name, each in self._loose().items()},
+            "torch": torch.get_rng_state(),
+            "numpy": [str(kind), torch.as_tensor(np.asarray(keys, np.int64)), int(position), int(has_gauss), float(cached)],
+            "counters": {"steps": self.steps, "updates": self.updates, "cost": self.cost, "timesteps": self.model.num_timesteps},
+        }
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Go on from ``state``, in new episodes."""
+        self.model.policy.load_state_dict(state["policy"])
+        for name, each in self._optimisers().items():
+            each.load_state_dict(state["optimisers"][name])
+        for name, each in self._loose().items():
+            each.data.copy_(state["loose"][name])
+        counters = state["counters"]
+        self.steps, self.updates, self.cost = counters["steps"], counters["updates"], counters["cost"]
+        self.model.num_timesteps = counters["timesteps"]
+        self.envs.seed(self._seed + 7919 * self.updates)  # not the episodes it has seen already
+        self.model._last_obs = self.envs.reset()
+        self.model._last_episode_starts = np.ones(self.envs.num_envs, dtype=bool)
+        torch.set_rng_state(state["torch"])
+        kind, keys, position, has_gauss, cached = state["numpy"]
+        np.random.set_state((kind, keys.numpy().astype(np.uint32), position, has_gauss, cached))  # noqa: NPY002
+
+
+def layers_as_arrays(layers: Sequence[nn.Linear]) -> dict[str, np.ndarray[Any, Any]]:
+    """Weights and biases as ``train.controllers.policies.HistoryPolicy`` names them."""
+    arrays = {}
+    for index, layer in enumerate(layers):
+        arrays[f"weight{index}"] = layer.weight.detach().numpy().copy()
+        arrays[f"bias{index}"] = layer.bias.detach().numpy().copy()
+    return arrays
+
+
+def linear_layers(network: nn.Module) -> list[nn.Linear]:
+    """Its linear layers, in order."""
+    return [layer for layer in network.modules() if isinstance(layer, nn.Linear)]

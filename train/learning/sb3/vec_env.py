@@ -1,0 +1,174 @@
+"""Stable-Baselines3's ``VecEnv`` straight over the batched environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+from scipy.linalg import solve_discrete_lyapunov
+from stable_baselines3.common.vec_env import VecEnv
+
+import beamenv
+from beamenv.plant.plant import sample
+from beamenv.simulation.blades import reward_scale
+from beamenv.task import Task
+
+Array = NDArray[Any]
+
+
+REWARD_UNIT = 0.01
+"""What the environment's reward is multiplied by if not said otherwise: its values, hundreds, would take a critic long to reach."""
+
+
+class BladeVecEnv(VecEnv):
+    """Blades whose agent sees the last ``history`` readings and own voltages; SAME_STEP, infos for finished episodes only.
+
+    With ``energy_horizon`` τ > 0 the reward is shaped by the vibration energy E as a potential: r + τ (E − γ E⁺)/scale. For an
+    agent that learns with the ``discount`` γ this changes no policy's rank (Ng, Harada and Russell 1999), but what a voltage takes
+    out of the blade is told at once.
+
+    An action is ``held`` for so many control intervals: a step of this environment is as many of the blades'.
+
+    With ``shows_state`` the true state follows the history in each observation, in units of what is typical: for a critic.
+
+    ``reference``, J s, is the cost of an episode without control. If it is given, rewards are in its units, so that those of
+    scenarios of very different loads have one size, and ``relative_cost`` is told.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        environment: Mapping[str, Any] | Task,
+        seed: int,
+        *,
+        history: int = 12,
+        energy_horizon: float = 0.0,
+        discount: float = 1.0,
+        shows_state: bool = False,
+        held: int = 1,
+        reference: float | None = None,
+        reward_unit: float = REWARD_UNIT,
+    ) -> None:
+        batch = batch_of(environment, count)
+        self.blades: Any = batch.unwrapped
+        self.envs = beamenv.VectorSensorHistory(batch, length=history)
+        actions = self.blades.single_action_space
+        self.seen = int(np.prod(self.envs.single_observation_space.shape))
+        """How many numbers of an observation sensors show; what follows is the state."""
+        self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
+        width = self.seen + (0 if self._state_gain is None else len(self._state_gain))
+        super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), Box(-1.0, 1.0, actions.shape, np.float32))
+        self._seed: int | None = seed
+        self._scale = reward_scale(self.blades.plant)
+        self._per_step = self.blades.task.steps / reference if reference else np.nan
+        self._unit = reward_unit * (self._scale * self._per_step if reference else 1.0)
+        self.held = held
+        self._discount = discount ** (1.0 / held)
+        self._potential = energy_horizon / self._scale
+        self._states: Array = np.zeros((count, 0), np.float32)
+        self._energy = np.zeros(count)
+        self.last_cost = 0.0
+        """J s: mean increment of J over the batch in the last step, unshaped."""
+        self._actions: Array = np.zeros((count, *self.action_space.shape))
+        self._unfinished: list[dict[str, Any]] = [{} for _ in range(count)]
+
+    @property
+    def relative_cost(self) -> float:
+        """``last_cost`` relative to no control; NaN without a ``reference``."""
+        return self.last_cost * self._per_step
+
+    def reset(self) -> Array:
+        """Begin episodes, out of step with one another."""
+        steps = self.blades.task.steps
+        elapsed = np.arange(self.num_envs) * steps // self.num_envs // self.held * self.held
+        observations, info = self.envs.reset(seed=self._seed, options={"elapsed": elapsed})
+        self._seed = None
+        self._energy = info["energy"]
+        return self._with_state(observations)
+
+    def _with_state(self, windows: Array) -> Array:
+        if self._state_gain is None:
+            return windows
+        self._states = (self.blades.state * self._state_gain).astype(np.float32)
+        return np.concatenate([windows, self._states], axis=1)
+
+    def step_async(self, actions: Array) -> None:
+        """Keep the actions for ``step_wait``."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
+        """Observations, rewards, ends and infos; where an episode ended the observation is the next one's first."""
+        total, ended = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=np.bool_)
+        infos, self.last_cost = self._unfinished, 0.0
+        for _ in range(self.held):
+            windows, rewards, terminated, truncated, info = self.envs.step(self._actions)
+            ends, reached = terminated | truncated, info["energy"]
+            if ends.any():
+                reached = np.where(ends, info["final_info"]["energy"], reached)
+                infos = self._infos(infos, np.flatnonzero(ends), info["final_obs"], terminated)
+            gained = rewards + self._potential * (self._energy - self._discount * reached)
+            total += np.where(ended, 0.0, gained)  # what follows a finished episode is not its action's doing
+            ended |= ends
+            self._energy = info["energy"]
+            self.last_cost -= float(rewards.mean()) * self._scale / self.held
+        return self._with_state(windows), (self._unit * total).astype(np.float32), ended, infos
+
+    def _infos(self, before: list[dict[str, Any]], rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
+        infos = list(before)
+        for row in rows.tolist():
+            last = np.append(final[row], self._states[row])  # the last state shown stands for that at the end
+            infos[row] = {"terminal_observation": last, "TimeLimit.truncated": not terminated[row]}
+        return infos
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """The seed of the next ``reset``, one for the whole batch."""
+        self._seed = seed
+        return [seed] * self.num_envs
+
+    def close(self) -> None:
+        """Close the batch."""
+        self.envs.close()
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """The batch's one attribute, for each of the indices."""
+        return [getattr(self.blades, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Not offered: the blades of a batch are one environment."""
+        raise NotImplementedError(f"attr_name = {attr_name!r} cannot be set: the blades of a batch are one environment.")
+
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+        """Not offered: the blades of a batch are one environment."""
+        raise NotImplementedError(f"method_name = {method_name!r} cannot be called: the blades of a batch are one environment.")
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """No blade has wrappers of its own."""
+        return [False] * len(list(self._get_indices(indices)))
+
+
+def batch_of(environment: Mapping[str, Any] | Task, count: int) -> Any:
+    """The batched environment with the given keyword arguments, or of a task."""
+    task = environment if isinstance(environment, Task) else None
+    keywords: Mapping[str, Any] = {} if isinstance(environment, Task) else environment
+    batch: Any = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **keywords)
+    if task is not None:
+        batch.unwrapped.adopt([task])
+    return batch
+
+
+def typical_state(task: Task, reference: float | None = None) -> Array:
+    """(n,) standard deviations, √J, under the white load and white voltages of a fifth of the drive limit.
+
+    Where an episode without control costs more than these amount to, ``reference`` in J s, they are enlarged to its measure.
+    """
+    held = sample(task.plant)
+    drive = held.B * (0.2 * np.abs(task.plant.voltage_limits).max(axis=0))
+    excitation = drive @ drive.T + held.disturbance_input @ held.process_noise @ held.disturbance_input.T
+    variance = np.diag(solve_discrete_lyapunov(held.A, excitation))
+    energy = 0.5 * float(variance.sum()) * task.steps * held.interval
+    return np.sqrt(variance * max(1.0, (reference or 0.0) / energy))

@@ -1,0 +1,1 @@
+"""Policies trained by back-propagation through the plant."""

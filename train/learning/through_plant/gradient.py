@@ -1,0 +1,136 @@
+"""Policies trained by back-propagation through the plant.
+
+The plant is known and differentiable: the very kernel that the environment steps runs here on torch tensors, so that the
+gradient of J itself is descended, through drawn plants, delays, hysteresis, failures and saturation. Windows of episodes are
+unrolled; the energy left at a window's end, times the time it would take to decay, stands for the cost still to come.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import torch
+
+from beamenv.task import Task
+from train.controllers.policies import Policy
+from train.learning.through_plant.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
+from train.learning.through_plant.linear_base import linear_base
+from train.learning.through_plant.windows import Windows
+from train.learning.training import Progress, Report, uncontrolled_cost
+
+
+@dataclass(frozen=True, slots=True)
+class GradientSettings:
+    """One experiment."""
+
+    actor: str = "recurrent"
+    """"recurrent", "residual" or "linear"."""
+    base: str = "lqg"
+    """What a residual actor adds to: see ``train.learning.through_plant.linear_base``."""
+    actor_settings: ActorSettings = field(default_factory=ActorSettings)
+    runs: int = 1
+    """Independent trainings side by side."""
+    episodes: int = 128
+    """Blades of each run unrolled together."""
+    window: int = 125
+    """Steps back-propagated through, 62 ms: two periods of the slowest mode."""
+    learning_rate: float = 5e-3
+    """Adam's, falling linearly to zero over the training."""
+    energy_horizon: float = 0.05
+    """s: the cost of a joule left at a window's end."""
+    gradient_norm: float = 1.0
+    """Gradients are clipped to it."""
+
+
+def new_actor(task: Task, settings: GradientSettings) -> Actor:
+    """An untrained actor for the design plant of a task; ``ValueError`` for an unknown kind."""
+    plant, own, runs = task.design_plant, settings.actor_settings, settings.runs
+    if settings.actor == "recurrent":
+        return RecurrentActor(plant, own, runs)
+    if settings.actor == "linear":
+        return LinearActor(plant, own, runs)
+    if settings.actor == "residual":
+        return ResidualActor(plant, own, runs, linear_base(settings.base, task))
+    raise ValueError(f"actor = {settings.actor!r} must be one of recurrent, residual, linear.")
+
+
+class GradientTraining:
+    """A training on one task or several, in turns; its plants come from a bank of their own, not from that of the evaluation."""
+
+    def __init__(self, tasks: Sequence[Task], settings: GradientSettings, seed: int) -> None:
+        torch.manual_seed(seed)
+        self.settings, self._generator = settings, np.random.default_rng(seed)
+        self.actor = new_actor(tasks[0], settings)
+        self._parameters = [weights for weights in self.actor.parameters() if weights.requires_grad]
+        self._optimiser = torch.optim.Adam(self._parameters, lr=settings.learning_rate)
+        apart = [on_training_bank(task) for task in tasks]
+        self._windows = [Windows(task, settings.runs * settings.episodes, settings.window, self._generator) for task in apart]
+        self._references = [uncontrolled_cost(task) for task in apart]
+        self._order: list[int] = []
+        self.steps = 0
+        """Control intervals so far."""
+        self.updates = 0
+        self.cost = np.full(settings.runs, np.nan)
+        """(runs,): J relative to no control, a running mean over the tasks."""
+
+    def update(self, remaining: float) -> None:
+        """One step of Adam, at the share ``remaining`` of its learning rate."""
+        for group in self._optimiser.param_groups:
+            group["lr"] = self.settings.learning_rate * max(remaining, 1e-3)
+        self._order = self._order or self._generator.permutation(len(self._windows)).tolist()
+        turn = self._order.pop()
+        windows, reference = self._windows[turn], self._references[turn]
+        cost, left = windows.unroll(self.actor)
+        scale = windows.count / reference
+        self._optimiser.zero_grad()
+        ((cost + self.settings.energy_horizon * left).view(self.settings.runs, -1).mean(dim=1).sum() * scale).backward()
+        self._clip_gradients()
+        self._optimiser.step()
+        self.updates += 1
+        self.steps += self.settings.episodes * windows.length
+        latest = (cost.detach().view(self.settings.runs, -1).mean(dim=1).numpy() * scale).clip(max=100.0)
+        weight = 0.05 / len(self._windows) if self.updates > len(self._windows) else 1.0 / self.updates
+        self.cost = latest if self.updates == 1 else self.cost + weight * (latest - self.cost)
+
+    def _clip_gradients(self) -> None:
+        """To the norm of the settings, run by run; a run whose gradient is not finite leaves its weights for this time."""
+        squares = torch.stack([(weights.grad**2).sum(dim=(1, 2)) for weights in self._parameters if weights.grad is not None])
+        norm = squares.sum(dim=0).sqrt()
+        scale = (self.settings.gradient_norm / (norm + 1e-6)).clamp(max=1.0)
+        for weights in self._parameters:
+            if weights.grad is not None:
+                weights.grad = torch.nan_to_num(weights.grad * scale[:, None, None], nan=0.0, posinf=0.0, neginf=0.0)
+
+    def policies(self) -> list[Policy]:
+        """What each run has learnt so far."""
+        return [self.actor.policy(run) for run in range(self.settings.runs)]
+
+
+def on_training_bank(task: Task) -> Task:
+    """The task with plants drawn from another bank."""
+    plants = replace(task.scenario.plants, seed=task.scenario.plants.seed + 1)
+    return replace(task, scenario=replace(task.scenario, plants=plants))
+
+
+def train_gradient(
+    tasks: Task | Sequence[Task],
+    seed: int,
+    report: Report,
+    settings: GradientSettings | None = None,
+    *,
+    seconds: float = np.inf,
+    updates: float = np.inf,
+) -> list[Policy]:
+    """Train until ``seconds`` or ``updates`` are over; the learning rate falls with the one that is given. Ctrl-C ends it early."""
+    training = GradientTraining([tasks] if isinstance(tasks, Task) else tasks, settings or GradientSettings(), seed)
+    begin = time.monotonic()
+    try:
+        while (elapsed := time.monotonic() - begin) < seconds and training.updates < updates:
+            training.update(1.0 - max(elapsed / seconds, training.updates / updates))
+            report(Progress(time.monotonic() - begin, training.steps, float(training.cost.mean())))
+    except KeyboardInterrupt:
+        pass
+    return training.policies()

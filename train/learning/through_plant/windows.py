@@ -1,0 +1,133 @@
+"""Episodes unrolled in torch, window after window, on the very kernel and electronics that the environment steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from beamenv.plant.plant import normalised
+from beamenv.simulation.blades import Blades
+from beamenv.simulation.kernel import advance
+from beamenv.simulation.signals.faults import SignalMemory, acquire, drive
+from beamenv.task import Task
+
+Memory = tuple[Tensor, ...]
+
+
+class Acting(Protocol):
+    """A policy in torch."""
+
+    limits: Tensor
+    """(2, m): what the drive lets through, in units of the larger limit."""
+
+    def start(self, count: int) -> Memory:
+        """What it remembers at the start of ``count`` episodes; the last part holds the voltages (count, m)."""
+        ...
+
+    def __call__(self, readings: Tensor, memory: Memory) -> tuple[Tensor, Memory]:
+        """Voltages (B, m) as the drive lets them through, and the next memory, from readings (B, p)."""
+        ...
+
+
+class Windows:
+    """A batch of episodes of one task, cut into windows unrolled one after the other; blades are spread over the windows."""
+
+    def __init__(self, task: Task, episodes: int, window: int, generator: np.random.Generator) -> None:
+        self.length = min(window, task.steps)
+        self.count = task.steps // self.length
+        self._generator = generator
+        self._blades = Blades(task.bank, task.scenario, episodes)
+        self._operators = task.bank.operators.convert(_float)
+        self._sensors = len(task.plant.C)
+        self._phase: NDArray[np.int64] = np.arange(episodes) % self.count
+        self._loads = np.zeros((*self._blades.shape, 2))
+        self._limits = _float(normalised(task.plant).voltage_limits)
+        self._memory: Memory | None = None
+        self._signals: SignalMemory | None = None
+        first = self._blades.begin(generator)
+        self._state, self._readings = _float(self._blades.state), _float(first.observation)
+        self._remember_signals(np.arange(episodes))
+
+    def _begin(self, rows: NDArray[np.int64], actor: Acting) -> None:
+        if not len(rows):
+            return
+        first = self._blades.begin(self._generator, rows)
+        self._state[rows] = _float(self._blades.state[rows])
+        self._readings[rows] = _float(first.observation)
+        self._remember_signals(rows)
+        assert self._memory is not None
+        for part, fresh in zip(self._memory, actor.start(len(rows)), strict=True):
+            part[rows] = fresh
+
+    def _remember_signals(self, rows: NDArray[np.int64]) -> None:
+        electronics = self._blades.electronics
+        if electronics is None:
+            return
+        fresh = SignalMemory(*(_float(part) for part in electronics.memory))
+        if self._signals is None:
+            self._signals = fresh
+        for part, begun in zip(self._signals, fresh, strict=True):
+            part[rows] = begun[rows]
+        self._faults = electronics.faults.convert(lambda part: _float(part) if part.dtype.kind == "f" else torch.as_tensor(part))
+        self._hysteresis = None if electronics.hysteresis is None else electronics.hysteresis.convert(_float)
+
+    def _disturbances(self) -> Iterator[tuple[Tensor, Tensor]]:
+        """Line loads (B, 2) and what disturbs the readings (B, c), step by step through this window."""
+        batch = len(self._phase)
+        for _ in range(self.length):
+            self._blades.disturbances.loads(self._loads)
+            loads = _float(self._loads.reshape(batch, 2))
+            yield loads, _float(self._blades.disturbances.next(self._generator).reshape(batch, -1))
+
+    def unroll(self, actor: Acting) -> tuple[Tensor, Tensor]:
+        """Cost (B,) of a window in J s and energy (B,) left at its end in J; differentiable in the actor's weights."""
+        actor.limits = self._limits
+        if self._memory is None:
+            self._memory = actor.start(len(self._phase))
+        state, readings, memory, signals = self._state, self._readings, self._memory, self._signals
+        cost = torch.zeros(len(state))
+        for loads, disturbance in self._disturbances():
+            voltages, memory = actor(readings, memory)
+            acting = voltages
+            if signals is not None:
+                acting, signals = drive(self._faults, self._hysteresis, signals, voltages)
+            state, output, _, increment = advance(self._now(), torch.cat([state, acting, loads], dim=1))
+            readings, signals = self._read(output, disturbance, signals)
+            cost = cost + increment
+            self._blades.elapse()
+        left = 0.5 * (state**2).sum(dim=1)
+        self._keep(state, readings, memory, signals)
+        self._phase = (self._phase + 1) % self.count
+        self._begin(np.flatnonzero(self._phase == 0), actor)
+        return cost, left
+
+    def _now(self) -> Any:
+        index = self._blades.index
+        if len(self._blades.bank) == 1:
+            return self._operators
+        return self._operators.pick(torch.as_tensor(index))
+
+    def _read(self, output: Tensor, disturbance: Tensor, signals: SignalMemory | None) -> tuple[Tensor, SignalMemory | None]:
+        noise = disturbance[:, : self._sensors]
+        if signals is None:
+            return torch.clamp(output + noise, -1.0, 1.0), None
+        electronics = self._blades.electronics
+        assert electronics is not None
+        lost = None
+        if electronics.threshold is not None:
+            lost = disturbance[:, self._sensors : 2 * self._sensors] < electronics.threshold
+        return acquire(self._faults, signals, output, noise, lost)
+
+    def _keep(self, state: Tensor, readings: Tensor, memory: Memory, signals: SignalMemory | None) -> None:
+        self._state, self._readings = state.detach().clone(), readings.detach().clone()
+        self._memory = tuple(part.detach().clone() for part in memory)
+        self._signals = None if signals is None else SignalMemory(*(part.detach().clone() for part in signals))
+
+
+def _float(array: Any) -> Tensor:
+    return torch.as_tensor(np.ascontiguousarray(array), dtype=torch.float32)

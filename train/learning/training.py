@@ -1,0 +1,83 @@
+"""What the trainers share: what a training is, how it reports, and the cost it is measured by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+
+from beamenv.simulation.blades import Blades
+from beamenv.task import Task
+from train.controllers.policies import Policy
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a training is."""
+
+    elapsed: float
+    """s."""
+    steps: int
+    """Environment steps so far."""
+    cost: float
+    """J relative to no control, from recent training episodes."""
+    updates: int = 0
+    """Updates of the policy so far."""
+    costs: tuple[float, ...] = ()
+    """``cost`` of each of the runs side by side, of which it is the mean."""
+
+
+Report = Callable[[Progress], None]
+
+
+class Training(Protocol):
+    """A training that goes on update by update. Equal arguments and equal calls make equal policies, bit for bit on one thread."""
+
+    steps: int
+    """Control intervals so far."""
+    updates: int
+    cost: Any
+    """J relative to no control, recently: a number, or one for each policy."""
+    losses: dict[str, float]
+    """What else the last update told, by name."""
+
+    def update(self, remaining: float) -> None:
+        """One update; ``remaining``, from 1 to 0, is the share of the training still to come: learning rates fall with it."""
+
+    def policies(self) -> list[Policy]:
+        """What has been learnt so far: one policy, or those of several runs side by side."""
+
+    def state(self) -> dict[str, Any]:
+        """Numbers, strings, lists, dictionaries and tensors that ``load`` goes on from."""
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Go on from a state of an equally made training."""
+
+    def close(self) -> None:
+        """Let go of the environments."""
+
+
+def uncontrolled_cost(task: Task, episodes: int = 512) -> float:
+    """Mean J (J s) of episodes without control: what running costs are relative to. ``ValueError`` if there is none to reduce."""
+    blades, generator = Blades(task.bank, task.scenario, episodes), np.random.default_rng(0)
+    blades.begin(generator)
+    idle = np.zeros((episodes, task.plant.B.shape[1]))
+    cost = float(sum(blades.step(idle, generator).cost_increment.mean() for _ in range(task.steps)))
+    if not cost > 0.0:
+        raise ValueError("scenario leaves the blade at rest: there is nothing to learn in it.")
+    return cost
+
+
+@contextmanager
+def one_torch_thread() -> Iterator[None]:
+    """These networks are so small that threads cost more than they gain, and on a busy machine a hundred times more."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(threads)

@@ -1,0 +1,83 @@
+"""Patches placed, side by side of the blade, with what each placement is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+UNITS = {"actuators": ("tr(P)", "s"), "sensors": ("tr(S)", "J")}
+LAWS = {"actuators": "regulator", "sensors": "filter"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedSide:
+    """One side's patches placed, beside the uniform layout."""
+
+    problem: Any
+    """The ``PlacementProblem``."""
+    placement: Any
+    """The ``Placement``."""
+    uniform_cost: float
+    left_alone: Array
+    """Damping ratio of each mode without control, with the patches where they were put."""
+    uniform: Array
+    """… under the regulator (or of the filter's error), patches equally spaced."""
+    placed: Array
+    """… with the patches where they were put."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``--json`` prints."""
+        placement = asdict(self.placement)
+        unit = UNITS[self.placement.side]
+        return {
+            **placement,
+            "trace": unit[0],
+            "unit": unit[1],
+            "uniform": {"positions": self.problem.bounds.uniform().tolist(), "cost": self.uniform_cost},
+            "gap_to_uniform": 1.0 - self.placement.cost / self.uniform_cost,
+            "damping_ratios": {
+                "without_control": self.left_alone.tolist(),
+                "uniform": self.uniform.tolist(),
+                "placed": self.placed.tolist(),
+            },
+        }
+
+
+def place_sides(
+    config: Any, counts: dict[Any, int], method: str, seed: int, progress: Callable[[str, float, float], None] | None = None
+) -> list[PlacedSide]:
+    """Place the sides that ``counts`` names, actuators first, then the sensors of the blade with its actuators placed."""
+    from baselines.placement import PlacementProblem, place
+    from beamenv.blade.layouts import with_positions
+
+    config, sides = with_positions(config, counts), []
+    for side in ("actuators", "sensors"):
+        if side not in counts:
+            continue
+        problem = PlacementProblem.of(config, side)  # type: ignore[arg-type]
+        told = None if progress is None else lambda done, cost, side=side: progress(side, done, cost)
+        found = place(problem, method, seed, progress=told)
+        config = with_positions(config, {side: found.positions})  # type: ignore[dict-item]
+        sides.append(placed_side(problem, found))
+    return sides
+
+
+def placed_side(problem: Any, placement: Any) -> PlacedSide:
+    """A placement with what it is compared with."""
+    from baselines.placement.cost.damping import damping_ratios, design_poles, open_loop_poles
+
+    uniform = problem.bounds.uniform()
+    return PlacedSide(
+        problem=problem,
+        placement=placement,
+        uniform_cost=float(problem.cost(uniform[None])[0]),
+        left_alone=damping_ratios(open_loop_poles(problem, placement.positions)),
+        uniform=damping_ratios(design_poles(problem, uniform)),
+        placed=damping_ratios(design_poles(problem, placement.positions)),
+    )

@@ -1,0 +1,1 @@
+"""Studies, the rules that judge them, and the ledger of statements."""

@@ -1,0 +1,113 @@
+"""A study: one table or figure of the thesis, what it states, how we compute it, and what came out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from train.reproduce.judging.verdicts import Judgement, Rule, Verdict, weakest
+from train.reproduce.thesis import Model
+
+Array = NDArray[np.float64]
+
+WITH_AND_WITHOUT = {"solid": "with gyroscopic coupling", "dotted": "without"}
+"""The thesis' line styles."""
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """What the thesis says of a table or figure, and the rule that judges it."""
+
+    key: str
+    text: str
+    rule: Rule
+    remark: str = ""
+    """What to know of it: why ours differs, or what the numbers mean."""
+    aside: bool = False
+    """Our own question beside the thesis' statement: shown, but no part of any verdict."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """One curve of a panel. Curves of the same ``label`` look alike in all panels; ``line`` is solid, dotted, dashed or points."""
+
+    x: Array
+    y: Array
+    label: str = ""
+    line: str = "solid"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """One pair of axes, with units in the axis labels."""
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: Sequence[Curve]
+    logarithmic: bool = False
+    marked: Sequence[float] = ()
+    """Values of x drawn as thin vertical lines."""
+    whole: bool = False
+    """y counts something: whole numbers at its ticks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """A panel of text cells, for the tables of couplings."""
+
+    title: str
+    names: tuple[str, ...]
+    cells: Mapping[tuple[str, str], str]
+    """By (row, column)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What a study computed."""
+
+    evidence: Mapping[str, Any]
+    """What each statement, by its key, is judged by: numbers in any shape."""
+    panels: Sequence[Panel | Grid]
+    lines: Mapping[str, str] = field(default_factory=dict)
+    """What solid, dotted and dashed stand for."""
+    header: Sequence[str] = ()
+    rows: Sequence[Sequence[object]] = ()
+    """The numbers of a table; a figure's are those of its curves."""
+    notes: Sequence[str] = ()
+    """Sentences with numbers that were computed beside the evidence."""
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """One table or figure."""
+
+    name: str
+    """ "table-3.4", "figure-5.7"."""
+    title: str
+    configuration: str
+    """What was computed, where the thesis leaves it open or misprints it."""
+    statements: tuple[Statement, ...]
+    compute: Callable[[Model], Outcome]
+
+    def verdict(self, judgements: Mapping[str, Judgement]) -> Verdict:
+        """The weakest verdict of the thesis' statements."""
+        return weakest(self.verdicts(judgements))
+
+    def verdicts(self, judgements: Mapping[str, Judgement]) -> list[Verdict]:
+        """Those of the thesis' statements, asides left out."""
+        return [judgements[statement.key].verdict for statement in self.statements if not statement.aside]
+
+    def judge(self, outcome: Outcome) -> dict[str, Judgement]:
+        """The judgement of every statement; ``ValueError`` unless the outcome has evidence for exactly these."""
+        keys = [statement.key for statement in self.statements]
+        if set(keys) != set(outcome.evidence):
+            raise ValueError(f"evidence of {self.name} = {sorted(outcome.evidence)} must be for {sorted(keys)}.")
+        return {
+            statement.key: statement.rule.judge(np.asarray(outcome.evidence[statement.key], dtype=float))
+            for statement in self.statements
+        }

@@ -1,0 +1,1 @@
+"""The studies, a chapter of the thesis at a time."""

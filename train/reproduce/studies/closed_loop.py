@@ -1,0 +1,162 @@
+"""Controlled step and pulse responses of blades with patches: LQG in the loop, exact, without noise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import Controller, lqg
+from beamenv.blade.config import BeamConfig, BladeConfig, build_plant
+from beamenv.patches import PatchLayout
+from beamenv.plant.plant import Plant
+from beamenv.simulation.kernel import Operators, advance
+from train.reproduce.judging.study import Curve, Panel
+from train.reproduce.thesis import Model
+from train.reproduce.thesis.response import settling_time
+
+Array = NDArray[np.float64]
+
+PATCH_LENGTH, PATCH_WIDTH = 0.08, 0.057
+"""m: chapter 5's patches."""
+DURATION, SHOWN = 2.0, 0.25
+"""s: long enough to settle, and what is drawn."""
+UNLIMITED = 1e6
+"""V: a drive limit that no voltage reaches; voltages are compared as the law asks for them, which saturation would hide."""
+PULSE = 0.05
+"""s: length of a rectangular pulse; the thesis names none."""
+DIRECTIONS = ("lag", "flap")
+"""Order of loads and tip displacements; flap is the thesis' y-direction."""
+
+
+def patches(**changes: object) -> PatchLayout:
+    """Chapter 5's four sensors and four actuators, spaced equally over 0 … 0.7 L."""
+    return replace(PatchLayout(length=PATCH_LENGTH, width=PATCH_WIDTH), **changes)  # type: ignore[arg-type]
+
+
+def blade(model: Model, beam: BeamConfig, layout: PatchLayout | None = None, **changes: object) -> BladeConfig:
+    """A blade of chapter 5 at the model's speed and damping."""
+    config = BladeConfig(beam=beam, patches=layout or patches(), speed=model.speed, damping_ratio=model.damping_ratio)
+    return replace(config, **changes)  # type: ignore[arg-type]
+
+
+def one_loop(plant: Plant) -> Plant:
+    """The thesis' first method: the sensors' currents summed into one; the actuators are ganged by the layout."""
+    return replace(
+        plant,
+        C=plant.C.sum(axis=0, keepdims=True),
+        D=plant.D.sum(axis=0, keepdims=True),
+        sensor_noise=np.array([[np.trace(plant.sensor_noise)]]),
+        sensor_full_scale=np.array([plant.sensor_full_scale.sum()]),
+    )
+
+
+def plant_of(config: BladeConfig) -> Plant:
+    """The plant of a blade, with one loop where its actuators are ganged."""
+    plant = build_plant(config)
+    return one_loop(plant) if config.patches.ganged else plant
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Response:
+    """A controlled response."""
+
+    times: Array
+    """(K,), s."""
+    tip: Array
+    """(K,), m."""
+    voltages: Array
+    """(K, m), V."""
+    final: float
+    """m: where the tip comes to rest."""
+    asked: Array
+    """(m,), V: the peak voltages that the law would ask for, were there no limit."""
+
+    @property
+    def peak(self) -> float:
+        """m: largest displacement of the tip."""
+        return float(np.abs(self.tip).max())
+
+    @property
+    def settling(self) -> float:
+        """s: until the tip stays within 5 % of its largest excursion from rest."""
+        return settling_time(self.times, self.tip, self.final)
+
+
+def simulate(
+    plant: Plant,
+    controller: Controller,
+    load: float,
+    duration: float = DURATION,
+    pulse: float | None = None,
+    direction: str = "flap",
+) -> Response:
+    """The response to a uniform load (N/m) that sets in at once, for good or for ``pulse`` s; noise-free, voltages limited."""
+    operators, drive = Operators.from_plant(plant), np.abs(plant.voltage_limits).max(axis=0)
+    column = DIRECTIONS.index(direction)
+    steps = round(duration / plant.control_interval)
+    until = steps if pulse is None else round(pulse / plant.control_interval)
+    state, memory, measured = np.zeros(len(plant.A)), None, np.zeros(len(plant.C))
+    tips, voltages = np.zeros(steps + 1), np.zeros((steps + 1, len(drive)))
+    loads = np.zeros((steps, 2))
+    loads[:until, column] = load
+    full_state = getattr(controller, "observes", "observation") == "state"
+    for step in range(steps):
+        action, memory = controller.predict(state if full_state else measured / plant.sensor_full_scale, memory)
+        voltages[step] = np.clip(action * drive, *plant.voltage_limits)
+        state, measured, tip, _ = advance(operators, np.concatenate([state, voltages[step], loads[step]]))
+        tips[step + 1] = tip[column]
+    voltages[-1] = voltages[-2]
+    final = 0.0 if pulse else float(tips[-steps // 10 :].mean())
+    asked = np.abs(voltages).max(axis=0)
+    return Response(np.linspace(0.0, steps * plant.control_interval, steps + 1), tips, voltages, final, asked)
+
+
+def controlled(
+    model: Model, blades: Mapping[str, BladeConfig], pulse: float | None = None, direction: str = "flap"
+) -> dict[str, Response]:
+    """LQG-controlled responses to the model's load, by label."""
+    responses = {}
+    for label, config in blades.items():
+        limited, free = (plant_of(c) for c in (config, replace(config, voltage_limits=(-UNLIMITED, UNLIMITED))))
+        response = simulate(limited, lqg(limited), model.load, pulse=pulse, direction=direction)
+        asked = simulate(free, lqg(free), model.load, SHOWN, pulse, direction).asked
+        responses[label] = replace(response, asked=asked)
+    return responses
+
+
+def response_panels(responses: Mapping[str, Response], direction: str = "flap") -> list[Panel]:
+    """Tip displacement, then the voltage of each actuator."""
+    first = next(iter(responses.values()))
+    shown = first.times <= SHOWN
+    actuators = first.voltages.shape[1]
+    names = ["voltage on all actuators"] if actuators == 1 else [f"voltage on actuator {k + 1}" for k in range(actuators)]
+    tip = [Curve(r.times[shown], 1e3 * r.tip[shown], label) for label, r in responses.items()]
+    panels = [Panel(f"tip displacement in {direction}", "time (s)", "displacement (mm)", tip)]
+    for k, name in enumerate(names):
+        curves = [Curve(r.times[shown], r.voltages[shown, k], label) for label, r in responses.items()]
+        panels.append(Panel(name, "time (s)", "voltage (V)", curves))
+    return panels
+
+
+def peaks(responses: Mapping[str, Response]) -> Array:
+    """(labels,), m."""
+    return np.array([response.peak for response in responses.values()])
+
+
+def peak_voltages(responses: Mapping[str, Response]) -> Array:
+    """(labels, actuators), V: asked for, were there no limit."""
+    return np.array([response.asked for response in responses.values()])
+
+
+def voltage_energy(response: Response, plant: Plant) -> float:
+    """∫uᵀRu dt, J s: what the voltages put into the actuators, as the index weighs it."""
+    per_step = np.einsum("ki,ij,kj->k", response.voltages, plant.input_weight, response.voltages)
+    return float(plant.control_interval * per_step[:-1].sum())
+
+
+def settling_times(responses: Mapping[str, Response]) -> Array:
+    """(labels,), s."""
+    return np.array([response.settling for response in responses.values()])

@@ -1,0 +1,162 @@
+"""Chapter 6 of the thesis as numbers: Tables 6.1 to 6.4, what its conclusions (§6.6) are judged by, optimisers compared."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.placement import Placement, PlacementProblem, place
+from baselines.placement.cost.damping import design_poles
+from baselines.placement.search.genetic import Genetic
+from baselines.placement.search.placement import Recorder
+from baselines.placement.search.sqp import SequentialQuadratic
+from beamenv.blade.config import BladeConfig, blade_config
+from beamenv.blade.layouts import SIDES, Side, with_positions
+
+Array = NDArray[np.float64]
+
+UNTWISTED = "thesis-untwisted"
+"""The blade of Tables 6.1 to 6.4: plies at 30°, no pretwist (§6.5)."""
+
+Blade = BladeConfig | str
+"""A blade, or the name of a preset."""
+
+SPEEDS = (0.0, 200.0)
+COUNTS = (1, 2, 3, 4)
+
+
+@dataclass(frozen=True, slots=True)
+class TableRow:
+    """One number of patches at one speed, placed in three ways."""
+
+    side: Side
+    count: int
+    speed: float
+    """rad/s."""
+    ga: Placement
+    sqp: Placement
+    """SQP alone, from equally spaced patches (the thesis does not say where its own started)."""
+    both: Placement
+    """GA, then SQP."""
+    uniform_cost: float
+
+
+def blade_of(blade: Blade) -> BladeConfig:
+    """The blade of that name."""
+    return blade_config(blade) if isinstance(blade, str) else blade
+
+
+@lru_cache(maxsize=64)
+def table_row(side: Side, count: int, speed: float, blade: Blade = UNTWISTED, seed: int = 0) -> TableRow:
+    """A row of Table 6.1 or 6.3 (actuators), 6.2 or 6.4 (sensors); 6.1 and 6.2 are those of four patches."""
+    problem = PlacementProblem.of(replace(blade_of(blade), speed=speed), side, count)
+    ga = place(problem, Genetic(), seed)
+    sqp = place(problem, SequentialQuadratic(), seed)
+    both = place(problem, SequentialQuadratic(), seed, start=ga.positions)
+    return TableRow(side, count, speed, ga, sqp, both, sqp.start_cost)
+
+
+def placement_table(side: Side, counts: Sequence[int] = COUNTS, blade: Blade = UNTWISTED, seed: int = 0) -> list[TableRow]:
+    """Table 6.3 (actuators) or 6.4 (sensors) with the columns of 6.1 and 6.2 too: each count at rest and at 200 rad/s."""
+    return [table_row(side, count, speed, blade, seed) for count in counts for speed in SPEEDS]
+
+
+def shift_with_speed(rows: Sequence[TableRow]) -> dict[int, tuple[float, float]]:
+    """Mean root-side edge (m) of the placed patches at rest and at 200 rad/s, by their number."""
+    means = {(row.count, row.speed): float(np.mean(row.both.positions)) for row in rows}
+    return {count: (means[count, SPEEDS[0]], means[count, SPEEDS[1]]) for count in sorted({row.count for row in rows})}
+
+
+def gathering_at_the_root(sensors: Sequence[TableRow], actuators: Sequence[TableRow]) -> list[tuple[int, float, float, float]]:
+    """Of each number and speed: mean root-side edge (m) of the placed sensors, and of the placed actuators."""
+    pairs = zip(sensors, actuators, strict=True)
+    return [(s.count, s.speed, float(np.mean(s.both.positions)), float(np.mean(a.both.positions))) for s, a in pairs]
+
+
+def together_against_alone(rows: Sequence[TableRow]) -> list[tuple[float, float]]:
+    """What GA alone and SQP alone cost more than the two in turn, as shares: (GA, SQP) of each row."""
+    return [(row.ga.cost / row.both.cost - 1.0, row.sqp.cost / row.both.cost - 1.0) for row in rows]
+
+
+def starts_that_fail(
+    problem: PlacementProblem, starts: int = 20, seed: int = 0, tolerance: float = 1e-4, known: float | None = None
+) -> float:
+    """Share of random starts from which SQP ends dearer than the best by more than ``tolerance``: it depends on the start.
+
+    The best is the least found, or ``known`` where that is less: by SQP from many starts unless given.
+    """
+    layouts = problem.bounds.random(np.random.default_rng(seed), starts)
+    found = np.array([place(problem, SequentialQuadratic(), start=layout).cost for layout in layouts])
+    best = min(float(found.min()), place(problem, "multistart", seed).cost if known is None else known)
+    return float(np.mean(found > best * (1.0 + tolerance)))
+
+
+def convergence(
+    populations: Sequence[int] = (10, 20, 30), generations: int = 50, seed: int = 0, blade: Blade = UNTWISTED
+) -> dict[int, Array]:
+    """Figure 6.4: least tr(P) (generations,) of four actuators at 200 rad/s after each generation, by the population's size."""
+    problem = PlacementProblem.of(blade_of(blade), "actuators")
+    curves = {}
+    for size in populations:
+        recorder = Recorder(problem)
+        genetic = Genetic(population=size, generations=generations)
+        genetic.run(recorder, problem.bounds.uniform(), np.random.default_rng(seed))
+        curves[size] = np.array([cost for _, cost in recorder.history])
+    return curves
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layouts:
+    """A blade with equally spaced patches, and with both sides placed: actuators first, then the sensors."""
+
+    initial: BladeConfig
+    optimal: BladeConfig
+    """With the data acquisition of the initial one."""
+    actuators: PlacementProblem
+    sensors: PlacementProblem
+
+
+@lru_cache(maxsize=8)
+def initial_and_optimal(blade: Blade, seed: int = 0) -> Layouts:
+    """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare."""
+    config = blade_of(blade)
+    actuators = PlacementProblem.of(config, "actuators")
+    placed = with_positions(config, {"actuators": place(actuators, "ga+sqp", seed).positions})
+    sensors = PlacementProblem.of(placed, "sensors")
+    optimal = replace(
+        sensors.configuration(place(sensors, "ga+sqp", seed).positions), sensor_full_scale=actuators.config.sensor_full_scale
+    )
+    return Layouts(replace(config, sensor_full_scale=actuators.config.sensor_full_scale), optimal, actuators, sensors)
+
+
+def poles(layouts: Layouts) -> dict[tuple[Side, str], NDArray[np.complex128]]:
+    """Figure 6.7: regulator's ("actuators") and filter's ("sensors") poles (2r,), rad/s, "initial" and "optimal"."""
+    found = {}
+    for side, problem in zip(SIDES, (layouts.actuators, layouts.sensors), strict=True):
+        placed = getattr(layouts.optimal.patches, side)
+        found[side, "initial"] = design_poles(problem, problem.bounds.uniform())
+        found[side, "optimal"] = design_poles(problem, placed)
+    return found
+
+
+def depth(shown: NDArray[np.complex128]) -> tuple[float, float]:
+    """How deep poles lie in the left half plane, rad/s: the slowest one's −Re, and the mean −Re."""
+    return float(-shown.real.max()), float(-shown.real.mean())
+
+
+def dependence(side: Side = "actuators", count: int = 2, seed: int = 0, blade: Blade = UNTWISTED) -> dict[str, tuple[float, ...]]:
+    """Placed positions (m) on the untwisted blade at 200 rad/s, and as one thing after another is changed (§6.6)."""
+    config = blade_of(blade)
+    configs = {
+        "as it is": config,
+        "at rest": replace(config, speed=0.0),
+        "pretwist 30°": replace(config, beam=replace(config.beam, pretwist_deg=30.0)),
+        "presetting 30°": replace(config, beam=replace(config.beam, presetting_deg=30.0)),
+    }
+    found = {name: place(PlacementProblem.of(each, side, count), "multistart", seed).positions for name, each in configs.items()}
+    more = PlacementProblem.of(config, side, count + 1)
+    return {**found, f"{count + 1} {side}": place(more, "multistart", seed).positions}

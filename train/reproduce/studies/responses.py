@@ -1,0 +1,53 @@
+"""Step responses of several bare blades in one panel: exact, and by Newmark's method as the thesis integrates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from train.reproduce.judging.study import Curve, Panel
+from train.reproduce.thesis import Model
+from train.reproduce.thesis.response import ForcedBlade, settling_time
+
+Array = NDArray[np.float64]
+
+DURATION, SHOWN = 4.0, 0.4
+"""s: long enough to settle, and what is integrated by Newmark's method too."""
+EXACT_EVERY, NEWMARK_EVERY = 4, 60
+"""Points that are drawn: one in so many."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ForcedResponses:
+    """Step responses, one for each blade in order."""
+
+    panel: Panel
+    peaks: Array
+    """(blades,), m: largest tip displacement."""
+    settling: Array
+    """(blades,), s: until the tip stays within 5 % of its largest excursion from rest."""
+    newmark_error: Array
+    """(blades,): largest difference between Newmark and exact over the peak."""
+
+
+def forced_responses(model: Model, blades: Mapping[str, ForcedBlade], drawn: float = SHOWN) -> ForcedResponses:
+    """The responses to the model's step load, by label, of which the first ``drawn`` s are drawn.
+
+    All blades are loaded and observed in their own direction.
+    """
+    curves, numbers = [], []
+    for label, blade in blades.items():
+        times, tip = blade.step_response(model.load, DURATION)
+        shown, integrated = blade.newmark_response(model.load, SHOWN)
+        peak = float(np.abs(tip).max())
+        error = float(np.abs(integrated - tip[: len(shown)]).max()) / peak
+        numbers.append((peak, settling_time(times, tip, blade.static_displacement(model.load)), error))
+        last = np.searchsorted(shown, drawn, side="right")
+        curves.append(Curve(shown[:last:EXACT_EVERY], 1e3 * tip[:last:EXACT_EVERY], label))
+        curves.append(Curve(shown[:last:NEWMARK_EVERY], 1e3 * integrated[:last:NEWMARK_EVERY], label, "points"))
+    peaks, settling, errors = np.array(numbers).T
+    direction = next(iter(blades.values())).direction
+    return ForcedResponses(Panel(f"step in {direction}", "time (s)", "tip displacement (mm)", curves), peaks, settling, errors)

@@ -1,0 +1,54 @@
+"""What every study is computed from: the thesis' box, the validation box of Table 3.2, and the few quantities it leaves open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from beamenv.blade.config import CHANDRA_CHOPRA, ON_EVERY_WALL, BeamConfig
+from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.structure import RotatingBeam
+
+PLIES = 6
+
+
+Plies = tuple[tuple[str, tuple[float, ...]], ...]
+
+
+def plies(angle_deg: float) -> tuple[float, ...]:
+    """Six plies at one angle."""
+    return (float(angle_deg),) * PLIES
+
+
+def every_wall(angle_deg: float) -> Plies:
+    """The circumferentially uniform stiffness (CUS) of the thesis."""
+    return ((ON_EVERY_WALL, plies(angle_deg)),)
+
+
+def antisymmetric(angle_deg: float) -> Plies:
+    """The circumferentially antisymmetric stiffness (CAS): top and bottom mirrored, sides alternating."""
+    alternating = (float(angle_deg), -float(angle_deg)) * (PLIES // 2)
+    return (("top", plies(angle_deg)), ("bottom", plies(-angle_deg)), ("left", alternating), ("right", alternating))
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """Everything the studies are computed from; change a field and the verdicts may change."""
+
+    box: BeamConfig = field(default_factory=lambda: BeamConfig(ply_angles_deg=every_wall(0.0), pretwist_deg=0.0))
+    """The thesis' box, untwisted, θ = 0: c = 0.127 m and b = 0.0254 m are halves of its mid-line, R₀ = 0.1 L."""
+    validation_box: BeamConfig = CHANDRA_CHOPRA.beam
+    """The box of Chandra and Chopra, top and bottom mirrored, fibres at 30° from the span."""
+    speed: float = 200.0
+    """rad/s, where a caption gives none."""
+    load: float = REFERENCE_LOAD
+    """N/m of uniform step: the thesis names no load (but 500 kg/m in chapter 6); with this one ±1500 V matters."""
+    damping_ratio: float = 0.01
+    """Of every mode, as in chapter 6."""
+
+    def blade(self, angle_deg: float = 0.0, **changes: float | str | int) -> BeamConfig:
+        """The thesis' box with all plies at ``angle_deg`` and other fields of ``BeamConfig`` changed."""
+        return replace(self.box, ply_angles_deg=every_wall(angle_deg), **changes)  # type: ignore[arg-type]
+
+    def beam(self, angle_deg: float = 0.0, **changes: float | str | int) -> RotatingBeam:
+        """That blade, without patches."""
+        return self.blade(angle_deg, **changes).build()

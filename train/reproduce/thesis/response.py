@@ -1,0 +1,116 @@
+"""Forced response of the bare blade: exact, by Newmark's method with the thesis' constants, and over frequency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from beamenv.plant.reduction import ModalModel, truncate
+from beamenv.structure import RotatingBeam
+from beamenv.structure.beam import EXTRA_STATIONS
+from beamenv.structure.modes import normal_modes
+from beamenv.structure.newmark import NewmarkScheme, newmark
+from beamenv.structure.trial_functions import Stations
+
+Array = NDArray[np.float64]
+
+DIRECTIONS = {"lag": ("u", 0), "flap": ("v", 1)}
+
+THESIS_SCHEME = NewmarkScheme(alpha=0.75, delta=0.5)
+THESIS_INTERVAL = 1e-4
+"""s."""
+
+MODES = 24
+"""Retained by the exact response: the tip of a uniformly loaded blade is then within 0.1 % of all modes'."""
+
+
+@dataclass(frozen=True, eq=False)
+class ForcedBlade:
+    """A blade under a uniform line load, with modal damping."""
+
+    beam: RotatingBeam
+    speed: float
+    """rad/s."""
+    direction: str
+    """Of load and tip displacement: "lag" or "flap"."""
+    damping_ratio: float
+    gyroscopic: bool = True
+    pressure: bool = False
+    """Whether the line load falls with the chord of a tapered blade, as a pressure would; ``load`` is then that at the root."""
+
+    @cached_property
+    def _force(self) -> Array:
+        """(N,): generalised force per N/m."""
+        if not self.pressure:
+            return self.beam.line_load()[:, DIRECTIONS[self.direction][1]]
+        beam = self.beam
+        stations = Stations.between(np.array([0.0, beam.length]), beam.terms + EXTRA_STATIONS)
+        chord = 1.0 - (1.0 - 1.0 / beam.taper) * stations.z / beam.length
+        return (stations.weight * chord) @ beam.space.evaluate(stations.z)[DIRECTIONS[self.direction][0], 0]
+
+    @cached_property
+    def modal(self) -> ModalModel:
+        """Undamped modes without gyroscopic coupling, and the coupling between them."""
+        return truncate(self.beam, self.speed, MODES, self.gyroscopic)
+
+    def _dynamics(self) -> tuple[Array, Array, Array]:
+        omega, shapes = self.modal.natural_frequencies, self.modal.mode_shapes
+        size = len(omega)
+        field = DIRECTIONS[self.direction][0]
+        damping = self.modal.gyroscopic + np.diag(2.0 * self.damping_ratio * omega)
+        dynamics = np.block([[np.zeros((size, size)), np.diag(omega)], [-np.diag(omega), -damping]])
+        force = np.concatenate([np.zeros(size), shapes.T @ self._force])
+        tip = self.beam.displacements(np.array([self.beam.length]))[field][0] @ shapes / omega
+        return dynamics, force, np.concatenate([tip, np.zeros(size)])
+
+    def step_response(self, load: float, duration: float, interval: float = THESIS_INTERVAL) -> tuple[Array, Array]:
+        """Times (K,) in s and tip displacement (K,) in m after ``load`` N/m is applied to the blade at rest: exact."""
+        dynamics, force, tip = self._dynamics()
+        transition = expm(dynamics * interval)
+        final = -np.linalg.solve(dynamics, load * force)
+        state = -final
+        times = np.linspace(0.0, duration, round(duration / interval) + 1)
+        displaced = np.empty(len(times))
+        for step in range(len(times)):
+            displaced[step] = tip @ state
+            state = transition @ state
+        return times, displaced + tip @ final
+
+    def static_displacement(self, load: float) -> float:
+        """Where the tip comes to rest under ``load`` N/m, in m."""
+        dynamics, force, tip = self._dynamics()
+        return float(-tip @ np.linalg.solve(dynamics, load * force))
+
+    def newmark_response(self, load: float, duration: float, interval: float = THESIS_INTERVAL) -> tuple[Array, Array]:
+        """The same by Newmark's method on all trial functions with the thesis' constants, a₃ and a₄ corrected."""
+        matrices = self.beam.matrices
+        stiffness = matrices.stiffness(self.speed)
+        omega, shapes = normal_modes(matrices.mass, stiffness)
+        moved = matrices.mass @ shapes
+        damping = moved @ np.diag(2.0 * self.damping_ratio * omega) @ moved.T
+        if self.gyroscopic:
+            damping = damping + self.speed * matrices.gyroscopic
+        force = load * self._force
+        steps = round(duration / interval)
+        history = newmark(matrices.mass, damping, stiffness, lambda _: force, interval, steps, THESIS_SCHEME)
+        return np.linspace(0.0, duration, steps + 1), history @ self.beam.displacements(np.array([self.beam.length]))[
+            DIRECTIONS[self.direction][0]
+        ][0]
+
+    def frequency_response(self, frequencies: Array) -> Array:
+        """Amplitude (K,) of the tip, m per N/m, at ``frequencies`` (K,) in rad/s."""
+        dynamics, force, tip = self._dynamics()
+        poles, vectors = np.linalg.eig(dynamics)
+        participation = np.linalg.solve(vectors, force) * (tip @ vectors)
+        return np.abs((participation / (1j * frequencies[:, None] - poles)).sum(axis=1))
+
+
+def settling_time(times: Array, displacement: Array, final: float, band: float = 0.05) -> float:
+    """When the response stays within ``band`` of its largest excursion from ``final`` for good, in s; or its duration."""
+    excursion = np.abs(displacement - final)
+    outside = np.flatnonzero(excursion > band * excursion.max())
+    return float(times[min(outside[-1] + 1, len(times) - 1)]) if len(outside) else float(times[0])

@@ -1,0 +1,11 @@
+"""The seeds that controllers are compared on, and that nothing is trained or chosen on."""
+
+from __future__ import annotations
+
+HELD_OUT = 1_000_000
+"""The first of them: training draws from generators of its own."""
+
+
+def held_out(seeds: int) -> range:
+    """So many of them, the same for every controller."""
+    return range(HELD_OUT, HELD_OUT + seeds)

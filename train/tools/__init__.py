@@ -1,0 +1,1 @@
+"""Speed measurements and the moving picture of the README."""

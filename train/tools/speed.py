@@ -1,0 +1,218 @@
+"""How fast it is: environments beside Gymnasium's CartPole in the same process, imports, the beam's assembly.
+
+``python -m train.tools.speed`` prints the table, with ``--json`` the numbers alone.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+from train.shared.threads import ONE_THREAD
+
+BATCHES = (256, 4096, 16384)
+ROUNDS = 7
+
+TARGETS = {
+    "single_over_cartpole": 0.5,
+    "batch_4096": 5e6,
+    "plants_1024": 1e6,
+    "pictures": 30.0,
+    "assembly_ms": 60.0,
+    "frequencies_ms": 8.0,
+    "import_s": 1.0,
+}
+"""Rates are to be at least, times at most this."""
+
+ROWS = (
+    ("cartpole", "CartPole-v1, gym.make", "steps/s"),
+    ("single", "RotatingBeam-v0, gym.make", "steps/s"),
+    ("single_over_cartpole", "the second over the first", ""),
+    ("cartpole_4096", "CartPole-v1, native batch of 4096", "steps/s"),
+    *((f"batch_{size}", f"RotatingBeam-v0, native batch of {size}", "steps/s") for size in BATCHES),
+    ("plants_1024", "a batch of 1024, each blade with a plant of its own speed", "steps/s"),
+    ("history_4096", "the same of 4096 with 12 instants of sensor history", "steps/s"),
+    ("pictures", "RotatingBeam-v0, a picture of 960 × 540 for each step", "pictures/s"),
+    ("import_s", "import beamenv", "s"),
+    ("assembly_ms", "assembly of the default beam, 10 terms", "ms"),
+    ("frequencies_ms", "its frequencies at a further speed", "ms"),
+    ("plant_ms", "reduced plant of the default blade, all from the laminate on", "ms"),
+)
+
+
+def speed() -> dict[str, float]:
+    """All measurements by name: the best of several rounds, on one BLAS thread, in a process of its own. About 20 s."""
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    command = [sys.executable, "-m", "train.tools.speed", "--measure"]
+    output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
+    results: dict[str, float] = json.loads(output)
+    results["import_s"] = min(_import_seconds(environment) for _ in range(3))
+    return results
+
+
+def _import_seconds(environment: dict[str, str]) -> float:
+    code = "import time; start = time.perf_counter(); import beamenv; print(time.perf_counter() - start)"
+    return float(
+        subprocess.run([sys.executable, "-c", code], env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
+    )
+
+
+def measure() -> dict[str, float]:
+    """What ``speed`` measures in its own process. Rivals take turns, so that both meet the same machine."""
+    import gymnasium
+
+    import beamenv
+
+    singles = {"cartpole": gymnasium.make("CartPole-v1"), "single": gymnasium.make(beamenv.ENV_ID)}
+    batches = {"cartpole_4096": gymnasium.make_vec("CartPole-v1", num_envs=4096)}
+    batches.update({f"batch_{size}": gymnasium.make_vec(beamenv.ENV_ID, num_envs=size) for size in BATCHES})
+    different = {"preset": "off-speed", "plants": {"bank": 1024}}
+    batches["plants_1024"] = gymnasium.make_vec(beamenv.ENV_ID, num_envs=1024, scenario=different)
+    batches["history_4096"] = beamenv.VectorSensorHistory(gymnasium.make_vec(beamenv.ENV_ID, num_envs=4096), length=12)
+    runs = {name: single_run(env) for name, env in singles.items()}
+    runs.update({name: batch_run(envs) for name, envs in batches.items()})
+    best = dict.fromkeys(runs, 0.0)
+    for _ in range(ROUNDS):
+        for name, run in runs.items():
+            best[name] = max(best[name], run())
+    pictures = gymnasium.make(beamenv.ENV_ID, render_mode="rgb_array")
+    return {
+        **best,
+        "single_over_cartpole": best["single"] / best["cartpole"],
+        "pictures": max(picture_run(pictures)() for _ in range(ROUNDS)),
+        **structure_times(),
+    }
+
+
+def single_run(env: Any, steps: int = 20_000) -> Callable[[], float]:
+    """Steps/s of one round of a single environment, resets included, with actions drawn beforehand."""
+    env.action_space.seed(0)
+    actions = [env.action_space.sample() for _ in range(100)]
+    env.reset(seed=0)
+
+    def run() -> float:
+        start = time.perf_counter()
+        for k in range(steps):
+            _, _, terminated, truncated, _ = env.step(actions[k % 100])
+            if terminated or truncated:
+                env.reset()
+        return steps / (time.perf_counter() - start)
+
+    return run
+
+
+def picture_run(env: Any, steps: int = 100) -> Callable[[], float]:
+    """Pictures/s of one round of a single environment that steps and draws, with the last 0.2 s full of curves."""
+    env.action_space.seed(0)
+    actions = [env.action_space.sample() for _ in range(steps)]
+    env.reset(seed=0)
+    for k in range(500):
+        env.step(actions[k % steps])
+
+    def run() -> float:
+        start = time.perf_counter()
+        for action in actions:
+            env.step(action)
+            env.render()
+        return steps / (time.perf_counter() - start)
+
+    return run
+
+
+def batch_run(envs: Any, steps: int = 1_200_000) -> Callable[[], float]:
+    """Environment steps/s of one round of a batch, with all noises, loads, rewards, info and autoresets."""
+    envs.action_space.seed(0)
+    actions = envs.action_space.sample()
+    calls = max(steps // envs.num_envs, 1)
+    envs.reset(seed=0)
+
+    def run() -> float:
+        start = time.perf_counter()
+        for _ in range(calls):
+            envs.step(actions)
+        return calls * envs.num_envs / (time.perf_counter() - start)
+
+    return run
+
+
+def structure_times() -> dict[str, float]:
+    """Milliseconds for the default beam: its matrices, its frequencies at one more speed, and its reduced plant."""
+    from beamenv.blade.config import blade_config, build_plant
+
+    config = blade_config()
+    beam = config.beam.build()
+    _ = beam.matrices
+    speeds = iter(range(100, 200))
+
+    def plant() -> None:
+        build_plant.cache_clear()
+        _clear_beams()
+        build_plant(config)
+
+    return {
+        "assembly_ms": _best_ms(lambda: config.beam.build().matrices),
+        "frequencies_ms": _best_ms(lambda: beam.natural_frequencies(speed=float(next(speeds)), count=6, gyroscopic=True)),
+        "plant_ms": _best_ms(plant),
+    }
+
+
+def _clear_beams() -> None:
+    from beamenv.blade.config import build_beam
+
+    build_beam.cache_clear()
+
+
+def _best_ms(call: Callable[[], Any]) -> float:
+    best = float("inf")
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        call()
+        best = min(best, time.perf_counter() - start)
+    return 1e3 * best
+
+
+def met(name: str, value: float) -> bool | None:
+    """Whether a measurement meets its target; None if it has none."""
+    if name not in TARGETS:
+        return None
+    return value <= TARGETS[name] if name.endswith(("_s", "_ms")) else value >= TARGETS[name]
+
+
+def show(results: dict[str, float]) -> None:
+    """Print the measurements as a table, with the targets."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=f"best of {ROUNDS} rounds, one BLAS thread")
+    for heading, justify in (("", "left"), ("measured", "right"), ("target", "right"), ("", "left")):
+        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
+    for name, label, unit in ROWS:
+        verdict = {None: "", True: "met", False: "[bold]missed[/bold]"}[met(name, results[name])]
+        target = _number(TARGETS[name], unit) if name in TARGETS else ""
+        table.add_row(label, _number(results[name], unit), target, verdict)
+    Console().print(table)
+
+
+def _number(value: float, unit: str) -> str:
+    if unit == "steps/s":
+        return f"{value / 1e6:.2f} M steps/s" if value >= 1e6 else f"{value / 1e3:.1f} k steps/s"
+    return f"{value:.2f} {unit}".strip()
+
+
+def main() -> None:
+    """Measure, and print the table or, with ``--json``, the numbers."""
+    if "--measure" in sys.argv:
+        sys.stdout.write(json.dumps(measure()))
+    elif "--json" in sys.argv:
+        sys.stdout.write(json.dumps(speed(), indent=2) + "\n")
+    else:
+        show(speed())
+
+
+if __name__ == "__main__":
+    main()
