@@ -12,6 +12,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
 
+import cloudpickle
+
 from train.benchmark.cells import Cell, Job, measured
 from train.benchmark.entrants.sources import Source
 from train.shared.threads import ONE_THREAD
@@ -74,8 +76,6 @@ def check_portable(jobs: Sequence[Job]) -> None:
 
 def is_portable(source: Source) -> bool:
     """Whether another process can have it too."""
-    from joblib.externals import cloudpickle
-
     try:
         cloudpickle.dumps(source)
     except Exception:  # noqa: BLE001 - pickling raises whatever the object does
