@@ -13,7 +13,8 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, no_control
-from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record, write_page
