@@ -11,7 +11,8 @@ from scipy.linalg import eigh, expm, solve_continuous_are
 
 from baselines.design.riccati import kalman_filter, regulator
 from baselines.placement import PlacementProblem
-from beamenv.blade.config import blade_config, build_beam, build_plant
+from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.patches import actuation
 
 CASES = [("thesis", {}), ("thesis", {"patches": {"ganged": True}}), ("thesis", {"gyroscopic": False}), ("chandra-chopra", {})]

@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 
 from baselines import closed_loop_poles, lqg
 from baselines.laws.lqg import sampled_design
-from beamenv.blade.config import THESIS, build_beam, build_plant
+from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.presets import THESIS
 from beamenv.plant.plant import drive_limit, sample
 from beamenv.scenarios.load_cases import static_deflection
 from train.cli.app import app as command
