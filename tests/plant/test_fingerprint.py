@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beamenv.blade.config import blade_config, build_plant
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 
 
 @pytest.fixture(scope="module")

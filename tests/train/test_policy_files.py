@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beamenv.blade.config import blade_config, build_plant
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy, save_policy
 
