@@ -12,7 +12,8 @@ from gymnasium.utils import RecordConstructorArgs
 from gymnasium.vector import VectorEnv, VectorWrapper
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
 from beamenv.task import Task, reset_options
 

@@ -46,8 +46,8 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
         raise ValueError(f"system has dt = {system.dt!r}, but must be in continuous time.")
     if (system.ninputs, system.noutputs) != (m + 2, p + 2):
         raise ValueError(
-            f"system has {system.ninputs} inputs and {system.noutputs} outputs, but must have {m + 2}, voltages and two line loads, "
-            f"and {p + 2}, currents and two tip displacements."
+            f"system has {system.ninputs} inputs and {system.noutputs} outputs, but must have {m + 2}, voltages and two line "
+            f"loads, and {p + 2}, currents and two tip displacements."
         )
     A, B, C, D = (np.array(part, dtype=np.float64) for part in (system.A, system.B, system.C, system.D))
     if np.any(D[p:]) or np.any(D[:, m:]):

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from baselines.design.riccati import kalman_filter, regulator
 from baselines.placement import PlacementProblem
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 
 CASES = [("thesis", {}), ("thesis", {"patches": {"ganged": True}}), ("thesis", {"gyroscopic": False}), ("chandra-chopra", {})]
 

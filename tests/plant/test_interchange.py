@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, sample
 from beamenv.plant.poles import damping_ratios, poles_of_sampled

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from beamenv import RotatingBeamEnv
-from beamenv.blade.config import blade_config, build_beam, build_plant
+from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import sample
 from beamenv.plant.reduction import truncate
 from beamenv.simulation.kernel import Operators
-from beamenv.simulation.plants.bank import Bank
 from beamenv.task import resolve_task
 
 CONFIG = blade_config()

@@ -13,7 +13,8 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, no_control
-from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, comparison_table, record, write_page
 from train.page.blade import BOX, Strip, blade_figures, frame_times, magnification, motions
 from train.page.heat_map import heat_map

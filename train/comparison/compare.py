@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
-from beamenv.blade.config import to_dict
+from beamenv.blade.files import to_dict
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant
 from train.comparison.figures import write_figures

@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from scipy.signal import periodogram
 
-from beamenv.blade.config import build_plant
+from beamenv.blade.build import build_plant
 from train.page.recording import RecordedEpisode, Recording
 from train.page.themes import DASHES, NEUTRAL, PALETTE
 
