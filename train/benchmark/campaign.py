@@ -139,7 +139,7 @@ def write_all(folder: Path, table: BenchmarkTable) -> None:
     """Tables, heat map and page."""
     from train.benchmark.showing.heat_map import heat_map
     from train.benchmark.showing.page import write_report
-    from train.comparison.figures import save
+    from train.figures.paper import save
 
     write_files(folder, table)
     save(heat_map(table), folder / "heat_map.png")
