@@ -10,7 +10,7 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from train.benchmark import benchmark
 from train.benchmark.entrants.entrants import agents
 from train.benchmark.targets import findings

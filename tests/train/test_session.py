@@ -11,7 +11,7 @@ import pytest
 import torch
 
 import train.learning.job
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from train.controllers.policy_files import load_policy
 from train.learning.agents import task_of
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint

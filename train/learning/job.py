@@ -9,7 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.named import NAMES
 from beamenv.task import Task
 from train.controllers.policies import Policy
