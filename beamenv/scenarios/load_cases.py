@@ -109,7 +109,7 @@ class LoadCases:
     @classmethod
     def from_state_dict(cls, state: Mapping[str, ArrayLike]) -> LoadCases:
         """The load cases of a ``state_dict``."""
-        return cls(**{name: np.array(values) for name, values in state.items()})
+        return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
 
 
 def static_deflection(plant: Plant, line_load: ArrayLike) -> Array:

@@ -51,7 +51,7 @@ class Allotment:
 
     def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
         """Go back to a ``state_dict`` of an allotment of the same bank and batch."""
-        self.index = np.array(state["index"], dtype=np.int64)
+        self.index = np.asarray(state["index"]).copy()
         self._gather()
 
     def _gather(self) -> None:

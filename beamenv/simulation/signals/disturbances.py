@@ -146,7 +146,7 @@ class SharedDisturbances:
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of equally made disturbances."""
         self._rows[...], self._amplitude[...] = np.asarray(state["rows"]), np.asarray(state["amplitude"])
-        self._steps, self._gusts = np.array(state["steps"]), np.array(state["gusts"])
+        self._steps, self._gusts = np.asarray(state["steps"]).copy(), np.asarray(state["gusts"]).copy()
         self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
 
     def _scaled(self, normals: Array) -> Array:
@@ -224,7 +224,7 @@ class SeededDisturbances:
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of equally made disturbances."""
         self._ring[...], self._at = np.asarray(state["ring"]), int(state["at"])
-        self._begun, self._drawn, self._gusts = (np.array(state[name]) for name in ("begun", "drawn", "gusts"))
+        self._begun, self._drawn, self._gusts = (np.asarray(state[name]).copy() for name in ("begun", "drawn", "gusts"))
         self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
         self._see_due()
 

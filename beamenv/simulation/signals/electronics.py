@@ -67,7 +67,7 @@ class Electronics:
     def load_state_dict(self, state: Mapping[str, Mapping[str, ArrayLike]]) -> None:
         """Go back to a ``state_dict`` of equally made electronics."""
         self.faults = Faults.from_state_dict(state["faults"])
-        self.memory = SignalMemory(**{name: np.array(values) for name, values in state["memory"].items()})
+        self.memory = SignalMemory(**{name: np.asarray(values).copy() for name, values in state["memory"].items()})
 
 
 def _hysteresis(plant: Plant, loop: float) -> Hysteresis | None:

@@ -54,7 +54,7 @@ class Faults:
     @classmethod
     def from_state_dict(cls, state: Mapping[str, ArrayLike]) -> Faults:
         """The faults of a ``state_dict``."""
-        return cls(**{name: np.array(values) for name, values in state.items()})
+        return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
 
 
 class SignalMemory(NamedTuple):
