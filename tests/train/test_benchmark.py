@@ -11,10 +11,10 @@ import pytest
 import beamenv
 from baselines import evaluate, lqg
 from beamenv.plant.plant import fingerprint
-from train.controllers import contenders
 from train.benchmark import benchmark
 from train.benchmark.entrants.entrants import agents
 from train.benchmark.targets import findings
+from train.controllers import contenders
 from train.controllers.contenders import contender, discover
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
