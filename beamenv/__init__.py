@@ -14,7 +14,9 @@ import gymnasium
 from beamenv.scenarios.named import NAMES as BENCHMARK_SCENARIOS
 
 if TYPE_CHECKING:
-    from beamenv.blade.config import PRESETS, BladeConfig, blade_config, build_plant
+    from beamenv.blade.build import build_plant
+    from beamenv.blade.config import BladeConfig
+    from beamenv.blade.presets import PRESETS, blade_config
     from beamenv.envs.batch import RotatingBeamVectorEnv
     from beamenv.envs.history import SensorHistory, VectorSensorHistory
     from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
@@ -27,10 +29,10 @@ __version__ = "0.1.0"
 ENV_ID = "beamenv/RotatingBeam-v0"
 
 _HOMES = {
-    "PRESETS": "blade.config",
+    "PRESETS": "blade.presets",
     "BladeConfig": "blade.config",
-    "blade_config": "blade.config",
-    "build_plant": "blade.config",
+    "blade_config": "blade.presets",
+    "build_plant": "blade.build",
     "RotatingBeamEnv": "envs.single",
     "PlacementWrapper": "envs.placement",
     "VectorPlacementWrapper": "envs.placement",

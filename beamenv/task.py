@@ -11,7 +11,9 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BladeConfig, blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
+from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario, scenario, with_load
 from beamenv.simulation.blades import Motion

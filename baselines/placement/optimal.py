@@ -11,7 +11,8 @@ from pathlib import Path
 
 from baselines.placement.cost.problem import PlacementProblem
 from baselines.placement.search.search import place
-from beamenv.blade.config import BladeConfig, to_dict
+from beamenv.blade.config import BladeConfig
+from beamenv.blade.files import to_dict
 from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_positions
 
 METHOD, SEED = "multistart", 0

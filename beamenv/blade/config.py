@@ -1,24 +1,16 @@
-"""Configurations: frozen dataclasses, named presets, dictionaries and JSON or TOML files; and what is built from them."""
+"""Configurations of a blade: frozen dataclasses that hold what a user says of it."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
-from functools import lru_cache
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beamenv.patches import PatchLayout
-from beamenv.plant.plant import Plant
-from beamenv.plant.reduction import reduced_plant, truncate
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
-
-Array = NDArray[np.float64]
 
 MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6})
 
@@ -151,53 +143,6 @@ def check(config: Any, *names: str, allowed: str, valid: Any) -> None:
             raise ValueError(f"{name} = {value!r} must be {allowed}.")
 
 
-THESIS = BladeConfig()
-CHANDRA_CHOPRA = BladeConfig(
-    beam=BeamConfig(
-        length=0.84455,
-        width=(0.953 - 0.030) * 0.0254,
-        depth=(0.537 - 0.030) * 0.0254,
-        thickness=0.030 * 0.0254,
-        hub_radius=0.06985,
-        material="as4-3501-6",
-        ply_angles_deg=(
-            ("top", (60.0,) * 6),
-            ("bottom", (-60.0,) * 6),
-            ("left", (60.0, -60.0) * 3),
-            ("right", (60.0, -60.0) * 3),
-        ),
-        pretwist_deg=0.0,
-    ),
-    patches=PatchLayout(width=0.007),
-    speed=2.0 * np.pi * 1000.0 / 60.0,
-)
-
-PRESETS: Mapping[str, BladeConfig] = MappingProxyType(
-    {
-        "thesis": THESIS,
-        "thesis-untwisted": replace(THESIS, beam=BeamConfig(pretwist_deg=0.0)),
-        "thesis-pretwisted": replace(THESIS, beam=BeamConfig(presetting_deg=30.0)),
-        "chandra-chopra": CHANDRA_CHOPRA,
-    }
-)
-"""thesis: θ = 30°, pretwist 30°, 200 rad/s, four MFC actuators over four sensors; thesis-untwisted: Figs. 5.10–5.12;
-thesis-pretwisted: with 30° presetting too, Figs. 5.2 and 5.7; chandra-chopra: the CAS box of Table 3.2 at 1000 rev/min with
-7 mm wide MFC (M-8507-P1)."""
-
-
-def blade_config(
-    preset: str = "thesis", overrides: BladeConfig | Mapping[str, Any] | None = None, speed: float | None = None
-) -> BladeConfig:
-    """A preset with changes: a whole ``BladeConfig`` replaces it, a (nested) dictionary changes the fields it names.
-
-    Raises ``ValueError`` for an unknown preset or field and for a value that is not allowed.
-    """
-    if preset not in PRESETS:
-        raise ValueError(f"preset = {preset!r} must be one of {', '.join(PRESETS)}.")
-    config = overrides if isinstance(overrides, BladeConfig) else changed(PRESETS[preset], overrides or {}, "blade")
-    return config if speed is None else replace(config, speed=speed)
-
-
 def changed(config: Any, changes: Mapping[str, Any], name: str) -> Any:
     """A copy of a frozen dataclass with the given fields changed, nested mappings reaching into nested dataclasses."""
     if not isinstance(changes, Mapping):
@@ -214,80 +159,3 @@ def changed(config: Any, changes: Mapping[str, Any], name: str) -> Any:
         nested = is_dataclass(current) and isinstance(value, Mapping) and not isinstance(current, Lamina)
         values[key] = changed(current, value, f"{name}.{key}") if nested else value
     return replace(config, **values)
-
-
-def to_dict(config: Any) -> dict[str, Any]:
-    """A configuration as plain dictionaries, lists, numbers and strings: what JSON can hold."""
-    plain: dict[str, Any] = json.loads(json.dumps(asdict(config)))
-    return plain
-
-
-def from_dict(values: Mapping[str, Any]) -> BladeConfig:
-    """The configuration that ``to_dict`` wrote; fields left out take the thesis' values."""
-    config: BladeConfig = changed(THESIS, values, "blade")
-    return config
-
-
-def load_config(path: str | Path) -> BladeConfig:
-    """A blade from a JSON or TOML file (TOML needs Python 3.11)."""
-    path = Path(path)
-    if path.suffix == ".json":
-        return from_dict(json.loads(path.read_text()))
-    if path.suffix == ".toml":
-        import tomllib
-
-        return from_dict(tomllib.loads(path.read_text()))
-    raise ValueError(f"path = {str(path)!r} must end in .json or .toml.")
-
-
-@lru_cache(maxsize=64)
-def build_beam(config: BladeConfig) -> RotatingBeam:
-    """The blade with its patches' passive effect."""
-    return config.beam.build(config.patches)
-
-
-@lru_cache(maxsize=64)
-def build_plant(config: BladeConfig) -> Plant:
-    """The reduced plant of a configuration, built once and cached; ``ValueError`` as the parts raise it."""
-    return plant_of(config, build_beam(config))
-
-
-def changed_blade(
-    config: BladeConfig, speed: float, ply_angle: float, modulus: float, mass: float, damping_ratio: float
-) -> BladeConfig:
-    """A blade whose speed, ply angles, moduli and density are those of another times a ratio, with a damping ratio of its own."""
-    material = MATERIALS[config.beam.material] if isinstance(config.beam.material, str) else config.beam.material
-    stiffer = {name: modulus * getattr(material, name) for name in ("E1", "E2", "G12", "G13", "G23")}
-    beam = replace(
-        config.beam,
-        material=replace(material, density=mass * material.density, **stiffer),
-        ply_angles_deg=tuple((wall, tuple(ply_angle * angle for angle in angles)) for wall, angles in config.beam.ply_angles_deg),
-    )
-    return replace(config, beam=beam, speed=speed * config.speed, damping_ratio=damping_ratio)
-
-
-def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
-    """The reduced plant of a configuration whose blade has been built."""
-    return reduced_plant(
-        beam,
-        config.patches,
-        speed=config.speed,
-        modes=config.modes,
-        damping_ratio=config.damping_ratio,
-        gyroscopic=config.gyroscopic,
-        effort_weight=config.effort_weight,
-        white_load=config.white_load,
-        sensor_noise_fraction=config.sensor_noise_fraction,
-        sensor_full_scale=config.sensor_full_scale,
-        voltage_limits=config.voltage_limits,
-        control_interval=config.control_interval,
-    )
-
-
-def displacement_operator(config: BladeConfig, stations: Sequence[float] | Array) -> Array:
-    """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
-    beam = build_beam(config)
-    modal = truncate(beam, config.speed, config.modes, config.gyroscopic)
-    rows = beam.displacements(np.asarray(stations, dtype=float))
-    displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (modal.mode_shapes / modal.natural_frequencies)
-    return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)

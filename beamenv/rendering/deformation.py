@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.config import build_beam, changed_blade, displacement_operator
+from beamenv.blade.build import build_beam, changed_blade, displacement_operator
 from beamenv.plant.reduction import truncate
 from beamenv.simulation.plants.banks import varied
 from beamenv.simulation.plants.spin_up import Cycloid, RunUp

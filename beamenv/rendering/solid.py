@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
 from beamenv.plant.reduction import REFERENCE_LOAD
 from beamenv.scenarios.load_cases import static_deflection
 

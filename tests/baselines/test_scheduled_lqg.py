@@ -7,7 +7,8 @@ import pytest
 
 from baselines import PersistentLoad, lqg, stationary_cost
 from baselines.laws.scheduled_lqg import scheduled_lqg, scheduled_lqg_for
-from beamenv.blade.config import THESIS, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import THESIS
 from beamenv.simulation.plants.speed_family import speed_family
 
 SPEEDS = np.array([100.0, 130.0, 160.0, 180.0, 200.0, 220.0])

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.scenarios.scenario import SCENARIOS, draw_load_cases
 from beamenv.simulation.signals.disturbances import BLOCK, SeededDisturbances, SharedDisturbances, noise_factor
 

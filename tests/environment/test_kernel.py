@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import sample
 from beamenv.simulation.kernel import Operators, advance
 

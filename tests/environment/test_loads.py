@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.scenarios.load_cases import CASES, NEVER, LoadCases, static_deflection
 from beamenv.scenarios.scenario import SCENARIOS, Scenario, draw_load_cases, scenario, with_load
 

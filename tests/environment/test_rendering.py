@@ -13,7 +13,7 @@ from gymnasium.utils.env_checker import check_env
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, blade_config, build_plant
-from beamenv.blade.config import displacement_operator
+from beamenv.blade.build import displacement_operator
 from beamenv.scenarios.load_cases import static_deflection
 
 pytest.importorskip("matplotlib")

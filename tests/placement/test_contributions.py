@@ -8,7 +8,8 @@ import pytest
 from baselines.placement.model.contributions import contributions
 from baselines.placement.model.intervals import Intervals, PatchEdges
 from baselines.placement.model.layout_model import layout_matrices, matrix_slopes
-from beamenv.blade.config import blade_config, build_beam
+from beamenv.blade.build import build_beam
+from beamenv.blade.presets import blade_config
 from beamenv.patches import actuation, sensing
 from beamenv.structure.modes import normal_modes
 

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from baselines.placement import METHODS, PlacementProblem, place
-from beamenv.blade.config import blade_config
+from beamenv.blade.presets import blade_config
 from train.cli.app import app
 from train.placement.picture import cost_along_span
 from train.placement.placed import place_sides

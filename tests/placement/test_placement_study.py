@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from baselines.placement import PlacementProblem
-from beamenv.blade.config import blade_config
+from beamenv.blade.presets import blade_config
 from train.reproduce.studies.placement_study import (
     UNTWISTED,
     convergence,

@@ -10,7 +10,7 @@ import baselines.placement.cost.riccati as riccati
 from baselines.placement.cost.problem import PlacementProblem
 from baselines.placement.cost.riccati import relative_residual, solve_riccati
 from baselines.placement.model.equations import filter_equation, regulator_equation
-from beamenv.blade.config import blade_config
+from beamenv.blade.presets import blade_config
 
 
 def by_scipy(A, G, Q):

@@ -13,7 +13,7 @@ from baselines.placement.search.genetic import Genetic, decoded, encoded
 from baselines.placement.search.grid import Grid
 from baselines.placement.search.search import InTurn
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
-from beamenv.blade.config import blade_config
+from beamenv.blade.presets import blade_config
 
 QUICK = {
     "ga": Genetic(population=10, generations=4),

@@ -4,7 +4,9 @@ import json
 
 import pytest
 
-from beamenv.blade.config import PRESETS, blade_config, build_plant, from_dict, load_config, to_dict
+from beamenv.blade.build import build_plant
+from beamenv.blade.files import from_dict, load_config, to_dict
+from beamenv.blade.presets import PRESETS, blade_config
 
 
 @pytest.mark.parametrize("preset", PRESETS)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.blade.config import blade_config, build_plant
-from beamenv.plant.plant import fingerprint
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
+from beamenv.plant.fingerprint import fingerprint
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.blade.config import blade_config, build_beam, build_plant, displacement_operator
+from beamenv.blade.build import build_beam, build_plant, displacement_operator
+from beamenv.blade.presets import blade_config
 from beamenv.patches import actuation, sensing
 from beamenv.plant.plant import sample
 from beamenv.plant.reduction import REFERENCE_LOAD, truncate

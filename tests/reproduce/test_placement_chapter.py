@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.blade.config import blade_config
+from beamenv.blade.presets import blade_config
 from train.reproduce.catalogue import STUDIES
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.runner import source_fingerprint

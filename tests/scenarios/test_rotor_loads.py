@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.scenarios.scenario import SCENARIOS, draw_load_cases, scenario
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 

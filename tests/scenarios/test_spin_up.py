@@ -8,7 +8,8 @@ from numpy.polynomial import chebyshev
 from scipy.integrate import solve_ivp
 
 from beamenv import RotatingBeamEnv
-from beamenv.blade.config import blade_config, build_beam
+from beamenv.blade.build import build_beam
+from beamenv.blade.presets import blade_config
 from beamenv.simulation.plants.spin_up import Cycloid, RunUp
 
 CONFIG = blade_config()

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.blade.config import blade_config
+from beamenv.blade.presets import blade_config
 from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.simulation.kernel import advance
 from beamenv.simulation.plants.banks import build_bank

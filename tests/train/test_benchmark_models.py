@@ -7,7 +7,8 @@ from stable_baselines3 import PPO, SAC
 
 import beamenv
 from baselines import evaluate
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from train.benchmark import benchmark
 from train.benchmark.entrants.models import fitted, load_model
 from train.shared.held_out import HELD_OUT

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from beamenv.blade.config import blade_config, build_beam
+from beamenv.blade.build import build_beam
+from beamenv.blade.presets import blade_config
 from train.cli.app import app
 
 COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")

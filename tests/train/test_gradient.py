@@ -7,7 +7,8 @@ import torch
 
 import beamenv
 from baselines import PersistentLoad, clipped_lqg, evaluate
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import normalised
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.kernel import Operators, advance

@@ -13,13 +13,16 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, no_control
-from beamenv.blade.config import BladeConfig, build_plant
-from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, comparison_table, record, write_page
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
+from train.comparison.page import page_table
+from train.figures.palette import NEUTRAL, PALETTE, contrast
+from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record, write_page
 from train.page.blade import BOX, Strip, blade_figures, frame_times, magnification, motions
 from train.page.heat_map import heat_map
 from train.page.page import plots, render
 from train.page.plots import amplitude_density, pole_map, symmetric_logarithm
-from train.page.themes import NEUTRAL, PALETTE, THEMES, contrast
+from train.page.themes import THEMES
 from train.shared.versions import versions
 
 SECTIONS = ("table", "blade", "heat-map", "time-series", "spectra", "poles", "learning", "provenance")
@@ -242,7 +245,7 @@ def test_the_comparison_is_a_table_with_the_best_first():
     plant = envs.unwrapped.plant
     evaluations = [evaluate(law, envs, range(3)) for law in (no_control(plant), lqg(plant))]
     envs.close()
-    table = comparison_table(evaluations)
+    table = page_table(evaluations)
     assert [row[0].text for row in table.rows] == ["LQG", "no control"]
     assert table.rows[1][1].value == 1.0
     assert table.rows[0][1].value == evaluations[1].relative_cost.value

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from beamenv.blade.config import blade_config, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy, save_policy
 from train.learning.through_plant.actors import ActorSettings, RecurrentActor

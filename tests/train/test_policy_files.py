@@ -6,8 +6,9 @@ import pickle
 import numpy as np
 import pytest
 
-from beamenv.blade.config import blade_config, build_plant
-from beamenv.plant.plant import fingerprint
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
+from beamenv.plant.fingerprint import fingerprint
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy, save_policy
 

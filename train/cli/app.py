@@ -48,7 +48,9 @@ def frequencies(
 ) -> None:
     """Natural frequencies of a blade, each with the family its motion belongs to."""
     with one_sentence():
-        from beamenv.blade.config import blade_config, build_beam, load_config
+        from beamenv.blade.build import build_beam
+        from beamenv.blade.files import load_config
+        from beamenv.blade.presets import blade_config
 
         config = blade_config(preset, load_config(blade) if blade else None)
         beam = build_beam(config) if patches else config.beam.build()

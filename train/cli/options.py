@@ -22,7 +22,7 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothin
 
 def environment_arguments(preset: str, speed: float | None, blade: Path | None) -> dict[str, Any]:
     """Keyword arguments of the environment that the options stand for."""
-    from beamenv.blade.config import load_config, to_dict
+    from beamenv.blade.files import load_config, to_dict
 
     arguments: dict[str, Any] = {"preset": preset}
     if speed is not None:

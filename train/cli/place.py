@@ -36,8 +36,9 @@ def place(
     Both sides are placed, with as many patches as the blade has, unless the options name one.
     """
     with one_sentence():
-        from beamenv.blade.config import blade_config, load_config
+        from beamenv.blade.files import load_config
         from beamenv.blade.layouts import SIDES, positions_of
+        from beamenv.blade.presets import blade_config
 
         config = blade_config(preset, load_config(blade) if blade else None, speed)
         config = config if passive else replace(config, patches=replace(config.patches, passive=False))

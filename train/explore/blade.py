@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.laws.lqg import sampled_design
-from beamenv.blade.config import THESIS, BeamConfig, BladeConfig, check, plant_of
+from beamenv.blade.build import plant_of
+from beamenv.blade.config import BeamConfig, BladeConfig, check
+from beamenv.blade.presets import THESIS
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep

@@ -9,10 +9,11 @@ import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BladeConfig, displacement_operator
+from beamenv.blade.build import displacement_operator
+from beamenv.blade.config import BladeConfig
 from beamenv.structure.walls.contour import rotated
+from train.figures.palette import NEUTRAL
 from train.page.recording import RecordedEpisode, Recording
-from train.page.themes import NEUTRAL
 
 Array = NDArray[np.float64]
 

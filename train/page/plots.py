@@ -11,9 +11,9 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from scipy.signal import periodogram
 
-from beamenv.blade.config import build_plant
+from beamenv.blade.build import build_plant
+from train.figures.palette import DASHES, NEUTRAL, PALETTE
 from train.page.recording import RecordedEpisode, Recording
-from train.page.themes import DASHES, NEUTRAL, PALETTE
 
 Array = NDArray[np.float64]
 

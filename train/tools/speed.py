@@ -142,7 +142,8 @@ def batch_run(envs: Any, steps: int = 1_200_000) -> Callable[[], float]:
 
 def structure_times() -> dict[str, float]:
     """Milliseconds for the default beam: its matrices, its frequencies at one more speed, and its reduced plant."""
-    from beamenv.blade.config import blade_config, build_plant
+    from beamenv.blade.build import build_plant
+    from beamenv.blade.presets import blade_config
 
     config = blade_config()
     beam = config.beam.build()
@@ -162,7 +163,7 @@ def structure_times() -> dict[str, float]:
 
 
 def _clear_beams() -> None:
-    from beamenv.blade.config import build_beam
+    from beamenv.blade.build import build_beam
 
     build_beam.cache_clear()
 

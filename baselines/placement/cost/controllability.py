@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from baselines.placement.cost.problem import PlacementProblem
-from beamenv.blade.config import BladeConfig, build_beam
+from beamenv.blade.build import build_beam
+from beamenv.blade.config import BladeConfig
 
 Array = NDArray[np.float64]
 

@@ -24,7 +24,8 @@ from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes,
 from baselines.placement.model.reduced_layouts import ReducedLayouts, Reduction, reduce_layouts
 from baselines.placement.model.reduced_slopes import ReducedSlopes, reduce_with_slopes
 from beamenv.blade.bounds import Bounds
-from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
 
 Array = NDArray[np.float64]

@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BeamConfig, BladeConfig, build_beam, build_plant, changed_blade, plant_of
+from beamenv.blade.build import build_beam, build_plant, changed_blade, plant_of
+from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from

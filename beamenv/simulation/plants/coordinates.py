@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BladeConfig, build_beam
+from beamenv.blade.build import build_beam
+from beamenv.blade.config import BladeConfig
 from beamenv.plant.reduction import truncate
 from beamenv.structure import RotatingBeam
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.blade.config import BladeConfig, build_beam, build_plant
+from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.coordinates import seen_from
 

@@ -28,7 +28,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from beamenv.blade.config import BladeConfig, build_beam, build_plant
+from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.plant.reduction import truncate
 from beamenv.simulation.plants.bank import Bank

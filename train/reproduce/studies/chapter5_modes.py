@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky, expm, solve_continuous_lyapunov, svd
 
 from baselines import lqr
-from beamenv.blade.config import BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
 from train.reproduce.judging.verdicts import Small

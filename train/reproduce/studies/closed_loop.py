@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines import Controller, lqg
-from beamenv.blade.config import BeamConfig, BladeConfig, build_plant
+from beamenv.blade.build import build_plant
+from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches import PatchLayout
 from beamenv.plant.plant import Plant
 from beamenv.simulation.kernel import Operators, advance

@@ -14,8 +14,9 @@ from baselines.placement.cost.damping import design_poles
 from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.placement import Recorder
 from baselines.placement.search.sqp import SequentialQuadratic
-from beamenv.blade.config import BladeConfig, blade_config
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
+from beamenv.blade.presets import blade_config
 
 Array = NDArray[np.float64]
 

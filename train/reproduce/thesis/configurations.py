@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from beamenv.blade.config import CHANDRA_CHOPRA, ON_EVERY_WALL, BeamConfig
+from beamenv.blade.config import ON_EVERY_WALL, BeamConfig
+from beamenv.blade.presets import CHANDRA_CHOPRA
 from beamenv.plant.reduction import REFERENCE_LOAD
 from beamenv.structure import RotatingBeam
 
