@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Callable, Mapping, Sequence
-from importlib import metadata
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +17,9 @@ from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import check_folder
 from train.shared.held_out import held_out
+from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
-
-PACKAGES = ("numpy", "scipy", "gymnasium", "control", "torch", "stable-baselines3", "sb3-contrib", "daqp")
 
 
 def benchmark(
@@ -121,17 +117,6 @@ def configuration(settings: Sequence[Setting], entered: Sequence[Entrant]) -> di
         "scenarios": {setting.name: setting.scenario.to_dict() for setting in settings},
         "controllers": {each.name: each.kind for each in entered},
         "versions": versions(),
-    }
-
-
-def versions() -> dict[str, str]:
-    """Of beamenv, Python, the machine and the packages that are installed."""
-    found = {name: metadata.version(name) for name in PACKAGES if find_spec(name.replace("-", "_"))}
-    return {
-        "beamenv": beamenv.__version__,
-        "Python": platform.python_version(),
-        "platform": f"{platform.system()} {platform.machine()}",
-        **found,
     }
 
 
