@@ -47,12 +47,14 @@ def example_page(script: Path) -> str:
 
 def scenario_table() -> str:
     """One row for each file: the comment that it opens with, and what it sets."""
-    rows = ["| scenario | what is wrong | what the file sets |", "| --- | --- | --- |"]
+    from train.shared.markdown import markup_table
+
+    rows = []
     for file in sorted(SCENARIOS.glob("*.toml")):
         lines = file.read_text(encoding="utf-8").splitlines()
         opening = [line.removeprefix("#").strip() for line in lines if line.startswith("#")]
-        rows.append(f"| `{file.stem}` | {' '.join(opening)} | {'<br>'.join(settings(lines)) or 'nothing: the default'} |")
-    return "\n".join(rows)
+        rows.append([f"`{file.stem}`", " ".join(opening), "<br>".join(settings(lines)) or "nothing: the default"])
+    return markup_table(["scenario", "what is wrong", "what the file sets"], rows)
 
 
 def settings(lines: list[str]) -> list[str]:
@@ -70,25 +72,24 @@ def settings(lines: list[str]) -> list[str]:
 def recipe_table() -> str:
     """The recipes that come with the package."""
     from train.learning.recipe import NAMES, named_recipe
+    from train.shared.markdown import markup_table
 
     found = [(name, named_recipe(name)) for name in NAMES]
-    return "\n".join(
-        ["| recipe | what it is | updates |", "| --- | --- | --- |"]
-        + [f"| `{name}` | {recipe.title} | {recipe.updates} |" for name, recipe in found]
-    )
+    return markup_table(["recipe", "what it is", "updates"], [[f"`{name}`", each.title, each.updates] for name, each in found])
 
 
 def shipped_table() -> str:
     """The policies in ``train/controllers/trained``."""
     from train.controllers.shipped import shipped
+    from train.shared.markdown import markup_table
 
     seeds: dict[tuple[str, str], list[str]] = {}
     for each in shipped():
         seeds.setdefault((each.agent, each.scenario), []).append(str(each.seed))
     if not seeds:
         return "This copy holds no trained agent."
-    rows = [f"| `{agent}` | {scenario} | {', '.join(those)} |" for (agent, scenario), those in seeds.items()]
-    return "\n".join(["| agent | trained on | seeds |", "| --- | --- | --- |", *rows])
+    rows = [[f"`{agent}`", scenario, ", ".join(those)] for (agent, scenario), those in seeds.items()]
+    return markup_table(["agent", "trained on", "seeds"], rows)
 
 
 def command_line() -> str:
@@ -103,13 +104,15 @@ def command_line() -> str:
 
 def command_page(name: str, command: Any) -> str:
     """One command's help and a table of its parameters."""
-    rows = ["| option | default | what it does |", "| --- | --- | --- |"]
+    from train.shared.markdown import markup_table
+
+    rows = []
     for parameter in command.params:
         if parameter.name == "help":
             continue
         spelled = parameter.opts[0] if parameter.param_type_name == "option" else parameter.name.upper()
-        rows.append(f"| `{spelled}` | {shown_default(parameter)} | {parameter.help or ''} |")
-    return f"## beamenv {name}\n\n{command.help}\n\n" + "\n".join(rows)
+        rows.append([f"`{spelled}`", shown_default(parameter), parameter.help or ""])
+    return f"## beamenv {name}\n\n{command.help}\n\n" + markup_table(["option", "default", "what it does"], rows)
 
 
 def shown_default(parameter: Any) -> str:

@@ -92,9 +92,9 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
         self._generators: np.random.Generator | list[np.random.Generator] | None = None
-        self.adopt([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
+        self.set_task([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
 
-    def adopt(self, tasks: Sequence[Task]) -> None:
+    def set_task(self, tasks: Sequence[Task]) -> None:
         """Take on one task for all blades, or one for each, in place of those before; what comes next must be ``reset``.
 
         The tasks may differ in their blades alone, and these not in how many patches they have. ``task``, ``plant`` and

@@ -43,7 +43,7 @@ class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorA
         self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
         self._layout = _resolved(self._home.config, {"actuators": actuators, "sensors": sensors})
         self._positions = {side: _first(self._layout[side]) for side in SIDES}
-        self._adopt(self._positions)
+        self._move_to(self._positions)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode, in another layout if ``options`` or the range say so."""
@@ -56,7 +56,7 @@ class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorA
         positions = {side: _drawn(layout[side], self.np_random) if drawn else _first(layout[side]) for side in SIDES}
         self._layout = layout
         if positions != self._positions:
-            self._adopt(positions)
+            self._move_to(positions)
         observation, info = self.env.reset(seed=seed, options=rest)
         return observation, {**info, "layout": dict(self._positions)}
 
@@ -69,10 +69,10 @@ class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorA
     def _task(self, positions: Mapping[Side, Positions]) -> Task:
         return _moved(self._home, positions)
 
-    def _adopt(self, positions: Mapping[Side, Positions]) -> None:
+    def _move_to(self, positions: Mapping[Side, Positions]) -> None:
         task = self._task(positions)
         _ = task.plant, task.design_plant  # a layout that no plant can be built of is refused here
-        self.env.unwrapped.adopt(task)  # type: ignore[attr-defined]
+        self.env.unwrapped.set_task(task)  # type: ignore[attr-defined]
         self._positions = dict(positions)
 
 
@@ -107,7 +107,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
         self._layouts = self._resolved(given)
         self._positions = [{side: _first(layout[side]) for side in SIDES} for layout in self._layouts]
-        self._adopt(self._positions)
+        self._move_to(self._positions)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode of every blade."""
@@ -123,7 +123,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         positions = self._draw(layouts) if drawn else [{side: _first(layout[side]) for side in SIDES} for layout in layouts]
         self._layouts = layouts
         if positions != self._positions:
-            self._adopt(positions)
+            self._move_to(positions)
         observations, info = self.env.reset(seed=seed, options=options)
         return observations, self._told(info)
 
@@ -149,10 +149,10 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         number = len(layouts) if len(layouts) > 1 else min(self._bank, self.num_envs)
         return [{side: _drawn(layouts[k % len(layouts)][side], generator) for side in SIDES} for k in range(number)]
 
-    def _adopt(self, positions: list[dict[Side, Positions]]) -> None:
+    def _move_to(self, positions: list[dict[Side, Positions]]) -> None:
         tasks = [_moved(self._home, each) for each in positions]
         spread = tasks if len(tasks) == 1 else [tasks[k % len(tasks)] for k in range(self.num_envs)]
-        self.env.unwrapped.adopt(spread)  # type: ignore[attr-defined]
+        self.env.unwrapped.set_task(spread)  # type: ignore[attr-defined]
         self._positions = positions
 
     def _told(self, info: dict[str, Any]) -> dict[str, Any]:

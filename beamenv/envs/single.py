@@ -191,9 +191,9 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
-        self.adopt(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
+        self.set_task(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
 
-    def adopt(self, task: Task) -> None:
+    def set_task(self, task: Task) -> None:
         """Take on a task, and with it a blade, in place of the one before; what comes next must be ``reset``."""
         self.task = task
         self.action_space = task.action_space()

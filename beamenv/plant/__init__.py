@@ -1,5 +1,6 @@
 """The reduced plant: its matrices, its sampling, its reduction from a blade, its fingerprint."""
 
+from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, SampledPlant, sample
 
-__all__ = ["Plant", "SampledPlant", "sample"]
+__all__ = ["Plant", "SampledPlant", "fingerprint", "sample"]

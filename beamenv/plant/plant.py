@@ -1,4 +1,4 @@
-"""The plant: matrices and nothing else, in continuous time and exactly sampled.
+"""The plant: matrices that cannot be changed, in continuous time and exactly sampled.
 
 State ``x = [ω η; η̇]`` in energy coordinates: η are the coordinates of mass-normalised modes, so that
 ½ xᵀx is the vibration energy in joules. The dynamics are
@@ -10,14 +10,15 @@ with u the actuator voltages (V), d the uniform line loads in lag and flap (N/m)
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from hashlib import sha256
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
+
+from beamenv.plant.poles import poles_of_sampled
+from beamenv.plant.read_only import ReadOnly
 
 if TYPE_CHECKING:
     import control
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Plant:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Plant(ReadOnly):
     """Reduced-order blade with patches: n = 2r states, m voltages, p sensors, d = 2 line loads.
 
     The cost it is judged by is J = ∫ (xᵀ Q x + uᵀ R u) dt (thesis Eqs. 5.7–5.9, corrected).
@@ -63,26 +64,32 @@ class Plant:
     control_interval: float
     """s: sensors are sampled, voltages and loads are held over this interval."""
 
+    def __repr__(self) -> str:
+        return f"Plant({self.sizes})"
+
+    @property
+    def sizes(self) -> str:
+        """In one line: how many states, voltages and sensors; first and last frequency; clock and limits."""
+        first, last = self.natural_frequencies[[0, -1]]
+        low, high = self.voltage_limits[0].min(), self.voltage_limits[1].max()
+        return f"{_counts(self.B, self.C)}; {_range(first, last)}; {1e3 * self.control_interval:.4g} ms; {low:.5g} … {high:.5g} V"
+
     def to_control(self) -> control.StateSpace:
         """The plant from [voltages, line loads] to [currents, tip displacements] as a ``control.StateSpace``."""
-        import control
+        from beamenv.plant.interchange import plant_to_control
 
-        inputs = np.hstack([self.B, self.disturbance_input])
-        outputs = np.vstack([self.C, self.tip_displacement])
-        feedthrough = np.zeros((len(outputs), inputs.shape[1]))
-        feedthrough[: len(self.C), : self.B.shape[1]] = self.D
-        return control.ss(
-            self.A,
-            inputs,
-            outputs,
-            feedthrough,
-            inputs=[f"voltage{i}" for i in range(self.B.shape[1])] + ["load_lag", "load_flap"],
-            outputs=[f"current{i}" for i in range(len(self.C))] + ["tip_lag", "tip_flap"],
-        )
+        return plant_to_control(self)
+
+    @classmethod
+    def from_control(cls, system: control.StateSpace, like: Plant, **changes: Any) -> Plant:
+        """A plant with the dynamics of a ``control.StateSpace``, and all else as ``like`` has it; see ``interchange``."""
+        from beamenv.plant.interchange import plant_from_control
+
+        return plant_from_control(system, like, **changes)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SampledPlant:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SampledPlant(ReadOnly):
     """A plant whose voltages and loads are held over ``interval``: exact, with the exactly integrated cost.
 
     x⁺ = A x + B u + E d, y = C x + D u + v, and over one interval ∫(xᵀQx + uᵀRu)dt = zᵀ cost z with z = [x; u; d].
@@ -103,6 +110,10 @@ class SampledPlant:
     interval: float
     """s."""
 
+    def __repr__(self) -> str:
+        magnitudes = np.abs(poles_of_sampled(self.A, self.interval))
+        return f"SampledPlant({_counts(self.B, self.C)}; {_range(magnitudes[0], magnitudes[-1])}; {1e3 * self.interval:.4g} ms)"
+
     @property
     def state_weight(self) -> Array:
         """Q (n, n) of one interval."""
@@ -120,6 +131,20 @@ class SampledPlant:
         """N (n, m) of one interval: the cost is xᵀQx + 2xᵀNu + uᵀRu when no load acts."""
         n, m = self.B.shape
         return self.cost[:n, n : n + m]
+
+    def to_control(self) -> control.StateSpace:
+        """The sampled plant from [voltages, line loads] to currents, with ``dt`` = ``interval``, as a ``control.StateSpace``."""
+        from beamenv.plant.interchange import sampled_to_control
+
+        return sampled_to_control(self)
+
+
+def _counts(B: Array, C: Array) -> str:
+    return f"{B.shape[0]} states, {B.shape[1]} voltages, {len(C)} sensors"
+
+
+def _range(first: float, last: float) -> str:
+    return f"{first:.4g} … {last:.4g} rad/s"
 
 
 def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
@@ -172,28 +197,3 @@ def normalised(plant: Plant) -> Plant:
 def drive_limit(plant: Plant) -> Array:
     """(m,) V: the voltage an action of 1 stands for, the larger magnitude of the two limits."""
     return np.abs(plant.voltage_limits).max(axis=0)
-
-
-def fingerprint(plant: Plant) -> str:
-    """SHA-256, in hexadecimal, of what a controller meets: how the plant answers, its cost, noises, limits and clock.
-
-    The answers are the transfer matrices from voltages and loads to currents and tip displacements at s = each natural
-    frequency, on the real axis, where none is close to a pole. They do not depend on the signs of mode shapes, and all numbers
-    are rounded to a millionth of the largest in their matrix, so that machines whose last digits differ agree.
-    """
-    digest = sha256()
-    for matrix in _met(plant):
-        largest = float(np.abs(matrix).max(initial=0.0))
-        rounded = np.rint(matrix * (1e6 / largest if largest else 0.0)).astype("<i8")
-        digest.update(f"{matrix.shape} {largest:.5e} ".encode() + rounded.tobytes())
-    return digest.hexdigest()
-
-
-def _met(plant: Plant) -> Iterator[Array]:
-    yield plant.natural_frequencies
-    identity = np.eye(len(plant.A))
-    for inputs in (plant.B, plant.disturbance_input):
-        states = [np.linalg.solve(s * identity - plant.A, inputs) for s in plant.natural_frequencies]
-        yield from (outputs @ state for state in states for outputs in (plant.C, plant.tip_displacement))
-    yield from (plant.D, plant.input_weight, plant.process_noise, plant.sensor_noise)
-    yield from (plant.voltage_limits, plant.sensor_full_scale, np.array([plant.control_interval]))

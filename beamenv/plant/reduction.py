@@ -11,6 +11,7 @@ from scipy.linalg import expm
 
 from beamenv.patches import PatchLayout, actuation, sensing
 from beamenv.plant.plant import Plant
+from beamenv.plant.read_only import ReadOnly
 from beamenv.structure import RotatingBeam
 from beamenv.structure.modes import normal_modes
 
@@ -27,7 +28,7 @@ SAME_PATCH_REGULARISATION = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ModalModel:
+class ModalModel(ReadOnly):
     """The first r undamped modes without gyroscopic coupling, at one speed."""
 
     natural_frequencies: Array
@@ -67,7 +68,7 @@ def surface_strain(beam: RotatingBeam) -> Array:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FullModel:
+class FullModel(ReadOnly):
     """What acts on a blade and what is seen of it, by its N trial functions: the same at any speed."""
 
     forces: Array

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,8 +35,8 @@ class Operators:
         return cls(fused=np.ascontiguousarray(fused), states=len(plant.A), outputs=len(plant.C))
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
-        """The same operators with each array passed through ``to_array``, say ``torch.as_tensor``."""
-        return replace(self, **{f.name: to_array(getattr(self, f.name)) for f in fields(self) if f.type == "Any"})
+        """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
+        return replace(self, fused=to_array(self.fused.copy() if isinstance(self.fused, np.ndarray) else self.fused))
 
     def pick(self, index: Any) -> Operators:
         """The operators of one plant of several, or of one for each blade."""

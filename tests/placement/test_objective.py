@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import simpson
+from scipy.linalg import eigh, expm, solve_continuous_are
 
 from baselines.design.riccati import kalman_filter, regulator
 from baselines.placement import PlacementProblem
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import build_beam, build_plant
 from beamenv.blade.presets import blade_config
+from beamenv.patches import actuation
 
 CASES = [("thesis", {}), ("thesis", {"patches": {"ganged": True}}), ("thesis", {"gyroscopic": False}), ("chandra-chopra", {})]
 
@@ -55,25 +58,48 @@ def test_permuting_patches_changes_nothing(order, seed, side):
     assert problem.cost(layout[:, list(order)]) == pytest.approx(problem.cost(layout), rel=1e-9)
 
 
-def test_trace_does_not_depend_on_the_basis_of_the_modes():
-    """x = [ωη; η̇] makes ½xᵀx the energy, so only an orthogonal change of coordinates is left, which no trace sees."""
+def test_trace_is_that_of_any_other_coordinates_of_the_same_modes():
+    """Mixed modal coordinates q = V z, energies from the blade's own M and K, SciPy's equation: tr(P Wₑ⁻¹), ½xᵀWₑx the energy."""
     problem = PlacementProblem.of(blade_config(), "actuators")
-    plant = build_plant(problem.configuration(problem.bounds.uniform()))
-    turn = np.linalg.qr(np.random.default_rng(0).standard_normal((22, 22)))[0]
-    P, _ = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
-    turned, _ = regulator(turn @ plant.A @ turn.T, turn @ plant.B, plant.state_weight, plant.input_weight)
-    assert np.trace(turned) == pytest.approx(np.trace(P), rel=1e-9)
+    layout = problem.bounds.uniform()
+    config = problem.configuration(layout)
+    beam = build_beam(config)
+    stiffness = beam.matrices.stiffness(config.speed)
+    squares, shapes = eigh(stiffness, beam.matrices.mass, subset_by_index=(0, config.modes - 1))
+    mixed = shapes @ np.random.default_rng(0).standard_normal((config.modes, config.modes))
+    mass, modal_stiffness, coupling = (
+        mixed.T @ each @ mixed for each in (beam.matrices.mass, stiffness, config.speed * beam.matrices.gyroscopic)
+    )
+    to_modes = shapes.T @ beam.matrices.mass @ mixed
+    damping = coupling + to_modes.T @ np.diag(2.0 * config.damping_ratio * np.sqrt(squares)) @ to_modes
+    forces = actuation(beam, config.patches)
+    still, same = np.zeros_like(mass), np.eye(len(mass))
+    A = np.block([[still, same], [-np.linalg.solve(mass, modal_stiffness), -np.linalg.solve(mass, damping)]])
+    B = np.vstack([np.zeros((len(mass), forces.shape[1])), np.linalg.solve(mass, mixed.T @ forces)])
+    energy = np.block([[modal_stiffness, still], [still, mass]])
+    stored = forces.T @ np.linalg.solve(stiffness, forces)
+    effort = config.effort_weight * (stored + 1e-6 * np.trace(stored) / len(stored) * np.eye(len(stored)))
+    P = solve_continuous_are(A, 1e3 * B, 0.25 * (energy + energy.T), 5e5 * (effort + effort.T))  # kilovolts scale better
+    assert problem.cost(layout[None])[0] == pytest.approx(np.trace(np.linalg.solve(energy, P)), rel=1e-6)
 
 
-def test_trace_over_modes_is_the_mean_cost_of_a_joule():
-    """Free response under the regulator from random states of 1 J, cost by x₀ᵀPx₀: the mean over all directions is tr(P)/r."""
+def test_trace_over_modes_is_the_mean_cost_of_a_joule_in_the_free_response():
+    """Released with 1 J along each of the 2r states in turn, with u = −Kx: the mean of ∫(½xᵀx + uᵀRu)dt is tr(P)/r."""
     problem = PlacementProblem.of(blade_config(), "actuators")
-    plant = build_plant(problem.configuration(problem.bounds.uniform()))
-    P, _ = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
-    directions = np.random.default_rng(0).standard_normal((200_000, 22))
-    states = np.sqrt(2.0) * directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    costs = np.einsum("ki,ij,kj->k", states, P, states)
-    assert costs.mean() == pytest.approx(np.trace(P) / 11, rel=0.01)
+    layout = problem.bounds.uniform()
+    plant = build_plant(problem.configuration(layout))
+    _, gain = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
+    interval, duration = 2.5e-4, 10.0
+    step = expm((plant.A - plant.B @ gain) * interval)
+    states = np.sqrt(2.0) * np.eye(len(plant.A))
+    rates = []
+    for _ in range(round(duration / interval) + 1):
+        voltages = gain @ states
+        rates.append(0.5 * np.sum(states**2) + np.sum(voltages * (plant.input_weight @ voltages)))
+        states = step @ states
+    assert rates[-1] < 1e-3 * rates[0]
+    mean_cost = simpson(rates, dx=interval) / len(plant.A)
+    assert mean_cost == pytest.approx(problem.cost(layout[None])[0] / len(plant.natural_frequencies), rel=1e-4)
 
 
 def test_more_actuators_among_the_same_cost_no_more():

@@ -7,7 +7,7 @@ import pytest
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 
 
 @pytest.fixture(scope="module")

@@ -49,12 +49,3 @@ def test_held_white_load_keeps_the_intensity_of_the_continuous_one(plant):
 
 def test_cost_of_an_interval_is_never_negative(plant):
     assert np.linalg.eigvalsh(sample(plant).cost).min() > -1e-15
-
-
-def test_python_control_simulates_the_same_step_response(plant):
-    control = pytest.importorskip("control")
-    system = control.sample_system(plant.to_control(), plant.control_interval, method="zoh")
-    held = sample(plant)
-    assert pytest.approx(held.A, abs=1e-10) == system.A
-    assert system.B[:, : plant.B.shape[1]] == pytest.approx(held.B, abs=1e-12)
-    assert system.input_labels[-2:] == ["load_lag", "load_flap"]

@@ -10,7 +10,7 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from train.benchmark import benchmark
 from train.benchmark.entrants.entrants import agents
 from train.benchmark.targets import findings
@@ -272,5 +272,3 @@ def test_processes_side_by_side_give_the_same_numbers(finished, tmp_path):
     for row in beside.rows:
         for name, estimate in table.row(row.scenario, row.controller).estimates.items():
             assert row.estimates[name].value == pytest.approx(estimate.value, rel=1e-9, abs=1e-12), name
-    with pytest.raises(ValueError, match="controller 'mine' cannot be sent to another process: take jobs=1"):
-        benchmark({"mine": type("Local", (Still,), {})()}, jobs=2, **SMALL)

@@ -16,6 +16,7 @@ from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import build_beam, build_plant
 from beamenv.blade.presets import THESIS
 from beamenv.plant.plant import drive_limit, sample
+from beamenv.plant.poles import poles_of_sampled
 from beamenv.scenarios.load_cases import static_deflection
 from train.cli.app import app as command
 
@@ -26,7 +27,7 @@ from train.explore import Settings, serve, view  # noqa: E402 - they need the pa
 from train.explore.app import create_app, redraw  # noqa: E402
 from train.explore.blade import CAMPBELL_SPEEDS, built  # noqa: E402
 from train.explore.layout import RANGES  # noqa: E402
-from train.explore.loops import poles, powers, step_responses, under_lqg  # noqa: E402
+from train.explore.loops import powers, step_responses, under_lqg  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 START = {name: entry.value for name, entry in RANGES.items()} | {"load": "flap"}
@@ -94,7 +95,7 @@ def test_lqg_damps_every_mode_more(thesis):
 
 def test_poles_of_regulator_and_filter_are_those_of_the_loop(plant, design):
     held, K, L = design
-    parts = [poles(matrix, held.interval) for matrix in (held.A - held.B @ K, held.A - held.A @ L @ held.C)]
+    parts = [poles_of_sampled(matrix, held.interval) for matrix in (held.A - held.B @ K, held.A - held.A @ L @ held.C)]
     whole = closed_loop_poles(plant, lqg(plant))
     for pole in np.concatenate(parts):
         assert np.abs(whole - pole).min() < 1e-6 * abs(pole)

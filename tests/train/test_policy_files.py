@@ -8,7 +8,7 @@ import pytest
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy, save_policy
 

@@ -75,3 +75,10 @@ def test_a_file_in_the_folder_s_place_is_told_before_work_begins(tmp_path):
     (tmp_path / "note").write_text("")
     with pytest.raises(ValueError, match="folder = .*note' must be a folder"):
         check_folder(tmp_path / "note")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions are POSIX's")
+def test_a_file_may_be_read_by_whom_the_umask_lets(tmp_path):
+    write_whole(tmp_path / "page.html", "")
+    (tmp_path / "plain").write_text("")
+    assert (tmp_path / "page.html").stat().st_mode == (tmp_path / "plain").stat().st_mode

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Callable, Mapping, Sequence
-from importlib import metadata
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +17,9 @@ from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import check_folder
 from train.shared.held_out import held_out
+from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
-
-PACKAGES = ("numpy", "scipy", "gymnasium", "control", "torch", "stable-baselines3", "sb3-contrib", "daqp")
 
 
 def benchmark(
@@ -124,22 +120,11 @@ def configuration(settings: Sequence[Setting], entered: Sequence[Entrant]) -> di
     }
 
 
-def versions() -> dict[str, str]:
-    """Of beamenv, Python, the machine and the packages that are installed."""
-    found = {name: metadata.version(name) for name in PACKAGES if find_spec(name.replace("-", "_"))}
-    return {
-        "beamenv": beamenv.__version__,
-        "Python": platform.python_version(),
-        "platform": f"{platform.system()} {platform.machine()}",
-        **found,
-    }
-
-
 def write_all(folder: Path, table: BenchmarkTable) -> None:
     """Tables, heat map and page."""
     from train.benchmark.showing.heat_map import heat_map
     from train.benchmark.showing.page import write_report
-    from train.comparison.figures import save
+    from train.figures.paper import save
 
     write_files(folder, table)
     save(heat_map(table), folder / "heat_map.png")

@@ -6,7 +6,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +17,16 @@ import beamenv
 from baselines import EpisodeMetrics, Episodes, no_control, roll_out
 from baselines.evaluation.metrics import finite, measure, settling_band
 from beamenv.scenarios.scenario import Scenario
-from train.benchmark.entrants.sources import Source, digest
+from train.benchmark.entrants.sources import Source
+from train.shared.digests import CONTROLLERS, digest, source_digest
 from train.shared.files import write_json
 from train.shared.held_out import held_out
+from train.shared.versions import installed_version
 
 Array = NDArray[np.float64]
+
+DEPENDS_ON = (*CONTROLLERS, __name__, "train.benchmark.entrants.models", "train.shared.held_out")
+"""Modules that decide the numbers of a cell, besides the controller's own file."""
 
 SERIES = tuple(each.name for each in fields(EpisodeMetrics))
 
@@ -130,17 +134,7 @@ def _sentence(error: Exception) -> str:
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
     """Of the code that decides what a controller does and how it is judged, and of NumPy and SciPy."""
-    code = [path for package in ("beamenv", "baselines") for path in Path(str(files(package))).rglob("*.py")]
-    here = Path(__file__).parent
-    code += [here / "cells.py", here / "models.py", *here.parent.glob("*polic*.py")]
-    versions = [_version(name).encode() for name in ("numpy", "scipy")]
-    return digest(*(path.read_bytes() for path in sorted(code)), *versions)
-
-
-def _version(name: str) -> str:
-    from importlib.metadata import version
-
-    return version(name)
+    return digest(source_digest(DEPENDS_ON).encode(), *(installed_version(name).encode() for name in ("numpy", "scipy")))
 
 
 def write_cell(folder: Path, job: Job, cell: Cell) -> None:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import pickle
+import os
 import signal
-from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+import threading
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
+from contextlib import contextmanager
+from typing import Any
+
+import cloudpickle
 
 from train.benchmark.cells import Cell, Job, measured
 from train.benchmark.entrants.sources import Source
-from train.shared.threads import one_thread_each
+from train.shared.threads import ONE_THREAD
 
 
 def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], None]) -> None:
@@ -24,33 +29,55 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
         for job in jobs:
             finished(job, measured(job))
         return
-    _check_that_they_travel(jobs)
-    with one_thread_each(), _pool(min(processes, len(jobs))) as pool:
+    check_portable(jobs)
+    from joblib.externals.loky import as_completed
+
+    with workers(min(processes, len(jobs))) as pool:
         futures = {pool.submit(measured, job): job for job in jobs}
-        try:
-            for future in as_completed(futures):
-                finished(futures[future], future.result())
-        except BrokenProcessPool:
-            raise ChildProcessError("a process died: what was finished is kept, and the same command goes on.") from None
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        for future in as_completed(futures):
+            finished(futures[future], future.result())
 
 
-def _pool(processes: int) -> ProcessPoolExecutor:
-    """Fresh interpreters, which Ctrl-C ends without a word: what it means is said by the process that started them."""
-    return ProcessPoolExecutor(processes, get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_DFL))
+@contextmanager
+def workers(processes: int) -> Iterator[Any]:
+    """Fresh interpreters of joblib's, on one thread each, that end with this block or with this process, whichever is first."""
+    from joblib.externals.loky import ProcessPoolExecutor  # takes a moment, and one process alone does without
+
+    pool = ProcessPoolExecutor(processes, initializer=prepare_worker, initargs=(os.getpid(),), env=ONE_THREAD)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "A worker stopped", UserWarning)  # one that outgrew its memory, and was replaced
+            yield pool
+    except BrokenProcessPool:
+        raise ChildProcessError("a worker process died: what was finished is kept, and the same command resumes.") from None
+    finally:
+        pool.shutdown(wait=True, kill_workers=True)
 
 
-def _check_that_they_travel(jobs: Sequence[Job]) -> None:
+def prepare_worker(parent: int) -> None:
+    """Leave Ctrl-C to the parent process, and end when it does, however it does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    if os.name == "posix":  # elsewhere the identity of a parent outlives it
+        threading.Thread(target=watch, daemon=True).start()
+
+
+def check_portable(jobs: Sequence[Job]) -> None:
+    """``ValueError`` names a controller that cannot be sent to another process, say one that holds an open file."""
     for job in {job.controller: job for job in jobs}.values():
-        if not _travels(job.source):
+        if not is_portable(job.source):
             raise ValueError(f"controller {job.controller!r} cannot be sent to another process: take jobs=1.")
 
 
-def _travels(source: Source) -> bool:
+def is_portable(source: Source) -> bool:
+    """Whether another process can have it too."""
     try:
-        pickle.dumps(source)
-    except Exception:  # noqa: BLE001 - pickle raises whatever the object does
+        cloudpickle.dumps(source)
+    except Exception:  # noqa: BLE001 - pickling raises whatever the object does
         return False
     return True

@@ -114,7 +114,7 @@ def _show(table: BenchmarkTable, folder: Path) -> None:
 
 
 def _brief(row: Row | None) -> str:
-    from train.benchmark.showing.report import number
+    from train.shared.columns import number
 
     if row is None or not row.measured:
         return "–" if row is None else "✕"

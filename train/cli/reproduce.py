@@ -11,7 +11,8 @@ from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.report import html_page, markdown_page
-from train.reproduce.runner import Record, load, run, write
+from train.reproduce.runner import Record, load, run
+from train.shared.files import write_whole
 
 
 def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:
@@ -52,13 +53,13 @@ def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, rec
 def write_pages(output: Path, records: list[Record], docs: Path | None) -> None:
     """The page of everything that is finished in ``output``, in this run or before."""
     shown = with_earlier(output, records)
-    write(output / "report.html", html_page(shown, output).encode())
-    write(output / "report.md", markdown_page(shown).encode())
+    write_whole(output / "report.html", html_page(shown, output))
+    write_whole(output / "report.md", markdown_page(shown))
     if docs is not None:
-        write(docs / "thesis.md", markdown_page(shown, "figures").encode())
+        write_whole(docs / "thesis.md", markdown_page(shown, "figures"))
         for record in shown:
             if not record.error:
-                write(docs / "figures" / f"{record.name}.png", (output / f"{record.name}.png").read_bytes())
+                write_whole(docs / "figures" / f"{record.name}.png", (output / f"{record.name}.png").read_bytes())
 
 
 def with_earlier(output: Path, records: list[Record]) -> list[Record]:

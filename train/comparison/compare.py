@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.blade.files import to_dict
-from beamenv.plant.plant import Plant, fingerprint
+from beamenv.plant.fingerprint import fingerprint
+from beamenv.plant.plant import Plant
 from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
 from train.controllers.contenders import contender

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from baselines import Controller, Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.comparison.figures import clearest_episode
-from train.page import LearningCurves, PageContent, comparison_table, record_episode, write_page
+from train.comparison.table import COLUMNS, HEADINGS, caption, cells, ranked
+from train.page import Cell, LearningCurves, PageContent, Table, record_episode, write_page
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ def write_comparison_page(
     linear = {law.name: law for law in controllers.values() if isinstance(law, LinearController)}
     content = PageContent(
         title="Controllers compared on a rotating blade",
-        table=comparison_table(evaluations),
+        table=page_table(evaluations),
         episode=record_episode(configuration["comparison"]["environment"], seed, shown_pair(evaluations, controllers)),
         episode_note=f"Held-out episode of seed {seed}, whose load makes the tip swing most.",
         poles={name: closed_loop_poles(plant, law) for name, law in linear.items() if law.observes == "observation"},
@@ -45,9 +46,19 @@ def write_comparison_page(
     write_page(folder / "report.html", content)
 
 
+def page_table(evaluations: Sequence[Evaluation]) -> Table:
+    """Controllers, best first, to be sorted by a click."""
+    rows = []
+    for evaluation in ranked(evaluations):
+        name, *texts = cells(evaluation)
+        numbers = [getattr(evaluation, column.name).value for column in COLUMNS]
+        rows.append((Cell(name), *(Cell(text, number) for text, number in zip(texts, numbers, strict=True))))
+    return Table(HEADINGS, tuple(rows), caption(evaluations))
+
+
 def shown_pair(evaluations: Sequence[Evaluation], controllers: Mapping[str, Controller]) -> tuple[Controller, Controller]:
     """Best law with sensors and best agent, or no control, the first of ``controllers``, and the best law."""
-    ranked = sorted(zip(evaluations, controllers.values(), strict=True), key=lambda each: each[0].relative_cost.value)
-    laws = [law for _, law in ranked if isinstance(law, LinearController) and law.observes == "observation"]
-    agents = [law for _, law in ranked if not isinstance(law, LinearController)]
+    best = sorted(zip(evaluations, controllers.values(), strict=True), key=lambda each: each[0].relative_cost.value)
+    laws = [law for _, law in best if isinstance(law, LinearController) and law.observes == "observation"]
+    agents = [law for _, law in best if not isinstance(law, LinearController)]
     return (laws[0], agents[0]) if agents else (next(iter(controllers.values())), laws[0])

@@ -8,18 +8,20 @@ from pathlib import Path
 from rich.table import Table
 
 from baselines import Evaluation
+from train.shared import markdown
+from train.shared.columns import Column
 from train.shared.files import write_csv, write_whole
 
 COLUMNS = (
-    ("relative_cost", "J / J without control", 1.0, "{:.3f}"),
-    ("settling_time", "settling (5 %), s", 1.0, "{:.3f}"),
-    ("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
-    ("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
-    ("peak_voltage", "peak, V", 1.0, "{:.0f}"),
-    ("rms_voltage", "RMS, V", 1.0, "{:.0f}"),
-    ("saturation", "saturated, %", 100.0, "{:.1f}"),
+    Column("relative_cost", "J / J without control", 1.0, "{:.3f}", interval=True),
+    Column("settling_time", "settling (5 %), s", 1.0, "{:.3f}"),
+    Column("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
+    Column("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
+    Column("peak_voltage", "peak, V", 1.0, "{:.0f}"),
+    Column("rms_voltage", "RMS, V", 1.0, "{:.0f}"),
+    Column("saturation", "saturated, %", 100.0, "{:.1f}"),
 )
-"""Estimate, heading, factor from SI, format."""
+HEADINGS = ("controller", *(column.heading for column in COLUMNS))
 
 
 def ranked(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
@@ -28,15 +30,8 @@ def ranked(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
 
 
 def cells(evaluation: Evaluation) -> list[str]:
-    """Name, then every column; the cost with its interval."""
-    row = [evaluation.name]
-    for name, _, factor, pattern in COLUMNS:
-        estimate = getattr(evaluation, name)
-        text = pattern.format(factor * estimate.value)
-        if name == "relative_cost":
-            text += f" [{pattern.format(estimate.low)}, {pattern.format(estimate.high)}]"
-        row.append(text)
-    return row
+    """Name, then every column."""
+    return [evaluation.name, *(column.text(getattr(evaluation, column.name)) for column in COLUMNS)]
 
 
 def caption(evaluations: Sequence[Evaluation]) -> str:
@@ -50,20 +45,17 @@ def caption(evaluations: Sequence[Evaluation]) -> str:
     )
 
 
-def markdown(evaluations: Sequence[Evaluation]) -> str:
+def markdown_table(evaluations: Sequence[Evaluation]) -> str:
     """The table in Markdown, best first, with its caption."""
-    headings = ["controller", *(heading for _, heading, _, _ in COLUMNS)]
-    lines = [headings, ["---", *["---:"] * len(COLUMNS)], *(cells(evaluation) for evaluation in ranked(evaluations))]
-    table = "\n".join("| " + " | ".join(line) + " |" for line in lines)
-    return f"{table}\n\n{caption(evaluations)}\n"
+    rows = [cells(evaluation) for evaluation in ranked(evaluations)]
+    return f"{markdown.table(HEADINGS, rows, words=1)}\n\n{caption(evaluations)}\n"
 
 
 def screen_table(evaluations: Sequence[Evaluation]) -> Table:
     """The table for a terminal."""
     table = Table(title="Controllers compared", caption=caption(evaluations))
-    table.add_column("controller")
-    for _, heading, _, _ in COLUMNS:
-        table.add_column(heading, justify="right")
+    for heading in HEADINGS:
+        table.add_column(heading, justify="left" if heading == HEADINGS[0] else "right")
     for evaluation in ranked(evaluations):
         table.add_row(*cells(evaluation))
     return table
@@ -72,4 +64,4 @@ def screen_table(evaluations: Sequence[Evaluation]) -> Table:
 def write_tables(folder: Path, evaluations: Sequence[Evaluation]) -> None:
     """``table.csv``, in SI units with every interval, and ``table.md``."""
     write_csv(folder / "table.csv", [evaluation.row() for evaluation in ranked(evaluations)])
-    write_whole(folder / "table.md", markdown(evaluations))
+    write_whole(folder / "table.md", markdown_table(evaluations))

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from beamenv.plant.plant import Plant, fingerprint, normalised
+from beamenv.plant.fingerprint import fingerprint
+from beamenv.plant.plant import Plant, normalised
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
 from train.shared.files import write_json, write_whole

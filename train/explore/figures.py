@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from train.explore.blade import CAMPBELL_SPEEDS, HIGHEST_SPEED, MOTIONS, View
-from train.page.themes import DASHES, NEUTRAL, PALETTE
+from train.figures.palette import DASHES, NEUTRAL, PALETTE
 
 Array = NDArray[np.float64]
 Figure = dict[str, Any]

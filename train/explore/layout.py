@@ -13,7 +13,7 @@ from dash import dcc, html
 from beamenv.blade.presets import THESIS
 from beamenv.patches.layout import OUTERMOST
 from train.explore.blade import CAMPBELL_MODES, HIGHEST_SPEED, MOTIONS, STEP_LOAD, Settings
-from train.page.themes import PALETTE
+from train.figures.palette import PALETTE
 
 START = Settings()
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, SampledPlant
+from beamenv.plant.poles import damping_ratios, poles_of_sampled
 
 Array = NDArray[np.float64]
 
@@ -29,21 +30,10 @@ def damping(held: SampledPlant, K: Array, L: Array) -> Damping:
     free, controlled = held.A, held.A - held.B @ K
     error = held.A - held.A @ L @ held.C
     return Damping(
-        free=damping_ratios(poles(free, held.interval)),
-        controlled=damping_ratios(poles(controlled, held.interval)),
-        filter_rate=float(-poles(error, held.interval).real.max()),
+        free=damping_ratios(poles_of_sampled(free, held.interval)),
+        controlled=damping_ratios(poles_of_sampled(controlled, held.interval)),
+        filter_rate=float(-poles_of_sampled(error, held.interval).real.max()),
     )
-
-
-def poles(transition: Array, interval: float) -> NDArray[np.complex128]:
-    """Continuous equivalents log(z)/Δt (n,) of a sampled system's poles, rad/s, in ascending order of magnitude."""
-    found = np.log(np.linalg.eigvals(transition).astype(complex)) / interval
-    return found[np.argsort(np.abs(found))]
-
-
-def damping_ratios(pairs: NDArray[np.complex128]) -> Array:
-    """ζ = −Re s/|s| (r,) of 2r poles in ascending order of magnitude, so that conjugates are neighbours."""
-    return -pairs[::2].real / np.abs(pairs[::2])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

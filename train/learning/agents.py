@@ -19,7 +19,8 @@ from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings, RecurrentPPOT
 from train.learning.session import Course, follow
 from train.learning.through_plant.gradient import GradientSettings
 from train.learning.through_plant.resumable_gradient import ResumableGradientTraining
-from train.learning.training import Report, Training, one_torch_thread
+from train.learning.training import Report, Training
+from train.shared.threads import one_torch_thread
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import sha256
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from beamenv.plant.plant import fingerprint
+from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.named import NAMES
 from beamenv.task import Task
 from train.controllers.policies import Policy
@@ -21,16 +19,16 @@ from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
 from train.learning.scalars import Scalars
 from train.learning.session import Course, follow
-from train.learning.training import Progress, Report, Training, one_torch_thread
+from train.learning.training import Progress, Report, Training
 from train.shared.files import check_folder, write_csv
+from train.shared.threads import one_torch_thread
+from train.shared.versions import versions
 
 GENERALIST = "generalist"
 """In place of a scenario: all named ones, in one training."""
 
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
-
-LIBRARIES = ("numpy", "torch", "stable-baselines3", "sb3-contrib", "gymnasium")
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,8 +149,3 @@ def save_all(
         about = {**identity, "run": run, "updates": last.updates, "steps": last.steps, "seconds": round(journal.seconds, 1)}
         save_policy(policy, place, {**about, "versions": versions(), "plants": dict(plants)})
     return places
-
-
-def versions() -> dict[str, str]:
-    """Of Python and of the libraries that a training depends on."""
-    return {"python": platform.python_version(), **{library: version(library) for library in LIBRARIES}}

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-import torch
 
 from beamenv.simulation.blades import Blades
 from beamenv.task import Task
@@ -70,14 +68,3 @@ def uncontrolled_cost(task: Task, episodes: int = 512) -> float:
     if not cost > 0.0:
         raise ValueError("scenario leaves the blade at rest: there is nothing to learn in it.")
     return cost
-
-
-@contextmanager
-def one_torch_thread() -> Iterator[None]:
-    """These networks are so small that threads cost more than they gain, and on a busy machine a hundred times more."""
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(threads)

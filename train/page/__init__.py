@@ -4,7 +4,7 @@ from train.page.heat_map import HeatMap
 from train.page.page import PageContent, write_page
 from train.page.plots import LearningCurves
 from train.page.recording import RecordedEpisode, Recording, record, record_episode
-from train.page.table import Cell, Table, comparison_table
+from train.page.table import Cell, Table
 
 __all__ = [
     "Cell",
@@ -14,7 +14,6 @@ __all__ = [
     "RecordedEpisode",
     "Recording",
     "Table",
-    "comparison_table",
     "record",
     "record_episode",
     "write_page",

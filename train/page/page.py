@@ -12,7 +12,7 @@ import jinja2
 import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import NDArray
-from plotly.offline import get_plotlyjs
+from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
 from train.page.blade import blade_figures, frame_times, motions
 from train.page.heat_map import HeatMap, heat_map
@@ -100,7 +100,7 @@ def render(content: PageContent) -> str:
         plots=plots(content),
         themes=THEMES,
         templates=templates(),
-        versions=versions(),
+        versions={**versions(), "plotly.js": get_plotlyjs_version()},
         plotly_js=get_plotlyjs(),
     )
 

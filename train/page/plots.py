@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy.signal import periodogram
 
 from beamenv.blade.build import build_plant
+from train.figures.palette import DASHES, NEUTRAL, PALETTE
 from train.page.recording import RecordedEpisode, Recording
-from train.page.themes import DASHES, NEUTRAL, PALETTE
 
 Array = NDArray[np.float64]
 

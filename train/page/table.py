@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-
-from baselines import Evaluation
-from train.comparison.table import COLUMNS, caption, cells, ranked
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +26,3 @@ class Table:
         wrong = [row for row in self.rows if len(row) != len(self.headings)]
         if wrong:
             raise ValueError(f"rows has one of {len(wrong[0])} cells, but each must have {len(self.headings)}, one a heading.")
-
-
-def comparison_table(evaluations: Sequence[Evaluation]) -> Table:
-    """Controllers, best first, with the estimates of ``train.comparison.table``."""
-    rows = []
-    for evaluation in ranked(evaluations):
-        name, *texts = cells(evaluation)
-        numbers = [getattr(evaluation, column).value for column, *_ in COLUMNS]
-        rows.append((Cell(name), *(Cell(text, number) for text, number in zip(texts, numbers, strict=True))))
-    return Table(("controller", *(heading for _, heading, *_ in COLUMNS)), tuple(rows), caption(evaluations))

@@ -1,4 +1,4 @@
-"""The two themes of the page, and the colours of lines, which are legible in both."""
+"""The two themes of the page."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from types import MappingProxyType
 from typing import Any
 
 import plotly.io
+
+from train.figures.palette import PALETTE
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,22 +52,3 @@ THEMES = MappingProxyType(
         "dark": Theme("plotly_dark", paper="#10151b", panel="#181f27", ink="#e6eaef", faint="#98a4b1", grid="#2e3843"),
     }
 )
-
-PALETTE = ("#2f7fc2", "#d9601a", "#23945a", "#9a63c9", "#b8860b", "#d6428f")
-"""Contrast of at least 3 on both panels, as WCAG 2.1 (1.4.11) asks of lines."""
-NEUTRAL = "#7d8793"
-"""What is without control."""
-DASHES = ("solid", "dash", "dot", "dashdot")
-"""The second sign besides colour."""
-
-
-def contrast(one: str, other: str) -> float:
-    """Ratio of the luminances of two colours "#rrggbb", 1 to 21 (WCAG 2.1)."""
-    low, high = sorted(_luminance(colour) for colour in (one, other))
-    return (high + 0.05) / (low + 0.05)
-
-
-def _luminance(colour: str) -> float:
-    channels = [int(colour[start : start + 2], 16) / 255.0 for start in (1, 3, 5)]
-    linear = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in channels]
-    return sum(weight * value for weight, value in zip((0.2126, 0.7152, 0.0722), linear, strict=True))

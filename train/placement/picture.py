@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from train.comparison.figures import STYLE, VOLTAGE_LINES, save
+from train.figures.paper import STYLE, VOLTAGE_LINES, save
 from train.placement.placed import PlacedSide
 
 Array = NDArray[np.float64]

@@ -70,7 +70,8 @@ def place_sides(
 
 def placed_side(problem: Any, placement: Any) -> PlacedSide:
     """A placement with what it is compared with."""
-    from baselines.placement.cost.damping import damping_ratios, design_poles, open_loop_poles
+    from baselines.placement.cost.damping import design_poles, open_loop_poles
+    from beamenv.plant.poles import damping_ratios
 
     uniform = problem.bounds.uniform()
     return PlacedSide(

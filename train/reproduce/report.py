@@ -13,6 +13,7 @@ from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.runner import Record
+from train.shared import markdown
 
 TITLE = "The thesis, regenerated and judged"
 INTRODUCTION = (
@@ -44,12 +45,6 @@ class Markup:
     image: Callable[[str], str]
 
 
-def markdown_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A Markdown table."""
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines) + "\n"
-
-
 def html_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """An HTML table."""
     head = "".join(f"<th>{html.escape(cell)}</th>" for cell in header)
@@ -68,7 +63,7 @@ def markdown_page(records: Sequence[Record], pictures: str = ".") -> str:
     markup = Markup(
         heading=lambda level, text: f"{'#' * level} {text}\n",
         paragraph=lambda text: f"{text}\n",
-        table=markdown_table,
+        table=lambda header, rows: f"{markdown.table(header, rows)}\n",
         image=lambda name: f"![{name}]({pictures}/{name}.png)\n",
     )
     return "\n".join(page(records, markup))

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
 import json
-import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
-from importlib.resources import files
 from pathlib import Path
 
 from train.reproduce.drawing import curve_rows, draw
 from train.reproduce.judging.study import Outcome, Study
 from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
+from train.shared.digests import digest, source_digest
+from train.shared.files import write_whole
 
-FINGERPRINTED = ("beamenv", "baselines", "train.reproduce")
-SOURCES = (".py", ".csv", ".mplstyle")
+DEPENDS_ON = ("beamenv", "baselines", "train.reproduce")
+"""Packages that decide what a study finds and shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +72,8 @@ def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Recor
         return Record(
             study.name, time.perf_counter() - start, {}, error=f"{type(error).__name__}: {error}", fingerprint=fingerprint
         )
-    write(folder / f"{study.name}.csv", csv_text(outcome).encode())
-    write(folder / f"{study.name}.png", picture)
+    write_whole(folder / f"{study.name}.csv", csv_text(outcome))
+    write_whole(folder / f"{study.name}.png", picture)
     tabulated = study.name.startswith("table")
     record = Record(
         name=study.name,
@@ -85,7 +84,7 @@ def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Recor
         rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if tabulated else (),
         fingerprint=fingerprint,
     )
-    write(folder / f"{study.name}.json", json.dumps(asdict(record), ensure_ascii=False, indent=1).encode())
+    write_whole(folder / f"{study.name}.json", json.dumps(asdict(record), ensure_ascii=False, indent=1))
     return record
 
 
@@ -104,16 +103,7 @@ def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | No
 
 def source_fingerprint(model: Model) -> str:
     """A digest of the sources and data that results depend on, and of the model."""
-    digest = hashlib.sha256(repr(model).encode())
-    for package in FINGERPRINTED:
-        for content in sources(Path(str(files(package)))):
-            digest.update(content)
-    return digest.hexdigest()[:16]
-
-
-def sources(folder: Path) -> list[bytes]:
-    """The contents of all source and data files of a package, in order of their paths."""
-    return [path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in SOURCES]
+    return digest(repr(model).encode(), source_digest(DEPENDS_ON).encode())
 
 
 def csv_text(outcome: Outcome) -> str:
@@ -124,11 +114,3 @@ def csv_text(outcome: Outcome) -> str:
     writer.writerow(header)
     writer.writerows(rows)
     return buffer.getvalue()
-
-
-def write(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f"{path.name}.part")
-    partial.write_bytes(content)
-    os.replace(partial, path)

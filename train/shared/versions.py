@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import platform
 from importlib import metadata
-from importlib.util import find_spec
-
-import plotly.offline
 
 import beamenv
 
-PACKAGES = ("numpy", "scipy", "gymnasium", "control", "torch", "stable-baselines3", "plotly")
+PACKAGES = ("numpy", "scipy", "gymnasium", "control", "torch", "stable-baselines3", "sb3-contrib", "daqp", "plotly")
 
 
 def versions() -> dict[str, str]:
-    """beamenv, Python, system and machine, and those of the packages that are installed."""
+    """Of beamenv, Python, system and machine, and those of ``PACKAGES`` that are installed. None of them is imported."""
     own = {
         "beamenv": beamenv.__version__,
         "Python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
     }
-    installed = {name: metadata.version(name) for name in PACKAGES if find_spec(name.replace("-", "_"))}
-    return {**own, **installed, "plotly.js": plotly.offline.get_plotlyjs_version()}
+    return own | {name: version for name in PACKAGES if (version := installed_version(name))}
+
+
+def installed_version(package: str) -> str:
+    """Version of an installed package by its name on the package index; empty if it is not installed."""
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return ""

@@ -1,4 +1,4 @@
-"""What a layout buys: poles and damping ratios of the regulator, or of the filter, that the trace belongs to."""
+"""What a layout buys: poles of the regulator, or of the filter, that the trace belongs to."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from baselines.placement.cost.problem import PlacementProblem
 from baselines.placement.cost.riccati import solve_riccati
-
-Array = NDArray[np.float64]
 
 
 def design_poles(problem: PlacementProblem, positions: ArrayLike) -> NDArray[np.complex128]:
@@ -21,13 +19,6 @@ def design_poles(problem: PlacementProblem, positions: ArrayLike) -> NDArray[np.
 def open_loop_poles(problem: PlacementProblem, positions: ArrayLike) -> NDArray[np.complex128]:
     """Poles (2r,), rad/s, of the blade left alone, slowest first."""
     return _slowest_first(np.linalg.eigvals(problem.reduced(np.asarray(positions, dtype=float)[None]).dynamics[0]))
-
-
-def damping_ratios(poles: NDArray[np.complex128]) -> Array:
-    """−Re λ/|λ| of each pair of poles (upper half plane) and each real pole, by ascending |λ|."""
-    upper = poles[poles.imag >= 0.0]
-    upper = upper[np.argsort(np.abs(upper))]
-    return np.asarray(-upper.real / np.abs(upper))
 
 
 def _slowest_first(poles: NDArray[np.complex128]) -> NDArray[np.complex128]:

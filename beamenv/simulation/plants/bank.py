@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, normalised
+from beamenv.plant.read_only import ReadOnly, read_only
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Bank:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Bank(ReadOnly):
     """K plants of n states with the same drive and data acquisition; voltages and readings normalised to these.
 
     Every plant has energy coordinates of its own: ½ xᵀx is the energy, in joules, whichever it is.
@@ -44,6 +45,14 @@ class Bank:
     """(n,): what a blade's state at the start of an episode is increased by."""
     runs: bool = False
     """Whether the plants follow one another, one each control interval, instead of being drawn."""
+
+    def __post_init__(self) -> None:
+        ReadOnly.__post_init__(self)
+        object.__setattr__(self, "operators", replace(self.operators, fused=read_only(self.operators.fused)))
+
+    def __repr__(self) -> str:
+        plants = "1 plant" if len(self) == 1 else f"{len(self)} plants"
+        return f"Bank({plants} at {self.speeds.min():.4g} … {self.speeds.max():.4g} rad/s; {self.plant.sizes})"
 
     def __len__(self) -> int:
         return len(self.speeds)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import inspect
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from beamenv.task import Task
 from train.benchmark.entrants.models import fitted, load_model
 from train.controllers.contenders import Contender
 from train.controllers.policy_files import load_policy
+from train.shared.digests import digest
 
 
 class Source(Protocol):
@@ -85,11 +85,3 @@ class Given:
     def fingerprint(self) -> str:
         """Empty: what an object will do nobody knows beforehand, so its cells are measured anew."""
         return ""
-
-
-def digest(*contents: bytes) -> str:
-    """Sixteen hexadecimal digits."""
-    total = hashlib.sha256()
-    for content in contents:
-        total.update(len(content).to_bytes(8, "big") + content)
-    return total.hexdigest()[:16]

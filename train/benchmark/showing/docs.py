@@ -8,7 +8,7 @@ from pathlib import Path
 from train.benchmark.showing.heat_map import heat_map
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import BenchmarkTable
-from train.comparison.figures import save
+from train.figures.paper import save
 from train.shared.files import write_whole
 
 INTRODUCTION = """\

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from train.benchmark.showing.report import number, share
 from train.benchmark.table import BenchmarkTable, Row
-from train.comparison.figures import STYLE
+from train.figures.paper import STYLE
+from train.shared.columns import number, share
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from train.benchmark.showing.episode import shown_episode
 from train.benchmark.showing.heat_map import columns, relative_costs, unstable_shares
-from train.benchmark.showing.report import COLUMNS, legend, text
+from train.benchmark.showing.report import COLUMNS, legend
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
@@ -50,11 +50,11 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
 
 def page_table(table: BenchmarkTable) -> Table:
     """All rows, to be sorted by a click."""
-    headings = ("scenario", "controller", "kind", "runs", *(heading for _, heading, *_ in COLUMNS))
+    headings = ("scenario", "controller", "kind", "runs", *(column.heading for column in COLUMNS))
     return Table(headings, tuple(_cells(row) for row in table.rows), legend(table))
 
 
 def _cells(row: Row) -> tuple[Cell, ...]:
     about = (Cell(row.scenario), Cell(row.controller), Cell(row.kind), Cell(str(row.runs), row.runs))
-    found = ((row.estimates.get(name), factor, form, wide) for name, _, factor, form, wide in COLUMNS)
-    return about + tuple(Cell(text(each, *how), None if each is None else each.value) for each, *how in found)
+    found = [(column, row.estimates.get(column.name)) for column in COLUMNS]
+    return about + tuple(Cell(column.text(each), None if each is None else each.value) for column, each in found)

@@ -6,28 +6,29 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from baselines import Estimate
 from baselines.evaluation.metrics import finite
 from train.benchmark.statistics import CONFIDENCE, RESAMPLES
 from train.benchmark.table import UNSTABLE, BenchmarkTable, Row
 from train.benchmark.targets import findings
+from train.shared.columns import Column, number, share
 from train.shared.files import write_csv, write_json, write_whole
+from train.shared.markdown import escaped
+from train.shared.markdown import table as markdown_table
 
 COLUMNS = (
-    ("relative_cost", "J / J₀", 1.0, "{:.3f}", True),
-    ("relative_cost_iqm", "IQM of J / J₀", 1.0, "{:.3f}", True),
-    ("difference_to_lqg", "J / J₀ less LQG's", 1.0, "{:+.3f}", True),
-    ("improvement_on_lqg", "P(J < LQG's)", 1.0, "{:.2f}", True),
-    ("unstable", "unstable, %", 100.0, "{:.0f}", False),
-    ("settling_time", "settling, s", 1.0, "{:.3f}", False),
-    ("settled", "settled, %", 100.0, "{:.0f}", False),
-    ("peak_tip", "peak tip, µm", 1e6, "{:.0f}", False),
-    ("rms_tip", "RMS tip, µm", 1e6, "{:.1f}", False),
-    ("peak_voltage", "peak, V", 1.0, "{:.0f}", False),
-    ("effort", "effort, mJ s", 1e3, "{:.3g}", False),
-    ("saturation", "saturated, %", 100.0, "{:.1f}", False),
+    Column("relative_cost", "J / J₀", 1.0, "{:.3f}", interval=True),
+    Column("relative_cost_iqm", "IQM of J / J₀", 1.0, "{:.3f}", interval=True),
+    Column("difference_to_lqg", "J / J₀ less LQG's", 1.0, "{:+.3f}", interval=True),
+    Column("improvement_on_lqg", "P(J < LQG's)", 1.0, "{:.2f}", interval=True),
+    Column("unstable", "unstable, %", 100.0, "{:.0f}"),
+    Column("settling_time", "settling, s", 1.0, "{:.3f}"),
+    Column("settled", "settled, %", 100.0, "{:.0f}"),
+    Column("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
+    Column("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
+    Column("peak_voltage", "peak, V", 1.0, "{:.0f}"),
+    Column("effort", "effort, mJ s", 1e3, "{:.3g}"),
+    Column("saturation", "saturated, %", 100.0, "{:.1f}"),
 )
-"""Estimate, heading, factor from SI, format, whether its interval is shown."""
 
 
 def write_files(folder: Path, table: BenchmarkTable) -> None:
@@ -64,9 +65,9 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
 def markdown(table: BenchmarkTable) -> str:
     """Findings, overview, a table for each scenario, what went wrong, and how it was made."""
     parts = [found(table), overview(table), legend(table)]
-    parts += [f"### {name}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
+    parts += [f"### {escaped(name)}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
     if table.sentences:
-        lines = "\n".join(f"- {where}: {sentence}" for where, sentence in table.sentences.items())
+        lines = "\n".join(f"- {escaped(where)}: {escaped(sentence)}" for where, sentence in table.sentences.items())
         parts.append(f"### What went wrong\n\n{lines}")
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -74,17 +75,17 @@ def markdown(table: BenchmarkTable) -> str:
 def found(table: BenchmarkTable) -> str:
     """The findings as a list."""
     verdict = {True: " **Met.**", False: " **Missed.**", None: ""}
-    return "\n".join(f"- {each.sentence}{verdict[each.met]}" for each in findings(table))
+    return "\n".join(f"- {escaped(each.sentence)}{verdict[each.met]}" for each in findings(table))
 
 
 def overview(table: BenchmarkTable) -> str:
     """J / J₀ of every controller in every scenario; the share of unstable episodes where there are any."""
-    rows = [["controller", "kind", *table.scenarios], ["---", "---", *["---:"] * len(table.scenarios)]]
+    rows = []
     for name in table.controllers:
         found = [table.row(scenario, name) for scenario in table.scenarios]
         kind = next(row.kind for row in found if row is not None)
         rows.append([name, kind, *(overview_cell(row) for row in found)])
-    return lines(rows)
+    return markdown_table(["controller", "kind", *table.scenarios], rows, words=2)
 
 
 def overview_cell(row: Row | None) -> str:
@@ -97,39 +98,13 @@ def overview_cell(row: Row | None) -> str:
     return number(row.estimates["relative_cost"].value, "{:.3f}") + (f" ({share(unstable)} unstable)" if unstable else "")
 
 
-def share(value: float) -> str:
-    """In per cent, never rounded to none or all."""
-    return "< 1 %" if 0.0 < value < 0.01 else "> 99 %" if 0.99 < value < 1.0 else f"{100.0 * value:.0f} %"
-
-
 def scenario_table(rows: Sequence[Row]) -> str:
     """Every estimate, the least J first."""
-    headings = ["controller", "kind", "runs", *(heading for _, heading, *_ in COLUMNS)]
-    table = [headings, ["---", "---", *["---:"] * (len(headings) - 2)]]
+    lines = []
     for row in sorted(rows, key=lambda each: each.mean_cost):
-        cells = [text(row.estimates.get(name), factor, form, wide) for name, _, factor, form, wide in COLUMNS]
-        table.append([row.controller, row.kind, str(row.runs), *cells])
-    return lines(table)
-
-
-def text(estimate: Estimate | None, factor: float, form: str, wide: bool) -> str:
-    """A value, with its interval if that is to be shown."""
-    if estimate is None:
-        return "–"
-    value, low, high = (number(factor * each, form) for each in (estimate.value, estimate.low, estimate.high))
-    return f"{value} [{low}, {high}]" if wide else value
-
-
-def number(value: float, form: str) -> str:
-    """Three digits at most where it is large; ∞ for a blade that broke."""
-    if abs(value) == float("inf"):
-        return "∞" if value > 0 else "−∞"
-    return f"{value:.3g}" if abs(value) >= 1e3 and form != "{:.0f}" else form.format(value)
-
-
-def lines(rows: Sequence[Sequence[str]]) -> str:
-    """Rows of a Markdown table."""
-    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+        cells = [column.text(row.estimates.get(column.name)) for column in COLUMNS]
+        lines.append([row.controller, row.kind, str(row.runs), *cells])
+    return markdown_table(["controller", "kind", "runs", *(column.heading for column in COLUMNS)], lines, words=2)
 
 
 def legend(table: BenchmarkTable) -> str:

@@ -157,7 +157,7 @@ def batch_of(environment: Mapping[str, Any] | Task, count: int) -> Any:
     keywords: Mapping[str, Any] = {} if isinstance(environment, Task) else environment
     batch: Any = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **keywords)
     if task is not None:
-        batch.unwrapped.adopt([task])
+        batch.unwrapped.set_task([task])
     return batch
 
 

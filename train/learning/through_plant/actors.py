@@ -40,7 +40,7 @@ class Actor(nn.Module):
         limits = normalised(plant).voltage_limits
         self.sensors, self.voltages = len(plant.C), limits.shape[1]
         self.settings, self.runs = settings, runs
-        self.register_buffer("limits", torch.as_tensor(limits, dtype=torch.float32))
+        self.register_buffer("limits", torch.tensor(limits, dtype=torch.float32))
 
     def start(self, count: int) -> Memory:
         """Nothing remembered."""
@@ -139,7 +139,7 @@ class ResidualActor(Actor):
     def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase) -> None:
         super().__init__(plant, settings, runs)
         for name, matrix in base._asdict().items():
-            self.register_buffer(name, torch.as_tensor(matrix, dtype=torch.float32))
+            self.register_buffer(name, torch.tensor(matrix, dtype=torch.float32))
         self.unit = GatedUnit(runs, self.sensors + 2 * self.voltages, 2 * self.voltages, settings)
 
     @property

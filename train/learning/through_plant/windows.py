@@ -130,4 +130,4 @@ class Windows:
 
 
 def _float(array: Any) -> Tensor:
-    return torch.as_tensor(np.ascontiguousarray(array), dtype=torch.float32)
+    return torch.tensor(np.ascontiguousarray(array), dtype=torch.float32)  # a copy: plants are read-only

@@ -1,0 +1,65 @@
+"""Plants as python-control has systems, and back. Wants ``pip install control``, which is imported here alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import control
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant.plant import Plant, SampledPlant
+
+Array = NDArray[np.float64]
+
+LOADS = ["load_lag", "load_flap"]
+TIP = ["tip_lag", "tip_flap"]
+
+
+def plant_to_control(plant: Plant) -> control.StateSpace:
+    """The plant from [voltages, line loads] to [currents, tip displacements]."""
+    inputs, outputs = np.hstack([plant.B, plant.disturbance_input]), np.vstack([plant.C, plant.tip_displacement])
+    feedthrough = np.zeros((len(outputs), inputs.shape[1]))
+    feedthrough[: len(plant.C), : plant.B.shape[1]] = plant.D
+    names = {"inputs": _numbered("voltage", plant.B.shape[1]) + LOADS, "outputs": _numbered("current", len(plant.C)) + TIP}
+    return control.ss(plant.A, inputs, outputs, feedthrough, **names)
+
+
+def sampled_to_control(held: SampledPlant) -> control.StateSpace:
+    """The sampled plant from [voltages, line loads], held over each interval, to currents."""
+    feedthrough = np.hstack([held.D, np.zeros((len(held.C), held.disturbance_input.shape[1]))])
+    names = {"inputs": _numbered("voltage", held.B.shape[1]) + LOADS, "outputs": _numbered("current", len(held.C))}
+    return control.ss(held.A, np.hstack([held.B, held.disturbance_input]), held.C, feedthrough, dt=held.interval, **names)
+
+
+def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) -> Plant:
+    """The plant whose system ``plant_to_control`` would give: dynamics from ``system``, all else from ``like`` and ``changes``.
+
+    ``system`` has the inputs and outputs of ``like.to_control()`` and its states in energy coordinates, ½ xᵀx being joules; if it
+    has another number of them than ``like``, ``changes`` must give the ``strain`` rows (k, n), and the cost is again the energy.
+    Natural frequencies are taken to be the magnitudes of the poles, one of each pair. Raises ``ValueError`` for a sampled system,
+    other numbers of inputs or outputs, a feedthrough that is not from voltages to currents, or strain rows of another length.
+    """
+    (n, m), p = like.B.shape, len(like.C)
+    if system.dt not in (None, 0):
+        raise ValueError(f"system has dt = {system.dt!r}, but must be in continuous time.")
+    if (system.ninputs, system.noutputs) != (m + 2, p + 2):
+        raise ValueError(
+            f"system has {system.ninputs} inputs and {system.noutputs} outputs, but must have {m + 2}, voltages and two line "
+            f"loads, and {p + 2}, currents and two tip displacements."
+        )
+    A, B, C, D = (np.array(part, dtype=np.float64) for part in (system.A, system.B, system.C, system.D))
+    if np.any(D[p:]) or np.any(D[:, m:]):
+        raise ValueError("system has a feedthrough from line loads or to tip displacements, but must have none.")
+    strain = np.asarray(changes.pop("strain", like.strain), dtype=np.float64)
+    if strain.ndim != 2 or strain.shape[1] != len(A):
+        raise ValueError(f"strain has shape {strain.shape}, but must have rows of {len(A)} numbers, one for each state of system.")
+    own = {} if len(A) == n else {"state_weight": 0.5 * np.eye(len(A))}
+    parts = {"A": A, "B": B[:, :m], "C": C[:p], "D": D[:p, :m], "disturbance_input": B[:, m:], "tip_displacement": C[p:]}
+    frequencies = np.sort(np.abs(np.linalg.eigvals(A)))[::2]
+    return replace(like, **{**parts, **own, "strain": strain, "natural_frequencies": frequencies, **changes})
+
+
+def _numbered(name: str, count: int) -> list[str]:
+    return [f"{name}{k}" for k in range(count)]

@@ -1,0 +1,78 @@
+"""Plants are shared, so nobody can write to them; and each says in one line what it is."""
+
+import copy
+import pickle
+import re
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from beamenv import RotatingBeamEnv
+from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.presets import blade_config
+from beamenv.plant.plant import sample
+from beamenv.plant.reduction import truncate
+from beamenv.simulation.kernel import Operators
+from beamenv.task import resolve_task
+
+CONFIG = blade_config()
+
+
+def bank_of(scenario):
+    return resolve_task("thesis", None, None, None, scenario, 0.01, False).bank
+
+
+SHARED = {
+    "plant": lambda: build_plant(CONFIG),
+    "sampled plant": lambda: sample(build_plant(CONFIG)),
+    "modal model": lambda: truncate(build_beam(CONFIG), 200.0, 11),
+    "bank of one": lambda: bank_of("default"),
+    "bank": lambda: bank_of({"preset": "off-model", "plants": {"bank": 3}}),
+    "run-up": lambda: bank_of("spin-up"),
+}
+
+
+def arrays_of(shared):
+    values = [getattr(shared, each.name) for each in fields(shared)]
+    values += [value.fused for value in values if isinstance(value, Operators)]
+    return [value for value in values if isinstance(value, np.ndarray)]
+
+
+@pytest.mark.parametrize("kind", SHARED)
+@pytest.mark.parametrize(
+    "through", [lambda shared: shared, copy.deepcopy, lambda shared: pickle.loads(pickle.dumps(shared)), replace]
+)
+def test_no_array_of_what_is_shared_can_be_written_to(kind, through):
+    shared = through(SHARED[kind]())
+    assert len(arrays_of(shared)) >= 3
+    for values in arrays_of(shared):
+        with pytest.raises(ValueError, match="read-only"):
+            values[...] = 0.0
+
+
+def test_nobody_changes_the_blade_under_an_environment():
+    env = RotatingBeamEnv()
+    with pytest.raises(ValueError, match="read-only"):
+        env.plant.B[...] *= 3.0
+
+
+def test_a_plant_keeps_its_numbers_when_the_array_it_was_made_of_changes():
+    doubled = 2.0 * build_plant(CONFIG).C
+    plant = replace(build_plant(CONFIG), C=doubled)
+    before = doubled.copy()
+    doubled[:] = 0.0
+    np.testing.assert_array_equal(plant.C, before)
+
+
+@pytest.mark.parametrize("kind", ["plant", "sampled plant", "bank of one", "bank", "run-up"])
+def test_each_says_in_one_line_what_it_is(kind):
+    told = repr(SHARED[kind]())
+    assert "\n" not in told and len(told) < 120
+    assert re.search(r"22 states, 4 voltages, 4 sensors; .*rad/s; 0\.5 ms", told)
+
+
+def test_a_plant_tells_its_first_and_last_frequency_its_clock_and_its_limits():
+    plant = replace(build_plant(CONFIG), voltage_limits=np.array([[-500.0] * 4, [1500.0] * 4]))
+    first, last = plant.natural_frequencies[[0, -1]]
+    assert repr(plant) == f"Plant(22 states, 4 voltages, 4 sensors; {first:.4g} … {last:.4g} rad/s; 0.5 ms; -500 … 1500 V)"

@@ -1,0 +1,1 @@
+"""What figures consist of, and how they are drawn on paper and on the screen."""

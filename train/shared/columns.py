@@ -1,0 +1,42 @@
+"""Columns of estimates, and how a table writes their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from baselines import Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One estimate of each row."""
+
+    name: str
+    """Of the estimate."""
+    heading: str
+    """With its unit."""
+    factor: float
+    """From SI units to the heading's."""
+    form: str
+    """For ``str.format``."""
+    interval: bool = False
+    """Whether it stands beside the value."""
+
+    def text(self, estimate: Estimate | None) -> str:
+        """A value, with its interval where that is shown; a dash for None."""
+        if estimate is None:
+            return "–"
+        value, low, high = (number(self.factor * each, self.form) for each in (estimate.value, estimate.low, estimate.high))
+        return f"{value} [{low}, {high}]" if self.interval else value
+
+
+def number(value: float, form: str) -> str:
+    """Three digits at most where it is large; ∞ for a blade that broke."""
+    if abs(value) == float("inf"):
+        return "∞" if value > 0 else "−∞"
+    return f"{value:.3g}" if abs(value) >= 1e3 and form != "{:.0f}" else form.format(value)
+
+
+def share(value: float) -> str:
+    """In per cent, never rounded to none or all."""
+    return "< 1 %" if 0.0 < value < 0.01 else "> 99 %" if 0.99 < value < 1.0 else f"{100.0 * value:.0f} %"

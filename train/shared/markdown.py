@@ -1,0 +1,26 @@
+"""Tables in Markdown, whatever stands in their cells."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_ACTIVE = re.compile(r"[\\`|]|<(?=[A-Za-z/!?])|&(?=#|\w+;)|(?<=\])(?=\()|!(?=\[)")
+_ENTITIES = {"<": "&lt;", "&": "&amp;"}
+
+
+def escaped(text: str) -> str:
+    """Text that Markdown shows as it stands, on one line: a name cannot end a cell, or become code, HTML, a link or a picture."""
+    return _ACTIVE.sub(lambda found: _ENTITIES.get(found[0], f"\\{found[0]}"), " ".join(text.splitlines()))
+
+
+def table(headings: Sequence[str], rows: Sequence[Sequence[str]], words: int | None = None) -> str:
+    """A table of plain text: the first ``words`` columns, all by default, left-aligned; the rest, numbers, on the right."""
+    return markup_table([escaped(heading) for heading in headings], [[escaped(cell) for cell in row] for row in rows], words)
+
+
+def markup_table(headings: Sequence[str], rows: Sequence[Sequence[str]], words: int | None = None) -> str:
+    """The same of cells that are Markdown already."""
+    left = len(headings) if words is None else words
+    rule = ["---"] * left + ["---:"] * (len(headings) - left)
+    return "\n".join("| " + " | ".join(line) + " |" for line in (headings, rule, *rows))
