@@ -3,7 +3,10 @@
 from baselines.analysis.frequency_response import h_infinity_norm
 from baselines.analysis.margins import StabilityMargins, stability_margins
 from baselines.analysis.stationary import closed_loop_poles, stationary_cost
-from baselines.design.controller import Controller, LinearController
+from baselines.design.controller import Controller
+from baselines.design.instruments import Instruments
+from baselines.design.law import Law
+from baselines.design.linear import LinearController
 from baselines.design.persistent_load import PersistentLoad
 from baselines.evaluation.episodes import Episodes, roll_out
 from baselines.evaluation.evaluate import Estimate, Evaluation, evaluate
@@ -26,6 +29,8 @@ __all__ = [
     "EpisodeMetrics",
     "Estimate",
     "Evaluation",
+    "Instruments",
+    "Law",
     "LinearController",
     "PersistentLoad",
     "PredictiveController",

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
 from baselines.analysis.stationary import closed_loop
-from baselines.design.controller import Array, LinearController
+from baselines.design.controller import Array
+from baselines.design.linear import LinearController
 from beamenv.plant.plant import Plant, sample
 
 Complex = NDArray[np.complex128]

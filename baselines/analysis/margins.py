@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 
 from baselines.analysis.frequency_response import frequency_response, highest, resonant_angles
 from baselines.analysis.stationary import closed_loop
-from baselines.design.controller import Array, LinearController
+from baselines.design.controller import Array
+from baselines.design.linear import LinearController
 from beamenv.plant.plant import Plant, sample
 
 Complex = NDArray[np.complex128]
@@ -43,7 +44,7 @@ def stability_margins(plant: Plant, controller: LinearController, at: Literal["i
     """Margins of a controller on a plant, both sampled, with the loops broken at the plant's voltages or at its measurements.
 
     Singular values mix loops, in units of the drive limits or of the sensors' full scale. Raises ValueError for a loop that is
-    unstable to begin with or for another place.
+    unstable to begin with, for another place or for a law that is not linear.
     """
     if at not in ("input", "output"):
         raise ValueError(f'at = {at!r} is not a place to break the loop: allowed are "input" and "output"')
@@ -76,10 +77,10 @@ def _sensitivity(plant: Plant, law: LinearController, at: str) -> Callable[[Arra
     A = closed_loop(held, law)[0]
     if at == "input":
         B = np.vstack([held.B, np.zeros((s, m))])
-        rows, size, unit = np.hstack([law.measurement_gain @ C, law.state_gain]), m, law.voltage_scale
+        rows, size, unit = np.hstack([law.measurement_gain @ C, law.state_gain]), m, law.instruments.voltage_scale
     else:
         B = np.vstack([held.B @ law.measurement_gain, law.measurement_input + law.voltage_input @ law.measurement_gain])
-        rows, size, unit = np.hstack([C, np.zeros((len(C), s))]), len(C), law.measurement_scale
+        rows, size, unit = np.hstack([C, np.zeros((len(C), s))]), len(C), law.instruments.measurement_scale
     B, rows = B * unit, rows / unit[:, None]
     return lambda angles: frequency_response(A, B, rows, np.eye(size), angles)
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
-from baselines.design.controller import Array, LinearController
+from baselines.design.controller import Array
+from baselines.design.linear import LinearController, linear
 from beamenv.plant.plant import Plant, SampledPlant, sample
 
 
@@ -13,7 +14,7 @@ def stationary_cost(plant: Plant, controller: LinearController) -> float:
     """Mean of J per second (J) in the long run, under the plant's white loads and sensor noise, voltages unlimited.
 
     With X = [x; ξ] and noise n = [d; v], X⁺ = Φ X + Γ n and z = [x; u; d] = Z_x X + Z_n n, so Σ = ΦΣΦᵀ + ΓNΓᵀ and the mean
-    is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable.
+    is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable. Raises ValueError for a law that is not linear.
     """
     held = sample(plant)
     transition, noise_input, state_map, noise_map, covariance = closed_loop(held, controller)
@@ -27,7 +28,8 @@ def stationary_cost(plant: Plant, controller: LinearController) -> float:
 def closed_loop_poles(plant: Plant, controller: LinearController) -> Array:
     """Poles of plant and controller together, as the continuous equivalents log(z)/Δt in rad/s (complex), slowest first.
 
-    Poles of the sampled loop at z = 0 have no continuous equivalent and are left out.
+    Poles of the sampled loop at z = 0 have no continuous equivalent and are left out. Raises ValueError for a law that is not
+    linear.
     """
     held = sample(plant)
     poles = np.linalg.eigvals(closed_loop(held, controller)[0])
@@ -36,10 +38,19 @@ def closed_loop_poles(plant: Plant, controller: LinearController) -> Array:
 
 
 def closed_loop(held: SampledPlant, law: LinearController) -> tuple[Array, Array, Array, Array, Array]:
-    """Φ, Γ, Z_x, Z_n of X⁺ = Φ X + Γ n, z = Z_x X + Z_n n and the covariance N of n = [d; v]; u = T C x + M ξ + T v."""
+    """Φ, Γ, Z_x, Z_n of X⁺ = Φ X + Γ n, z = Z_x X + Z_n n and the covariance N of n = [d; v]; u = T C x + M ξ + T v.
+
+    Raises ValueError for a law that is not linear, or has other measurements or voltages than the plant.
+    """
+    law = linear(law)
     (n, m), s, k = held.B.shape, len(law.transition), held.disturbance_input.shape[1]
     C, V = (held.C, held.sensor_noise) if law.observes == "observation" else (np.eye(n), np.zeros((n, n)))
     p = len(C)
+    if law.measurement_gain.shape != (m, p):
+        raise ValueError(
+            f"controller = {law.name} takes {law.measurement_gain.shape[1]} measurements and gives {len(law.measurement_gain)} "
+            f"voltages, but the plant has {p} and {m}"
+        )
     voltage = np.hstack([law.measurement_gain @ C, law.state_gain])
     transition = np.block([[held.A, np.zeros((n, s))], [law.measurement_input @ C, law.transition]])
     transition += np.vstack([held.B, law.voltage_input]) @ voltage

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from baselines.design.controller import Array, Observes, drive_scale, measurement, remembered
+from baselines.design.controller import Array
+from baselines.design.instruments import Instruments
+from baselines.design.law import Law
 from baselines.design.persistent_load import PersistentLoad
+from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_design
 from beamenv.plant.plant import Plant
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ClippedLQG:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ClippedLQG(Law):
     """The sampled LQG with a reading predicted as it will be taken, for one blade or a batch.
 
     With the memory x̂, the state predicted from the interval before and zero at the start of an episode,
@@ -25,8 +28,6 @@ class ClippedLQG:
     gain L stays what it is while a reading is clipped.
     """
 
-    name: str
-    """What tables and figures call it."""
     transition: Array
     """A (s, s)."""
     voltage_input: Array
@@ -39,49 +40,35 @@ class ClippedLQG:
     """L (s, p), per A."""
     full_scale: Array
     """(p,), A: the largest current that a reading can show."""
-    measurement_scale: Array
-    """(p,), A: the current that an observation of 1 stands for."""
-    voltage_scale: Array
-    """(m,), V: the voltage that an action of 1 stands for."""
-    voltage_limits: Array
-    """(2, m), V: lower and upper drive limit."""
-    observes: Observes = "observation"
 
-    def predict(
-        self,
-        observation: ArrayLike,
-        state: Array | None = None,
-        episode_start: ArrayLike | None = None,
-        deterministic: bool = True,
-    ) -> tuple[Array, Array]:
-        """Action (m,) or (N, m) in units of the drive limit, and the next memory; as ``LinearController.predict``."""
-        measured = measurement(self, observation)
-        memory = remembered(state, episode_start, measured.shape[:-1], len(self.transition))
+    @property
+    def order(self) -> int:
+        """Numbers in a blade's memory, s."""
+        return len(self.transition)
+
+    def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
+        """Correct, drive, predict."""
         expected = np.clip(memory @ self.output.T, -self.full_scale, self.full_scale)
-        estimate = memory + (measured * self.measurement_scale - expected) @ self.kalman_gain.T
-        voltage = np.clip(-estimate @ self.feedback_gain.T, *self.voltage_limits)
-        return voltage / self.voltage_scale, estimate @ self.transition.T + voltage @ self.voltage_input.T
-
-    def in_physical_units(self) -> ClippedLQG:
-        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
-        return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
+        estimate = memory + (self.instruments.read(observation) - expected) @ self.kalman_gain.T
+        voltage = self.instruments.limit(-estimate @ self.feedback_gain.T)
+        return self.instruments.drive(voltage), estimate @ self.transition.T + voltage @ self.voltage_input.T
 
 
-def clipped_lqg(plant: Plant, persistent_load: PersistentLoad | None = None) -> ClippedLQG:
+def clipped_lqg(
+    plant: Plant, persistent_load: PersistentLoad | None = None, *, Q: ArrayLike | None = None, R: ArrayLike | None = None
+) -> ClippedLQG:
     """The sampled LQG of a design plant, its filter told that readings end at full scale; equal to ``lqg`` while none does.
 
-    ``persistent_load`` adds a load that lasts to the state, as in ``lqg``.
+    ``persistent_load`` adds a load that lasts to the state, and ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``.
     """
-    held, _, K, L = sampled_design(plant, persistent_load)
+    held, _, K, L = sampled_design(weighted(plant, Q, R), persistent_load)
     return ClippedLQG(
         name="LQG, clipping known" if persistent_load is None else "LQG with load estimate, clipping known",
+        instruments=Instruments.of(plant),
         transition=held.A,
         voltage_input=held.B,
         output=held.C,
         feedback_gain=K,
         kalman_gain=L,
         full_scale=plant.sensor_full_scale,
-        measurement_scale=plant.sensor_full_scale,
-        voltage_scale=drive_scale(plant),
-        voltage_limits=plant.voltage_limits,
     )

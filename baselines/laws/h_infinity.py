@@ -6,10 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.linalg import LinAlgError
+from numpy.typing import ArrayLike
 from scipy.linalg import block_diag, solve, solve_discrete_are
 
 from baselines.analysis.frequency_response import h_infinity_norm, square_root
-from baselines.design.controller import Array, LinearController
+from baselines.design.controller import Array
+from baselines.design.linear import LinearController
+from baselines.design.weights import weighted
 from baselines.laws.lqg import known_sensor_noise, observer, sampled_lqg
 from beamenv.plant.plant import Plant, sample
 
@@ -17,7 +20,7 @@ _BISECTION = 1e-5
 """Relative width of the bracket at which γ counts as found."""
 
 
-def h_infinity(plant: Plant, back_off: float = 1.5) -> LinearController:
+def h_infinity(plant: Plant, back_off: float = 1.5, *, Q: ArrayLike | None = None, R: ArrayLike | None = None) -> LinearController:
     """Output feedback with ``h_infinity_norm`` below γ, ``back_off`` times the least that is possible.
 
     The problem is the sampled LQG's, with its very cost and noise, but the noise n = [W^-½ d; V^-½ v] is the worst of its energy:
@@ -28,10 +31,12 @@ def h_infinity(plant: Plant, back_off: float = 1.5) -> LinearController:
     Whittle, Risk-sensitive Optimal Control (1990), and Başar and Bernhard, H∞-Optimal Control (1995), the discrete counterpart of
     Doyle, Glover, Khargonekar and Francis (IEEE Trans. Automatic Control 34, 1989). The rule for γ: half as much again as
     the least, near which gains grow without bound; on the default blade the norm is then 17 % below LQG's, for 5 % more cost under
-    white noise. Raises ValueError unless ``back_off`` exceeds 1 and white loads act.
+    white noise. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Raises ValueError unless ``back_off`` exceeds 1
+    and white loads act.
     """
     if not (np.isfinite(back_off) and back_off > 1.0):
         raise ValueError(f"back_off = {back_off!r} is not allowed: it must be a number above 1")
+    plant = weighted(plant, Q, R)
     return h_infinity_law(plant, back_off * least_attenuation(plant))
 
 

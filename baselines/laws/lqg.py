@@ -7,20 +7,28 @@ from operator import add
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.linalg import expm
 
-from baselines.design.controller import LinearController, drive_scale
+from baselines.design.instruments import Instruments
+from baselines.design.linear import LinearController
 from baselines.design.load_model import Load, with_load
 from baselines.design.persistent_load import PersistentLoad
 from baselines.design.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from baselines.design.weights import weighted
+from beamenv.plant.plant import Plant, SampledPlant, drive_limit, sample
 
 _CONVERTER_STEP = 2.0**-15
 """Of full scale: a 16-bit converter's."""
 
 
 def lqg(
-    plant: Plant, design: Literal["sampled", "continuous"] = "sampled", persistent_load: PersistentLoad | None = None
+    plant: Plant,
+    design: Literal["sampled", "continuous"] = "sampled",
+    persistent_load: PersistentLoad | None = None,
+    *,
+    Q: ArrayLike | None = None,
+    R: ArrayLike | None = None,
 ) -> LinearController:
     """LQG controller of a design plant; its filter starts from its own estimate, zero.
 
@@ -37,8 +45,11 @@ def lqg(
     filter slower than the sampling: with sensors of next to no noise it is unstable too.
 
     ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
-    Raises ValueError for another design, or for a persistent load with the continuous one.
+    ``Q`` (n, n) and ``R`` (m, m) are weights of your own in ∫(xᵀQx + uᵀRu)dt, in the plant's coordinates, in place of the plant's:
+    the vibration energy ½ xᵀx in J, and what the actuators store, J/V². Raises ValueError for another design, for a persistent load
+    with the continuous one, and for weights that are not symmetric or not positive.
     """
+    plant = weighted(plant, Q, R)
     if design == "sampled":
         return sampled_lqg(plant, "LQG" if persistent_load is None else "LQG with load estimate", persistent_load)
     if design != "continuous":
@@ -51,6 +62,11 @@ def lqg(
 def sampled_lqg(plant: Plant, name: str = "LQG", *loads: Load | None) -> LinearController:
     """The sampled optimum, with the states of the ``loads`` behind those of the blade in its memory."""
     held, _, K, L = sampled_design(plant, *loads)
+    return compensator(plant, name, held, K, L)
+
+
+def compensator(plant: Plant, name: str, held: SampledPlant, K: Array, L: Array) -> LinearController:
+    """x̂ ← x̂ + L (y − C x̂), u = clip(−K x̂), x̂⁺ = A x̂ + B u with gains K (m, s) and L (s, p), behind the plant's instruments."""
     correct = np.eye(len(held.A)) - L @ held.C
     return observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
 
@@ -70,7 +86,7 @@ def _continuous(plant: Plant) -> LinearController:
     _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
     _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
     dynamics = np.zeros((n + p + plant.B.shape[1],) * 2)
-    scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_scale(plant)])  # keeps the exponential well scaled
+    scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_limit(plant)])  # keeps the exponential well scaled
     dynamics[:n] = np.hstack([plant.A - plant.B @ K - L @ plant.C, L, plant.B]) * scale
     F, G, H = np.split(expm(dynamics * plant.control_interval)[:n] / scale, [n, n + p], axis=1)
     onward = F + H @ K
@@ -86,14 +102,4 @@ def known_sensor_noise(plant: Plant) -> Array:
 
 def observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
     """The law ξ⁺ = F ξ + G y + H u, u = clip(M ξ + T y) behind the plant's own instruments and drive."""
-    return LinearController(
-        name=name,
-        transition=F,
-        measurement_input=G,
-        voltage_input=H,
-        state_gain=M,
-        measurement_gain=T,
-        measurement_scale=plant.sensor_full_scale,
-        voltage_scale=drive_scale(plant),
-        voltage_limits=plant.voltage_limits,
-    )
+    return LinearController(name, Instruments.of(plant), F, G, H, M, T)

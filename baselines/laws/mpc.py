@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from baselines.design.box_qp import BoxQP
-from baselines.design.controller import Array, drive_scale, measurement, remembered
+from baselines.design.controller import Array
+from baselines.design.instruments import Instruments
+from baselines.design.law import Law
 from baselines.design.persistent_load import PersistentLoad
+from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_design
 from beamenv.plant.plant import Plant, SampledPlant
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PredictiveController:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PredictiveController(Law):
     """A filter and a plan within the drive limits, for one blade or a batch.
 
     With y_k the measurement (A) and the memory ξ_k the state predicted for it, zero at the start of an episode,
@@ -27,8 +30,6 @@ class PredictiveController:
     within the limits over the whole horizon, u_k is its first move; elsewhere u_k is the first of the moves that ``program`` finds.
     """
 
-    name: str
-    """What tables and figures call it."""
     transition: Array
     """A (s, s)."""
     voltage_input: Array
@@ -45,56 +46,44 @@ class PredictiveController:
     """(m × moves, s): the program's linear term from x̂."""
     sensor_full_scale: Array
     """(p,), A: where readings clip."""
-    measurement_scale: Array
-    """(p,): the measurement that an observation of 1 stands for."""
-    voltage_scale: Array
-    """(m,), V: the voltage that an action of 1 stands for."""
-    voltage_limits: Array
-    """(2, m), V: lower and upper drive limit."""
-    observes: str = field(default="observation", init=False)
 
     @property
     def solver_failures(self) -> int:
         """Decisions so far for which the solver gave up, and LQG's clipped voltage was applied instead."""
         return self.program.failures
 
-    def predict(
-        self,
-        observation: ArrayLike,
-        state: Array | None = None,
-        episode_start: ArrayLike | None = None,
-        deterministic: bool = True,
-    ) -> tuple[Array, Array]:
-        """Action (m,) or (N, m) in units of the drive limit, and the next memory (s,) or (N, s).
+    @property
+    def order(self) -> int:
+        """Numbers in a blade's memory, s."""
+        return len(self.transition)
 
-        ``observation`` (p,) or (N, p) is normalised as the environment gives it; rows where ``episode_start`` is true
-        forget their memory. Raises ValueError for an observation of another length.
-        """
-        reading = measurement(self, observation) * self.measurement_scale
-        predicted = remembered(state, episode_start, reading.shape[:-1], len(self.transition))
-        expected = np.clip(predicted @ self.output.T, -self.sensor_full_scale, self.sensor_full_scale)
-        estimate = predicted + (reading - expected) @ self.filter_gain.T
+    def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
+        """Correct, plan, predict."""
+        reading = self.instruments.read(observation)
+        expected = np.clip(memory @ self.output.T, -self.sensor_full_scale, self.sensor_full_scale)
+        estimate = memory + (reading - expected) @ self.filter_gain.T
         voltage = self._voltage(np.atleast_2d(estimate)).reshape(*reading.shape[:-1], -1)
-        return voltage / self.voltage_scale, estimate @ self.transition.T + voltage @ self.voltage_input.T
+        return self.instruments.drive(voltage), estimate @ self.transition.T + voltage @ self.voltage_input.T
 
     def _voltage(self, estimate: Array) -> Array:
         """(N, m), V, from x̂ (N, s)."""
-        lowest, highest = self.voltage_limits
+        lowest, highest = self.instruments.voltage_limits
         plan = (estimate @ self.unconstrained_plan.T).reshape(len(estimate), -1, len(lowest))
-        voltage = np.clip(plan[:, 0], lowest, highest)
+        voltage = self.instruments.limit(plan[:, 0])
         limited = ((plan < lowest) | (plan > highest)).any(axis=(1, 2))
         if limited.any():
             move = self.program.minimise(estimate[limited] @ self.program_gradient.T)[:, : len(lowest)]
             voltage[limited] = np.where(np.isnan(move), voltage[limited], move)
         return voltage
 
-    def in_physical_units(self) -> PredictiveController:
-        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
-        return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
-
 
 def mpc(
-    plant: Plant, persistent_load: PersistentLoad | None = None, move_blocks: Sequence[int] | None = None
+    plant: Plant,
+    persistent_load: PersistentLoad | None = None,
+    move_blocks: Sequence[int] | None = None,
+    *,
+    Q: ArrayLike | None = None,
+    R: ArrayLike | None = None,
 ) -> PredictiveController:
     """Constrained model-predictive control of a design plant, with the Kalman filter of the sampled ``lqg``.
 
@@ -103,16 +92,18 @@ def mpc(
     no limit is in sight the law is therefore LQG itself.
 
     The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h; by default they are
-    ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike.
-    Raises ValueError for blocks that are not positive whole numbers, ModuleNotFoundError without DAQP.
+    ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike;
+    ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Raises ValueError for blocks that are not positive whole
+    numbers, ModuleNotFoundError without DAQP.
     """
     blocks = doubling_blocks(plant) if move_blocks is None else _checked(move_blocks)
-    held, P, K, L = sampled_design(plant, persistent_load)
+    held, P, K, L = sampled_design(weighted(plant, Q, R), persistent_load)
     deviation, moves = _deviation(held, P, K, blocks), len(blocks)
     by_state, by_move = np.split(deviation, [len(held.A)], axis=1)
     lowest, highest = (np.tile(limit, moves) for limit in plant.voltage_limits)
     return PredictiveController(
         name="MPC" if persistent_load is None else "MPC with load estimate",
+        instruments=Instruments.of(plant),
         transition=held.A,
         voltage_input=held.B,
         output=held.C,
@@ -121,9 +112,6 @@ def mpc(
         program=BoxQP(by_move.T @ by_move, lowest, highest),
         program_gradient=by_move.T @ by_state,
         sensor_full_scale=plant.sensor_full_scale,
-        measurement_scale=plant.sensor_full_scale,
-        voltage_scale=drive_scale(plant),
-        voltage_limits=plant.voltage_limits,
     )
 
 

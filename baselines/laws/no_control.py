@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from baselines.design.controller import LinearController, static_law
+from baselines.design.linear import LinearController, static_law
 from beamenv.plant.plant import Plant
 
 

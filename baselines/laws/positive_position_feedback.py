@@ -10,7 +10,8 @@ from scipy.linalg import block_diag, expm
 from scipy.optimize import minimize
 
 from baselines.analysis.stationary import stationary_cost
-from baselines.design.controller import Array, LinearController
+from baselines.design.controller import Array
+from baselines.design.linear import LinearController
 from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
 from beamenv.plant.plant import Plant

@@ -7,11 +7,13 @@ from functools import reduce
 from operator import add
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
-from baselines.design.controller import LinearController
+from baselines.design.linear import LinearController
 from baselines.design.load_model import LoadModel
 from baselines.design.persistent_load import PersistentLoad
+from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_lqg
 from beamenv.plant.plant import Plant
 
@@ -63,11 +65,19 @@ class RotorHarmonics:
         return LoadModel(decay * block_diag(turn, turn), block_diag(np.eye(1, 2), np.eye(1, 2)), noise)
 
 
-def rotor_lqg(plant: Plant, harmonics: RotorHarmonics, turbulence: PersistentLoad | None = None) -> LinearController:
+def rotor_lqg(
+    plant: Plant,
+    harmonics: RotorHarmonics,
+    turbulence: PersistentLoad | None = None,
+    *,
+    Q: ArrayLike | None = None,
+    R: ArrayLike | None = None,
+) -> LinearController:
     """The sampled LQG of a plant under rotor harmonics and, if given, under Gauss–Markov ``turbulence``.
 
     The loads are part of the state, for filter and regulator alike, so that the compensator holds a model of each harmonic and
     answers it (the internal model principle: Francis and Wonham, Automatica 12, 1976; for helicopter rotors Shaw and Albion, J. Am.
-    Helicopter Soc. 26, 1981). Raises ValueError for a harmonic beyond half the sampling rate.
+    Helicopter Soc. 26, 1981). ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Raises ValueError for a harmonic
+    beyond half the sampling rate.
     """
-    return sampled_lqg(plant, "LQG with rotor harmonics", harmonics, turbulence)
+    return sampled_lqg(weighted(plant, Q, R), "LQG with rotor harmonics", harmonics, turbulence)

@@ -10,7 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
-from baselines.design.controller import Array, LinearController, Observes, measurement, remembered
+from baselines.design.controller import Array
+from baselines.design.instruments import Instruments
+from baselines.design.law import Law
+from baselines.design.linear import LinearController
 from baselines.design.persistent_load import PersistentLoad
 from baselines.laws.lqg import sampled_lqg
 from beamenv.blade.config import BladeConfig
@@ -22,8 +25,8 @@ _GRID = np.linspace(0.8, 1.2, 9)
 """Speeds of the default family over the configuration's own: between neighbours the blade's frequencies change by some 5 %."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ScheduledLQG:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ScheduledLQG(Law):
     """A linear law whose matrices are interpolated between those of the nearest speeds, for one blade or a batch.
 
     All laws remember in the same coordinates, so that the estimate goes on as the speed changes. Beyond the first and the last
@@ -31,39 +34,24 @@ class ScheduledLQG:
     blade vibrates is outside the theory (Shamma and Athans, IEEE Trans. Automatic Control 35, 1990).
     """
 
-    name: str
-    """What tables and figures call it."""
     speeds: Array
     """(k,), rad/s, ascending."""
     laws: tuple[LinearController, ...]
     """One for each speed."""
-    observes: Observes = "observation and speed"
-
-    def predict(
-        self,
-        observation: ArrayLike,
-        state: Array | None = None,
-        episode_start: ArrayLike | None = None,
-        deterministic: bool = True,
-    ) -> tuple[Array, Array]:
-        """Action (m,) or (N, m) in units of the drive limit, and the next memory; as ``LinearController.predict``.
-
-        ``observation`` (p + 1,) or (N, p + 1) are the readings, normalised, and the speed in rad/s. Raises ValueError for another
-        length or a speed that is no number.
-        """
-        measured, law = measurement(self, observation), self.laws[0]
-        order, limits = len(law.transition), law.voltage_limits / law.voltage_scale
-        weights = self._weights(measured[..., -1])
-        memory = remembered(state, episode_start, measured.shape[:-1], order)
-        fused, feedback = zip(*(each.matrices for each in self.laws), strict=True)
-        product = _mixed(weights, np.concatenate([memory, measured[..., :-1]], axis=-1), fused)
-        action = np.clip(product[..., order:], limits[0], limits[1])
-        return action, product[..., :order] + _mixed(weights, action, feedback)
 
     @property
-    def measurement_scale(self) -> Array:
-        """(p + 1,): the measurement that an observation of 1 stands for, in A and, last, in rad/s."""
-        return np.append(self.laws[0].measurement_scale, 1.0)
+    def order(self) -> int:
+        """Numbers in a blade's memory, s."""
+        return self.laws[0].order
+
+    def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
+        """As a linear law, every product a mixture; ValueError for a speed that is no number."""
+        weights = self._weights(observation[..., -1])
+        fused, feedback = zip(*(each.matrices for each in self.laws), strict=True)
+        product = _mixed(weights, np.concatenate([memory, observation[..., :-1]], axis=-1), fused)
+        lowest, highest = self.instruments.drive(self.instruments.voltage_limits)
+        action = np.clip(product[..., self.order :], lowest, highest)
+        return action, product[..., : self.order] + _mixed(weights, action, feedback)
 
     def at(self, speed: float) -> LinearController:
         """The linear law that this one is at a constant speed in rad/s."""
@@ -75,7 +63,8 @@ class ScheduledLQG:
 
     def in_physical_units(self) -> ScheduledLQG:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
-        return replace(self, laws=tuple(law.in_physical_units() for law in self.laws))
+        laws = tuple(law.in_physical_units() for law in self.laws)
+        return replace(self, instruments=self.instruments.in_physical_units(), laws=laws)
 
     def _weights(self, speed: Array) -> Array:
         """(…, k): share of each law, all of it at its own speed, falling linearly to none at its neighbours'."""
@@ -104,7 +93,7 @@ def scheduled_lqg(family: SpeedFamily, persistent_load: PersistentLoad | None = 
                 raise ValueError(f"family has plants that differ in {name}, but one controller has one set of instruments")
     laws = (_law(*each, persistent_load) for each in zip(family.plants, family.from_common, strict=True))
     name = "LQG, scheduled with speed" if persistent_load is None else "LQG with load estimate, scheduled with speed"
-    return ScheduledLQG(name, family.speeds, tuple(laws))
+    return ScheduledLQG(name, Instruments.of(first, "observation and speed"), family.speeds, tuple(laws))
 
 
 def scheduled_lqg_for(

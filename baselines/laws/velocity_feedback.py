@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
 from baselines.analysis.stationary import stationary_cost
-from baselines.design.controller import Array, LinearController, static_law
+from baselines.design.controller import Array
+from baselines.design.linear import LinearController, static_law
 from beamenv.plant.plant import Plant
 
 _DECADES = np.linspace(-6.0, 1.0, 36)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Sequence
+from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.shape import edges, sides
 from beamenv.rendering.camera import Camera, faces_camera
 from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.palette import INK, OUTPUT_SCALE, PALE, QUIET, VOLTAGE_SCALE, colour_table, colours_of
-from beamenv.rendering.solid import CORNERS, SHOWN_DEFLECTION, BladeSolid, Pose, quadrilaterals
+from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid, Pose
 
 Array = NDArray[np.float64]
 
@@ -26,7 +30,7 @@ TOWARDS, DISTANCE = np.array([-0.80, 0.62, -0.62]), 1.5
 LIGHT = np.array([0.75, 0.65, -0.45])
 """Towards the light, with positive pretwist: it turns the top wall from it."""
 RIBS = 4
-"""Every how manieth of the even stations a line across the walls shows how they bend and twist."""
+"""At every n-th of the even stations a line across the walls shows how they bend and twist."""
 RIB = 0.90
 """Share of a wall's brightness that a rib has."""
 BODY = np.array([92.0, 104.0, 118.0]), np.array([205.0, 212.0, 220.0])
@@ -38,6 +42,18 @@ NARROW = 8.0
 """Height, px, below which a patch has no room for its number."""
 
 
+class Face(NamedTuple):
+    """What the camera sees of a face of a body."""
+
+    depth: float
+    """m from the eye."""
+    corners: Array
+    """(c, 2), px."""
+    colour: list[int]
+    ribbed: bool
+    """Whether a line is drawn along its far station."""
+
+
 class Scene:
     """Draws a ``BladeSolid`` on a canvas."""
 
@@ -46,25 +62,29 @@ class Scene:
         length = config.beam.length
         self._drop = np.array([0.0, -SENSOR_DROP * length, 0.0])
         self._rest = self.solid.pose(np.zeros((3, len(self.solid.stations))))
-        self._hub = _hub(self._rest.walls[0], config.beam.depth)
+        section = build_beam(config).section
+        self._edges = edges(section)
+        hub = _hub(self._rest.walls[0], float(np.ptp(section.vertices[:, 1])))
+        self._corners = len(section.vertices)
         self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
         middle = np.radians(config.beam.presetting_deg + 0.5 * config.beam.pretwist_deg)
         side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])  # look at the side that the top wall is turned to
         self._light = side * LIGHT / np.linalg.norm(LIGHT)
         tip = [self._rest.walls[-1] + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]
-        points = [self._rest.walls, self._rest.sensors + self._drop, self._hub, *tip]
+        points = [self._rest.walls, self._rest.sensors + self._drop, *hub, *tip]
         self._camera = Camera.facing(
             np.concatenate([each.reshape(-1, 3) for each in points]),
             towards=side * TOWARDS,
             distance=DISTANCE * length,
             frame=Frame(PLACE.left + MARGIN, PLACE.top + MARGIN, PLACE.width - 2.0 * MARGIN, PLACE.height - 2.0 * MARGIN),
         )
+        self._hub = self._seen(hub, HUB)
         self._voltage_colours, self._output_colours = colour_table(VOLTAGE_SCALE), colour_table(OUTPUT_SCALE)
 
     def draw_rest(self, canvas: Canvas) -> None:
         """Where the blade is when nothing moves it."""
         lines, _ = self._camera.project(self._rest.walls[self.solid.even])
-        for line in lines.transpose(1, 0, 2):
+        for line in lines[:, self._edges].transpose(1, 0, 2):
             for start in range(0, len(line) - 1, 2):
                 canvas.line(line[start : start + 2], PALE)
         canvas.line(lines[-1], PALE, closed=True)
@@ -77,9 +97,9 @@ class Scene:
         pose = self.solid.pose(displacement)
         self._draw_leaders(canvas, pose)
         self._draw_patches(canvas, pose.sensors[:, ::-1] + self._drop, colours_of(self._output_colours, outputs), outputs)
-        self._draw_body(canvas, quadrilaterals(pose.walls), BODY, self._ribs)
+        _draw_faces(canvas, self._seen([sides(pose.walls), pose.walls[-1:]], BODY, self._ribs))
         self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts)
-        self._draw_body(canvas, self._hub, HUB)
+        _draw_faces(canvas, self._hub)
         canvas.develop(PLACE)
 
     def _draw_leaders(self, canvas: Canvas, pose: Pose) -> None:
@@ -99,27 +119,36 @@ class Scene:
                 x, y = corners[k].mean(axis=0).tolist()
                 canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
 
-    def _draw_body(self, canvas: Canvas, faces: Array, colours: tuple[Array, Array], ribs: Container[int] = ()) -> None:
-        """Faces (k, 4, 3), the farthest first, those turned away left out; ``ribs`` are stations with a line across."""
-        corners, depth = self._camera.project(faces)
-        seen = np.flatnonzero(faces_camera(corners))
-        seen = seen[np.argsort(-depth[seen].mean(axis=-1))]
-        shades = self._shades(faces[seen], *colours)
-        for face, colour in zip(seen.tolist(), shades, strict=True):
-            canvas.polygon(corners[face], colour)
-            if face // len(CORNERS) + 1 in ribs:
-                canvas.line(corners[face, 1:3], [round(RIB * part) for part in colour])
+    def _seen(self, surfaces: Sequence[Array], colours: tuple[Array, Array], ribs: Container[int] = ()) -> list[Face]:
+        """Faces (k, c, 3) of some surfaces, the farthest first, those turned away left out; ``ribs`` are stations with a line
+        across the first surface.
+        """
+        found: list[Face] = []
+        for surface in surfaces:
+            corners, depth = self._camera.project(surface)
+            seen = np.flatnonzero(faces_camera(corners))
+            far, shades = depth[seen].mean(axis=-1).tolist(), self._shades(surface[seen], *colours)
+            ribbed = [surface is surfaces[0] and k // self._corners + 1 in ribs for k in seen.tolist()]
+            found += map(Face, far, corners[seen], shades, ribbed)
+        return sorted(found, key=attrgetter("depth"), reverse=True)
 
     def _shades(self, faces: Array, shade: Array, lit: Array) -> list[list[int]]:
-        normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
+        normals = np.cross(faces, np.roll(faces, -1, axis=1)).sum(axis=1)
         brightness = 0.5 + 0.5 * (normals @ self._light) / np.linalg.norm(normals, axis=-1)
         colours: list[list[int]] = np.rint(shade + brightness[:, None] * (lit - shade)).astype(int).tolist()
         return colours
 
 
-def _hub(root: Array, depth: float) -> Array:
-    """(6, 4, 3): faces of the block that holds the root (4, 3)."""
+def _draw_faces(canvas: Canvas, faces: Sequence[Face]) -> None:
+    for face in faces:
+        canvas.polygon(face.corners, face.colour)
+        if face.ribbed:
+            canvas.line(face.corners[1:3], [round(RIB * part) for part in face.colour])
+
+
+def _hub(root: Array, depth: float) -> list[Array]:
+    """Sides, outer and inner end of the block that holds the root (K, 3)."""
     middle = root.mean(axis=0)
     block = np.stack([middle + 1.25 * (root - middle)] * 2)
     block[0, :, 2] = -2.5 * depth
-    return np.concatenate([quadrilaterals(block), block[0][None]])
+    return [sides(block), block[-1:], block[:1, ::-1]]

@@ -34,7 +34,7 @@ def final_errors(plant, amplitude, steps=2400):
         for k in range(steps):
             reading = np.clip(held.C @ x / plant.sensor_full_scale, -1.0, 1.0)
             action, memory = law.predict(reading, memory)
-            x = held.A @ x + held.B @ (action * law.voltage_scale)
+            x = held.A @ x + held.B @ (action * law.instruments.voltage_scale)
             if k >= steps - 70:  # two periods of the first mode
                 worst = max(worst, np.linalg.norm(memory - x) / np.linalg.norm(x))
         errors[name] = worst

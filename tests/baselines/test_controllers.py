@@ -1,21 +1,26 @@
 """How every law behaves as a controller: SB3's predict, batches, memory, limits and bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from baselines import (
     RotorHarmonics,
     clipped_lqg,
+    closed_loop_poles,
     h_infinity,
+    h_infinity_norm,
     lqg,
     lqr,
     mpc,
     no_control,
     positive_position_feedback,
     rotor_lqg,
+    stability_margins,
+    stationary_cost,
     velocity_feedback,
 )
-from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Controller
 from baselines.design.persistent_load import PersistentLoad, with_persistent_load
 from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
@@ -46,7 +51,7 @@ def _law(request, small_plant):
 
 
 def observations(law, steps=20, blades=5, size=0.05):
-    return size * np.random.default_rng(3).normal(size=(steps, blades, law.measurement_scale.size))
+    return size * np.random.default_rng(3).normal(size=(steps, blades, law.instruments.measurement_scale.size))
 
 
 def test_a_batch_is_its_blades_one_by_one(law):
@@ -89,8 +94,8 @@ def test_physical_units_give_the_same_voltages(law):
     memory = physical_memory = None
     for row in observations(law):
         action, memory = law.predict(row, memory)
-        volts, physical_memory = physical.predict(row * law.measurement_scale, physical_memory)
-        np.testing.assert_allclose(volts, action * law.voltage_scale, rtol=1e-12, atol=1e-12)
+        volts, physical_memory = physical.predict(row * law.instruments.measurement_scale, physical_memory)
+        np.testing.assert_allclose(volts, action * law.instruments.voltage_scale, rtol=1e-12, atol=1e-12)
 
 
 def test_the_filter_predicts_with_the_clipped_voltage(small_plant):
@@ -183,3 +188,23 @@ def test_a_persistent_load_adds_its_own_states_and_keeps_the_cost(small_plant):
     np.testing.assert_allclose(following[:6], held.A @ x + held.B @ u + held.disturbance_input @ (lasting + white))
     decay = augmented.A[6, 6]
     assert augmented.process_noise[2, 2] / (1 - decay**2) == pytest.approx(12.0**2)
+
+
+def test_a_law_is_told_in_one_line(law):
+    line = repr(law)
+    assert "\n" not in line
+    assert len(line) < 160
+    assert repr(law.name) in line
+    assert f"order {law.order}" in line
+    assert f"of {law.observes} -> 2 voltages in -500 .. 1500 V, every 0.5 ms, normalised" in line
+    assert "physical" in repr(law.in_physical_units())
+
+
+@pytest.mark.parametrize("analysis", [closed_loop_poles, stationary_cost, stability_margins, h_infinity_norm])
+def test_what_is_said_of_linear_loops_is_not_said_of_other_laws(small_plant, analysis):
+    for law, name in ((clipped_lqg(small_plant()), "LQG, clipping known"), (mpc(small_plant()), "MPC")):
+        with pytest.raises(ValueError, match=rf"controller = {name} \({type(law).__name__}\) is not linear"):
+            analysis(small_plant(), law)
+    one_sensor = small_plant(C=small_plant().C[:1], sensor_noise=np.eye(1) * 1e-16, sensor_full_scale=np.array([2e-5]))
+    with pytest.raises(ValueError, match="takes 1 measurements and gives 2 voltages, but the plant has 2 and 2"):
+        analysis(small_plant(), lqg(replace(one_sensor, D=np.zeros((1, 2)))))

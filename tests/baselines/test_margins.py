@@ -5,7 +5,7 @@ import pytest
 
 from baselines import lqg, lqr, no_control, stationary_cost
 from baselines.analysis.margins import stability_margins
-from baselines.design.controller import static_law
+from baselines.design.linear import static_law
 from baselines.laws.velocity_feedback import velocity_feedback
 
 

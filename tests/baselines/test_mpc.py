@@ -32,7 +32,7 @@ def states(count, order, size=0.004):
 def decide(law, state):
     """Voltage (N, m) when the filter's estimate is ``state`` (N, s): the reading is what the filter expects."""
     expected = np.clip(state @ law.output.T, -law.sensor_full_scale, law.sensor_full_scale)
-    return law.predict(expected / law.measurement_scale, state)[0] * law.voltage_scale
+    return law.predict(expected / law.instruments.measurement_scale, state)[0] * law.instruments.voltage_scale
 
 
 def square_root(weight):

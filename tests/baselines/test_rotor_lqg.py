@@ -33,7 +33,7 @@ def test_two_per_revolution_is_recognised_for_what_it_is(small_plant):
         if memory is not None:
             estimate = lasting.output @ memory[6:]
         action, memory = law.predict(held.C @ x / plant.sensor_full_scale, memory)
-        voltage = action * law.voltage_scale
+        voltage = action * law.instruments.voltage_scale
         x = held.A @ x + held.B @ voltage + held.disturbance_input @ load
     assert np.abs(voltage).max() < 1e6
     np.testing.assert_allclose(estimate, load, atol=0.01 * np.hypot(3.0, 2.0))

@@ -83,8 +83,8 @@ def test_a_batch_may_turn_at_several_speeds(family):
     np.testing.assert_allclose(linear.predict(rows[1], single)[0], law.predict(np.append(rows[1], 150.0), single)[0], rtol=1e-9)
     begun, _ = law.predict(np.column_stack([rows, speeds]), memory, episode_start=np.ones(4, dtype=bool))
     np.testing.assert_array_equal(begun, law.predict(np.column_stack([rows, speeds]))[0])
-    volts, _ = law.in_physical_units().predict(np.column_stack([rows * linear.measurement_scale, speeds]))
-    np.testing.assert_allclose(volts, begun * linear.voltage_scale, rtol=1e-9, atol=1e-9)
+    volts, _ = law.in_physical_units().predict(np.column_stack([rows * linear.instruments.measurement_scale, speeds]))
+    np.testing.assert_allclose(volts, begun * linear.instruments.voltage_scale, rtol=1e-9, atol=1e-9)
 
 
 def test_what_cannot_be_scheduled_is_refused_by_name(family):

@@ -14,6 +14,7 @@ from gymnasium.utils.env_checker import check_env
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, blade_config, build_plant
 from beamenv.blade.build import displacement_operator
+from beamenv.blade.shape import sides
 from beamenv.scenarios.load_cases import static_deflection
 
 pytest.importorskip("matplotlib")
@@ -25,7 +26,7 @@ from beamenv.rendering.charts import Chart, round_above
 from beamenv.rendering.history import History, Instant
 from beamenv.rendering.palette import OUTPUT_SCALE, VOLTAGE_SCALE, colour_table, colours_of
 from beamenv.rendering.scene import PLACE, Scene
-from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid, quadrilaterals
+from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid
 
 DEFLECTION = {"load": {"case": "deflection", "magnitude": 30.0, "direction_deg": 90.0}}
 
@@ -128,8 +129,9 @@ def test_a_twist_turns_the_section_about_its_axis_by_the_magnified_angle():
 
 def test_the_solid_has_the_blade_s_pretwist_taper_and_outer_dimensions():
     config = blade_config(overrides={"beam": {"taper": 2.0}})
-    beam, walls = config.beam, BladeSolid(config).pose(np.zeros((3, 1))).walls
-    chord = walls[:, 1] - walls[:, 0]
+    beam, solid = config.beam, BladeSolid(config)
+    walls = solid.pose(np.zeros((3, len(solid.stations)))).walls
+    chord = walls[:, 1] - walls[:, 2]
     assert np.linalg.norm(chord[0]) == pytest.approx(beam.width + beam.thickness)
     assert np.linalg.norm(chord[-1]) == pytest.approx(0.5 * beam.width + beam.thickness)
     assert np.degrees(np.arctan2(chord[:, 1], chord[:, 0]))[[0, -1]] == pytest.approx([0.0, 30.0])
@@ -150,12 +152,12 @@ def test_a_camera_sees_a_length_in_inverse_proportion_to_its_distance():
 
 
 def test_three_faces_of_a_box_are_seen_from_above_beside_and_before_it():
-    box = np.array([[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]])
+    box = np.array([[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]])
     walls = np.stack([np.column_stack([box, np.full(4, z)]) for z in (0.0, 4.0)])
     frame = Frame(0.0, 0.0, 300.0, 200.0)
-    for towards, seen in (([0.5, 0.6, 0.7], [0, 1, 4]), ([-0.5, 0.6, 0.7], [0, 3, 4]), ([0.5, -0.6, -0.7], [1, 2])):
+    for towards, seen in (([0.5, 0.6, 0.7], [0, 1, 4]), ([-0.5, 0.6, 0.7], [1, 2, 4]), ([0.5, -0.6, -0.7], [0, 3])):
         camera = Camera.facing(walls.reshape(-1, 3), np.array(towards), 20.0, frame)
-        corners, _ = camera.project(quadrilaterals(walls))
+        corners, _ = camera.project(np.concatenate([sides(walls), walls[-1:]]))
         assert np.flatnonzero(faces_camera(corners)).tolist() == seen
         assert corners.min(axis=(0, 1)).min() >= -1e-9
         assert (corners.max(axis=(0, 1)) <= [300.0 + 1e-9, 200.0 + 1e-9]).all()

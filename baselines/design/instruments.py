@@ -1,0 +1,55 @@
+"""What stands between a law and a blade: the data acquisition that it reads, the drive that it commands, and their clock."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from baselines.design.controller import Array, Observes
+from beamenv.plant.plant import Plant, drive_limit
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Instruments:
+    """Scales of the p measurements and the m voltages, the drive limits, and the interval between two decisions."""
+
+    measurement_scale: Array
+    """(p,): the measurement that an observation of 1 stands for, A, √J of a true state, or rad/s of a rotor speed."""
+    voltage_scale: Array
+    """(m,), V: the voltage that an action of 1 stands for."""
+    voltage_limits: Array
+    """(2, m), V: lower and upper drive limit."""
+    interval: float
+    """s: voltages are held over it."""
+    observes: Observes = "observation"
+    """What is measured; the true state (n,) is what no real blade offers."""
+
+    @classmethod
+    def of(cls, plant: Plant, observes: Observes = "observation") -> Instruments:
+        """Those of an environment around this plant, which takes and gives normalised numbers."""
+        scale = np.ones(len(plant.A)) if observes == "state" else plant.sensor_full_scale
+        scale = np.append(scale, 1.0) if observes == "observation and speed" else scale
+        return cls(scale, drive_limit(plant), plant.voltage_limits, plant.control_interval, observes)
+
+    def in_physical_units(self) -> Instruments:
+        """The same for an environment made with ``physical_units=True``, which gives amperes and takes volts."""
+        return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
+
+    def read(self, observation: Array) -> Array:
+        """Measurement (…, p) in A from an observation."""
+        return observation * self.measurement_scale
+
+    def limit(self, voltage: Array) -> Array:
+        """The voltage (…, m), V, as the drive lets it through."""
+        return np.clip(voltage, *self.voltage_limits)
+
+    def drive(self, voltage: Array) -> Array:
+        """The action (…, m) that asks for a voltage in V."""
+        return voltage / self.voltage_scale
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.measurement_scale)} of {self.observes} -> {len(self.voltage_scale)} voltages"
+        lowest, highest = self.voltage_limits[0].min(), self.voltage_limits[1].max()
+        units = "physical" if np.all(self.voltage_scale == 1.0) else "normalised"
+        return f"{sizes} in {lowest:g} .. {highest:g} V, every {1e3 * self.interval:g} ms, {units}"

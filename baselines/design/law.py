@@ -1,0 +1,81 @@
+"""What the classical laws have in common: instruments, a memory for each blade, and SB3's ``predict`` around one decision."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from baselines.design.controller import Array, Observes
+from baselines.design.instruments import Instruments
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Law(ABC):
+    """A sampled law with a memory of ``order`` numbers, zero at the start of an episode, for one blade or a batch.
+
+    A law says how it decides; batches, forgetting, bad input and units are the same for all and stand here.
+    """
+
+    name: str
+    """What tables and figures call it."""
+    instruments: Instruments
+    """What it reads and drives; its matrices are in A and V whatever units they use."""
+
+    @property
+    @abstractmethod
+    def order(self) -> int:
+        """Numbers in a blade's memory."""
+
+    @abstractmethod
+    def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
+        """Action (…, m) and next memory (…, order) from an observation (…, p) and a memory that have been checked."""
+
+    def predict(
+        self,
+        observation: ArrayLike,
+        state: Array | None = None,
+        episode_start: ArrayLike | None = None,
+        deterministic: bool = True,
+    ) -> tuple[Array, Array | None]:
+        """Action (m,) or (N, m) in units of the drive limit, and the next memory (None for a law without memory).
+
+        ``observation`` (p,) or (N, p) is normalised as the environment gives it, and what the law ``observes``; rows where
+        ``episode_start`` is true forget their memory. Raises ValueError for an observation of another length.
+        """
+        seen, order = np.asarray(observation, dtype=np.float64), self.order
+        if seen.ndim not in (1, 2) or seen.shape[-1] != self.instruments.measurement_scale.size:
+            raise ValueError(
+                f"observation has shape {seen.shape}, but {self.name} takes {self.observes} vectors of length "
+                f"{self.instruments.measurement_scale.size}, alone or in rows"
+            )
+        action, following = self.decide(seen, remembered(state, episode_start, seen.shape[:-1], order))
+        return action, following if order else None
+
+    @property
+    def observes(self) -> Observes:
+        """Whether ``predict`` wants the sensors' observation, with the rotor speed behind it, or the true state."""
+        return self.instruments.observes
+
+    def in_physical_units(self) -> Self:
+        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
+        return replace(self, instruments=self.instruments.in_physical_units())
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}: order {self.order}, {self.instruments!r})"
+
+
+def remembered(state: Array | None, episode_start: ArrayLike | None, batch: tuple[int, ...], order: int) -> Array:
+    """The memory (*batch, order) that a decision starts from: zero without a state, and where an episode starts."""
+    if state is None:
+        return np.zeros((*batch, order))
+    if episode_start is None:
+        return state
+    begins = np.asarray(episode_start, dtype=bool).reshape(batch)
+    return np.where(begins[..., None], 0.0, state)

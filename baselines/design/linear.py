@@ -1,0 +1,165 @@
+"""The linear law: five matrices, which most of the classical laws here come down to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from baselines.design.controller import Array, Observes, name_of
+from baselines.design.instruments import Instruments
+from baselines.design.law import Law
+from beamenv.plant.plant import Plant
+
+if TYPE_CHECKING:
+    import control
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LinearController(Law):
+    """A sampled linear law that knows the drive limits, for one blade or a batch in two matrix products.
+
+    With y_k the measurement (A, or the state when ``observes == "state"``) and ξ_k the memory, zero at the start of an episode,
+
+        u_k = clip(M ξ_k + T y_k),        ξ_{k+1} = F ξ_k + G y_k + H u_k
+
+    so y_k acts on u_k without delay and the memory is driven by the voltage that was really applied.
+    """
+
+    transition: Array
+    """F (s, s)."""
+    measurement_input: Array
+    """G (s, p), per A."""
+    voltage_input: Array
+    """H (s, m), per V."""
+    state_gain: Array
+    """M (m, s), V."""
+    measurement_gain: Array
+    """T (m, p), V/A."""
+    _fused: Array = field(init=False)
+    _feedback: Array = field(init=False)
+    _limits: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]."""
+        scale, drive = self.instruments.measurement_scale, self.instruments.voltage_scale[:, None]
+        memory = np.hstack([self.transition, self.measurement_input * scale])
+        action = np.hstack([self.state_gain, self.measurement_gain * scale]) / drive
+        object.__setattr__(self, "_fused", np.ascontiguousarray(np.vstack([memory, action]).T))
+        object.__setattr__(self, "_feedback", np.ascontiguousarray(drive * self.voltage_input.T))
+        object.__setattr__(self, "_limits", self.instruments.drive(self.instruments.voltage_limits))
+
+    @classmethod
+    def from_state_space(
+        cls,
+        A: Any,
+        B: ArrayLike | None = None,
+        C: ArrayLike | None = None,
+        D: ArrayLike | None = None,
+        *,
+        plant: Plant | None = None,
+        instruments: Instruments | None = None,
+        voltage_input: ArrayLike | None = None,
+        name: str = "linear law",
+    ) -> LinearController:
+        """The law ξ⁺ = A ξ + B y, u = C ξ + D y from measurements y (p,) in A to voltages u (m,) in V, sampled as the plant is.
+
+        ``A`` alone may be a discrete-time ``control.StateSpace``, or another system that ``control.ss`` converts. The law stands
+        behind the instruments of ``plant``, or behind ``instruments``, such as those of the true state.
+
+        ``voltage_input`` H (s, m) is for drives that saturate: the memory then follows the voltage applied instead of the one asked
+        for, ξ⁺ = A ξ + B y + H (clip(u) − u). Without it the memory does not know of the limits, and an integrator winds up.
+        Raises ValueError for matrices whose shapes do not fit or hold no numbers, for a system in continuous time, and for one
+        sampled otherwise than the plant.
+        """
+        if (plant is None) == (instruments is None):
+            raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given")
+        behind = instruments or Instruments.of(plant)  # type: ignore[arg-type] # one of the two is there
+        matrices = _matrices(A, behind) if B is None and C is None and D is None else (A, B, C, D)
+        s, p, m = len(np.atleast_1d(np.asarray(matrices[0]))), len(behind.measurement_scale), len(behind.voltage_scale)
+        shapes = {"A": (s, s), "B": (s, p), "C": (m, s), "D": (m, p), "voltage_input": (s, m)}
+        given = (*matrices, np.zeros((s, m)) if voltage_input is None else voltage_input)
+        F, G, M, T, H = (_checked(name, each, shapes[name]) for name, each in zip(shapes, given, strict=True))
+        return cls(name, behind, F - H @ M, G - H @ T, H, M, T)
+
+    def to_control(self) -> control.StateSpace:
+        """The law from measurements (A) to voltages (V) while no limit acts, as a ``control.StateSpace`` with the plant's clock.
+
+        ξ⁺ = (F + HM) ξ + (G + HT) y, u = M ξ + T y. Its sign is that of the law: ``control.feedback(plant, law, sign=1)``.
+        """
+        import control
+
+        H, measured = self.voltage_input, "state" if self.observes == "state" else "current"
+        return control.ss(
+            self.transition + H @ self.state_gain,
+            self.measurement_input + H @ self.measurement_gain,
+            self.state_gain,
+            self.measurement_gain,
+            dt=self.instruments.interval,
+            inputs=[f"{measured}{i}" for i in range(self.measurement_gain.shape[1])],
+            outputs=[f"voltage{i}" for i in range(len(self.measurement_gain))],
+        )
+
+    @property
+    def order(self) -> int:
+        """Numbers in a blade's memory, s."""
+        return len(self.transition)
+
+    def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
+        """Two products, with the scales within the matrices."""
+        order = memory.shape[-1]
+        product = np.concatenate([memory, observation], axis=-1) @ self._fused
+        action = np.minimum(np.maximum(product[..., order:], self._limits[0]), self._limits[1])  # np.clip starts slower
+        return action, product[..., :order] + action @ self._feedback
+
+    @property
+    def matrices(self) -> tuple[Array, Array]:
+        """[ξ, observation] @ fused (s + p, s + m) = [F ξ + G y, action], and feedback (m, s): ξ⁺ gains action @ feedback."""
+        return self._fused, self._feedback
+
+
+def static_law(plant: Plant, name: str, gain: Array, observes: Observes = "observation") -> LinearController:
+    """The law u = gain @ y without memory: ``gain`` (m, p) in V/A, or (m, n) in V/√J when it observes the state."""
+    m, p = gain.shape
+    nothing = (np.zeros((0, 0)), np.zeros((0, p)), np.zeros((0, m)), np.zeros((m, 0)))
+    return LinearController(name, Instruments.of(plant, observes), *nothing, gain)
+
+
+def linear(controller: object) -> LinearController:
+    """The controller, if what is said of linear loops can be said of it; ValueError names it if not."""
+    if isinstance(controller, LinearController):
+        return controller
+    raise ValueError(
+        f"controller = {name_of(controller)} ({type(controller).__name__}) is not linear, so its loop has no poles, margins, "
+        "frequency response or stationary cost: allowed is a LinearController"
+    )
+
+
+def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any]:
+    """Of a system of python-control, or one like it."""
+    if not hasattr(system, "dt"):
+        raise ValueError(
+            f"A alone is of type {type(system).__name__}, but must be a discrete-time control.StateSpace, or have B, C, D"
+        )
+    if not hasattr(system, "A"):
+        import control
+
+        system = control.ss(system)
+    if system.dt is not True and not (system.dt and np.isclose(system.dt, instruments.interval, rtol=1e-6)):
+        raise ValueError(
+            f"A is a system with dt = {system.dt!r}, but must be in discrete time and sampled as the plant is, "
+            f"every {instruments.interval:g} s"
+        )
+    return system.A, system.B, system.C, system.D
+
+
+def _checked(name: str, matrix: Any, shape: tuple[int, ...]) -> Array:
+    try:
+        numbers = np.array(matrix, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {matrix!r} must be a matrix of real numbers") from None
+    if numbers.shape != shape or not np.isfinite(numbers).all():
+        raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}")
+    return numbers
