@@ -58,7 +58,7 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     magnitude = np.abs(episodes.voltages)
     low, high = 0.999 * episodes.voltage_limits  # single precision and tanh come near a limit without touching it
     at_limit = np.where(np.isnan(magnitude), np.nan, (episodes.voltages >= high) | (episodes.voltages <= low))
-    settling_time = episodes.interval * settled_from(_excursion(episodes), band)
+    settling_time = np.asarray(episodes.interval * settled_from(_excursion(episodes), band), dtype=np.float64)
     return EpisodeMetrics(
         cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
         effort=np.nansum(episodes.effort, axis=0),

@@ -32,7 +32,7 @@ def interval(value: float, resampled: Array, confidence: float = CONFIDENCE) -> 
 @lru_cache(maxsize=8)
 def paired_draws(seeds: int) -> NDArray[np.intp]:
     """(R, N): draws with replacement of N seeds, the same at every call, so that controllers are resampled in pairs."""
-    return np.random.default_rng(seeds).integers(seeds, size=(RESAMPLES, seeds))
+    return _draws(seeds, seeds, RESAMPLES)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,6 +68,13 @@ class Resamples:
 @lru_cache(maxsize=8)
 def resamples(runs: int, seeds: int, count: int = RESAMPLES) -> Resamples:
     """``count`` draws of runs and seeds, the same at every call."""
-    drawn = [np.random.default_rng((index, size)).integers(size, size=(count, size)) for index, size in enumerate((runs, seeds))]
-    counts = [np.stack([np.bincount(row, minlength=each.shape[1]) for row in each]).astype(float) for each in drawn]
-    return Resamples(*drawn, *counts)
+    of_runs, of_seeds = (_draws((index, size), size, count) for index, size in enumerate((runs, seeds)))
+    return Resamples(of_runs, of_seeds, _counts(of_runs), _counts(of_seeds))
+
+
+def _draws(entropy: int | tuple[int, int], size: int, count: int) -> NDArray[np.intp]:
+    return np.random.default_rng(entropy).integers(size, size=(count, size))
+
+
+def _counts(drawn: NDArray[np.intp]) -> Array:
+    return np.stack([np.bincount(row, minlength=drawn.shape[1]) for row in drawn]).astype(float)
