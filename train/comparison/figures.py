@@ -81,8 +81,9 @@ def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) ->
             axis.plot(
                 curve[:, 0], curve[:, 2], color=colour, linestyle=dashes, label=f"{name} ({curve[-1, 1] / 1e6:.1f} million steps)"
             )
-        for (name, level), dashes in zip(levels.items(), (":", (0, (5, 1)), "-."), strict=False):
-            axis.axhline(level, color="#d55e00", linestyle=dashes, label=f"{name}, held-out episodes: {level:.3f}")
+        lines: tuple[Any, ...] = (":", (0, (5, 1)), "-.")
+        for (name, level), line in zip(levels.items(), lines, strict=False):
+            axis.axhline(level, color="#d55e00", linestyle=line, label=f"{name}, held-out episodes: {level:.3f}")
         top = max([1.05, *(float(np.nanmedian(curve[:3, 2])) for curve in curves.values())])
         axis.set(
             xlabel="training time, s",

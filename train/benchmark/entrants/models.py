@@ -52,7 +52,7 @@ def fitted(controller: Any, plant: Plant) -> Controller:
         raise ValueError(f"{type(controller).__name__} has no predict(observation, state, episode_start, deterministic).")
     seen, acts = getattr(controller, "observation_space", None), getattr(controller, "action_space", None)
     if seen is None or acts is None:
-        return controller  # type: ignore[no-any-return]
+        return controller
     readings, voltages = len(plant.C), plant.B.shape[1]
     name = getattr(controller, "name", type(controller).__name__)
     if getattr(acts, "shape", None) != (voltages,) or not _bounded_by_one(acts):
@@ -65,7 +65,7 @@ def fitted(controller: Any, plant: Plant) -> Controller:
             f"{readings + voltages} as SensorHistory gives it."
         )
     lowest, highest = normalised(plant).voltage_limits.astype(np.float32)
-    return ShownHistory(controller, name, length, lowest, highest) if length else controller  # type: ignore[no-any-return]
+    return ShownHistory(controller, name, length, lowest, highest) if length else controller
 
 
 def _bounded_by_one(space: Any) -> bool:

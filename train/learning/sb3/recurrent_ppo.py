@@ -99,7 +99,8 @@ class RecurrentPPOTraining(SB3Training):
         super().__init__(model, envs, tasks, settings, seed)
 
     def _held_back(self) -> list[nn.Parameter]:
-        return [*self.model.policy.lstm_actor.parameters(), *self.model.policy.action_net.parameters()]
+        policy: Any = self.model.policy
+        return [*policy.lstm_actor.parameters(), *policy.action_net.parameters()]
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}
