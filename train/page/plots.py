@@ -89,7 +89,7 @@ def amplitude_density(signal: Array, interval: float) -> tuple[Array, Array]:
     return frequency[1:], np.sqrt(power[1:])
 
 
-def pole_map(poles: Mapping[str, Array]) -> go.Figure:
+def pole_map(poles: Mapping[str, NDArray[np.complex128]]) -> go.Figure:
     """Poles (rad/s, complex) of each loop in the upper half plane, real parts on an axis that is linear near 0."""
     figure = go.Figure()
     symbols = ("x-thin", "cross-thin", "square-open", "circle-open", "diamond-open", "triangle-up-open")
