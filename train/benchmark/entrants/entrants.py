@@ -67,8 +67,8 @@ def _given(name: str, controller: Any) -> Given:
         return Given(as_controller(controller))
     except ValueError:
         raise ValueError(
-            f"controller {name!r} is of type {type(controller).__name__}, but must have Stable-Baselines3's predict, or be a function "
-            "of the readings (N, p)."
+            f"controller {name!r} is of type {type(controller).__name__}, but must have Stable-Baselines3's predict, or be a "
+            "function of the readings (N, p)."
         ) from None
 
 
