@@ -38,8 +38,8 @@ def benchmark(
 ) -> BenchmarkTable:
     """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
 
-    - ``own``: objects with Stable-Baselines3's ``predict`` by the names they are to have. They are given the readings (N, p)
-      of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
+    - ``own``: objects with Stable-Baselines3's ``predict``, or plain functions, by the names they are to have. They are given the
+      readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
     - ``scenarios``: names or TOML files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
       the others go on.
     - ``controllers``: names of contenders and shipped agents, all of them if None. No control and LQG are always among them.
