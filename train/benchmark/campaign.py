@@ -125,7 +125,8 @@ def write_all(folder: Path, table: BenchmarkTable) -> None:
     from train.benchmark.showing.heat_map import heat_map
     from train.benchmark.showing.page import write_report
     from train.figures.paper import save
+    from train.figures.paper_heat_map import heat_map as drawn
 
     write_files(folder, table)
-    save(heat_map(table), folder / "heat_map.png")
+    save(drawn(heat_map(table)), folder / "heat_map.png")
     write_report(folder / "report.html", table)
