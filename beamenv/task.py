@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import blade_config
+from beamenv.configuration import Flag, Number, Refused, checked, checked_table, read
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario, scenario, with_load
 from beamenv.simulation.blades import Motion
@@ -26,7 +27,7 @@ Array = NDArray[np.float64]
 
 BladeArgument = BladeConfig | Mapping[str, Any] | None
 DesignArgument = BladeConfig | Mapping[str, Any] | str | None
-ScenarioArgument = Scenario | Mapping[str, Any] | str | None
+ScenarioArgument = Scenario | Mapping[str, Any] | str | Path | None
 
 INFO = ("volts", "tip_displacement", "energy", "effort", "cost_increment")
 """What info holds of a ``Motion``."""
@@ -98,12 +99,8 @@ def resolve_task(
     """The task meant by the arguments of an environment; ValueError names the one that is wrong."""
     config = blade_config(preset, blade, speed)
     interval = config.control_interval
-    if isinstance(duration, bool) or not isinstance(duration, (int, float, np.number)) or not interval / 2 < duration < math.inf:
-        raise ValueError(
-            f"duration is {duration!r}, but must be a number of seconds, at least one control interval of {interval:g} s."
-        )
-    if not isinstance(physical_units, (bool, np.bool_)):
-        raise ValueError(f"physical_units is {physical_units!r}, but must be True or False.")
+    duration = checked("duration", duration, Number(gt=interval / 2, unit="s"))
+    physical_units = checked("physical_units", physical_units, Flag())
     chosen = scenario(scenario_argument)
     config = _in_scenario(config, chosen, chosen.plants.modes)
     own = config if design is None else _design_config(preset, speed, design)
@@ -115,7 +112,7 @@ def resolve_task(
         design_blade=true if designed == config else _same_electronics(designed, true),
         scenario=chosen,
         steps=round(duration / interval),
-        physical_units=bool(physical_units),
+        physical_units=physical_units,
     )
 
 
@@ -127,7 +124,7 @@ def _check_failures(chosen: Scenario, plant: Plant) -> None:
         ("faulty_sensors", failures.faulty_sensors, len(plant.C)),
     ):
         if broken > there:
-            raise ValueError(f"scenario: failures.{name} is {broken}, but the blade has {there}.")
+            raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
 
 
 def _in_scenario(config: BladeConfig, chosen: Scenario, modes: int | None) -> BladeConfig:
@@ -141,17 +138,14 @@ def _design_config(preset: str, speed: float | None, design: BladeConfig | Mappi
     """A name is a preset; a dictionary changes ``preset`` at ``speed``, not the true blade's own changes to it."""
     if isinstance(design, str):
         return blade_config(design, None, speed)
-    own_speed = isinstance(design, BladeConfig) or (isinstance(design, Mapping) and "speed" in design)
-    return blade_config(preset, design, None if own_speed else speed)
+    return read(blade_config(preset, None, speed), design, "design")
 
 
 def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     """The design blade behind the very sensors' range, drive and clock that the true one has."""
     for name in ("control_interval", "voltage_limits"):
         if getattr(design, name) != getattr(true.config, name):
-            raise ValueError(
-                f"design has {name} = {getattr(design, name)!r}, but must have the true blade's, {getattr(true.config, name)!r}."
-            )
+            raise Refused(f"design.{name}", getattr(design, name), f"the true blade's, {getattr(true.config, name)!r}")
     if design.sensor_full_scale is None:
         design = replace(design, sensor_full_scale=float(true.plant.sensor_full_scale[0]))
     designed = true.changed(design)
@@ -182,22 +176,20 @@ def _numbers(name: str, value: Any) -> Array:
 
 def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> tuple[Scenario, Array | None]:
     """Scenario and initial states ((n,) or (rows, n), or None) of one reset, as its options say."""
-    options = {} if options is None else options
-    if unknown := sorted(set(options) - {"load", "initial_state"}):
-        raise ValueError(f"options has the key {unknown[0]!r}, but may hold only 'load' and 'initial_state'.")
+    options = {} if options is None else checked_table("options", options, ("load", "initial_state"))
     chosen = with_load(task.scenario, options["load"]) if "load" in options else task.scenario
     return chosen, _initial_state(task.plant, options["initial_state"], rows) if "initial_state" in options else None
 
 
 def _initial_state(plant: Plant, value: Any, rows: int) -> Array:
-    state = _numbers("options['initial_state']", value)
+    state = _numbers("options.initial_state", value)
     n = len(plant.A)
     if state.shape not in ((n,), (rows, n)):
-        raise ValueError(f"options['initial_state'] has shape {state.shape}, but must have shape ({n},) or ({rows}, {n}).")
+        raise ValueError(f"options.initial_state has shape {state.shape}, but must have shape ({n},) or ({rows}, {n}).")
     strain = np.abs(state @ plant.strain.T).max(initial=0.0)
     if not (np.isfinite(state).all() and strain <= FAILURE_STRAIN):
         raise ValueError(
-            f"options['initial_state'] strains the blade by {strain:.3g}, but must be finite and stay below {FAILURE_STRAIN:g}."
+            f"options.initial_state strains the blade by {strain:.3g}, but must be finite and stay below {FAILURE_STRAIN:g}."
         )
     return state
 

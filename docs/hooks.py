@@ -75,7 +75,7 @@ def recipe_table() -> str:
     from train.shared.markdown import markup_table
 
     found = [(name, named_recipe(name)) for name in NAMES]
-    return markup_table(["recipe", "what it is", "updates"], [[f"`{name}`", each.title, each.updates] for name, each in found])
+    return markup_table(["recipe", "what it is", "updates"], [[f"`{name}`", each.title, str(each.updates)] for name, each in found])
 
 
 def shipped_table() -> str:

@@ -35,10 +35,10 @@ def test_import_loads_no_heavy_package():
     assert not HEAVY_MODULES & modules
 
 
-def test_import_takes_less_than_a_second():
+def test_import_takes_less_than_half_a_second():
     # A loaded machine can only slow an import down, so one quick import is proof; five slow ones are not bad luck.
     times = (import_beamenv_afresh()[0] for _ in range(5))
-    assert any(seconds < 1.0 for seconds in times)
+    assert any(seconds < 0.5 for seconds in times)
 
 
 @pytest.mark.parametrize("wing", WINGS)
@@ -78,13 +78,11 @@ def test_command_without_the_train_extra_says_how_to_install_it():
     assert "pip install 'beamenv[train]'" in run.stderr
 
 
-# Imports run one way: structure → patches → plant → environment; baselines know plants, never environments; training
-# knows everything and nobody knows training. Lazy and type-only imports count: they are arrows too.
+# Imports run one way: configuration → structure → patches → plant → environment; baselines know plants, never environments;
+# training knows everything and nobody knows training. Lazy and type-only imports count: they are arrows too.
 
-ENVIRONMENT = {
-    f"beamenv.{module}" for module in ("env", "vector_env", "mixed_blades", "placement_wrapper", "wrappers", "rendering", "render")
-}
-STRUCTURE, PATCHES, PLANT = "beamenv.structure", "beamenv.patches", "beamenv.plant.plant"
+ENVIRONMENT = {"beamenv.envs", "beamenv.rendering"}
+CONFIGURATION, STRUCTURE, PATCHES, PLANT = (f"beamenv.{room}" for room in ("configuration", "structure", "patches", "plant"))
 
 
 def dotted_name(path):
@@ -119,9 +117,10 @@ def arrows(module):
 @pytest.mark.parametrize(
     ("module", "may_import"),
     [
-        (STRUCTURE, {STRUCTURE}),
-        (PATCHES, {STRUCTURE, PATCHES}),
-        (PLANT, {STRUCTURE, PATCHES, PLANT}),
+        (CONFIGURATION, {CONFIGURATION}),
+        (STRUCTURE, {CONFIGURATION, STRUCTURE}),
+        (PATCHES, {CONFIGURATION, STRUCTURE, PATCHES}),
+        (PLANT, {CONFIGURATION, STRUCTURE, PATCHES, PLANT}),
         ("beamenv", {"beamenv"}),
         ("baselines", {"beamenv", "baselines"}),
     ],

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
-import numpy as np
+from pydantic_core import CoreSchema, core_schema
 
+from beamenv.configuration import Choice, Count, Flag, Number, Range, configuration
+from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.patches import PatchLayout
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
+from beamenv.structure.beam import TERMS
+from beamenv.structure.section.section import FLOW, THEORY, Metres
+from beamenv.structure.walls.laminate import PLY_ANGLES
 
 MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6})
 
@@ -18,36 +23,58 @@ ON_EVERY_WALL = "all"
 
 
 @dataclass(frozen=True, slots=True)
+class PlyAngles(Kind):
+    """Ply angles of all walls, a list, or wall by wall, a mapping of lists; kept as pairs, for ("all", angles) or each wall."""
+
+    @property
+    def allowed(self) -> str:
+        """Both forms."""
+        return f"{PLY_ANGLES.allowed}, or such a list for each wall"
+
+    def core(self) -> CoreSchema:
+        """Pairs of a wall and its angles."""
+        wall = core_schema.tuple_schema([core_schema.str_schema(strict=True), PLY_ANGLES.inner()], strict=True)
+        walls = core_schema.tuple_variable_schema(wall, min_length=1, strict=True)
+        return core_schema.no_info_before_validator_function(_by_wall, walls)
+
+    def json(self) -> JsonSchema:
+        """An array, or an object of arrays."""
+        angles = PLY_ANGLES.json()
+        walls = {"type": "object", "additionalProperties": angles, "minProperties": 1}
+        pair = {"type": "array", "prefixItems": [{"type": "string"}, angles], "minItems": 2, "maxItems": 2}
+        return {"anyOf": [angles, walls, {"type": "array", "items": pair, "minItems": 1}]}
+
+
+def _by_wall(value: Any) -> Any:
+    value = plain(tuple(value.items()) if isinstance(value, Mapping) else value)
+    pairs = isinstance(value, tuple) and value and all(isinstance(each, tuple) for each in value)
+    return value if pairs else ((ON_EVERY_WALL, value),)
+
+
+@configuration("blade.beam")
 class BeamConfig:
     """The bare blade: a box of the thesis (§3.5) unless said otherwise."""
 
-    length: float = 2.023
+    length: Metres = 2.023
     """m."""
-    width: float = 0.254
+    width: Metres = 0.254
     """m, of the mid-line box along the chord."""
-    depth: float = 0.0508
+    depth: Metres = 0.0508
     """m, of the mid-line box."""
-    thickness: float = 0.01016
+    thickness: Metres = 0.01016
     """m, of the walls."""
-    hub_radius: float = 0.2023
+    hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.2023
     """m."""
-    material: str | Lamina = "graphite-epoxy"
-    """A name or a lamina."""
-    ply_angles_deg: tuple[tuple[str, tuple[float, ...]], ...] = ((ON_EVERY_WALL, (30.0,) * 6),)
+    material: Annotated[str | Lamina, Choice(MATERIALS, Lamina)] = "graphite-epoxy"
+    """A name or a lamina; in a dictionary or file also a table of a lamina's fields, which completes from the material before."""
+    ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
     """Degrees from the contour tangent, inner to outer face, for ("all", angles) or wall by wall; a list or a mapping will do."""
-    pretwist_deg: float = 30.0
-    presetting_deg: float = 0.0
-    taper: float = 1.0
-    shear: str = "higher_order"
-    shear_flow: str = "consistent"
-    terms: int = 10
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "ply_angles_deg", as_ply_angles(self.ply_angles_deg))
-        if isinstance(self.material, Mapping):
-            object.__setattr__(self, "material", changed(GRAPHITE_EPOXY, self.material, "material"))
-        elif isinstance(self.material, str) and self.material not in MATERIALS:
-            raise ValueError(f"material = {self.material!r} of the beam must be one of {', '.join(MATERIALS)}, or a Lamina.")
+    pretwist_deg: Annotated[float, Number(unit="degrees")] = 30.0
+    presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
+    taper: Annotated[float, Number(gt=0.0)] = 1.0
+    shear: Annotated[str, THEORY] = "higher_order"
+    shear_flow: Annotated[str, FLOW] = "consistent"
+    terms: Annotated[int, TERMS] = 10
 
     def build(self, layout: PatchLayout | None = None) -> RotatingBeam:
         """The blade, with the inlays of passive patches when a layout is given."""
@@ -74,88 +101,29 @@ class BeamConfig:
         return Layup.by_wall(material, **walls)
 
 
-def as_ply_angles(value: Any) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """Ply angles of all walls (a sequence of numbers) or wall by wall (a mapping, or pairs), in one form."""
-    try:
-        if isinstance(value, Mapping):
-            pairs = list(value.items())
-        elif all(isinstance(entry, (int, float, np.number)) for entry in value):
-            pairs = [(ON_EVERY_WALL, value)]
-        else:
-            pairs = [(wall, angles) for wall, angles in value]
-        return tuple((str(wall), tuple(float(angle) for angle in angles)) for wall, angles in pairs)
-    except (TypeError, ValueError):
-        raise ValueError(f"ply_angles_deg = {value!r} must be a list of angles, or such a list for each wall.") from None
-
-
-@dataclass(frozen=True, slots=True)
+@configuration("blade")
 class BladeConfig:
     """A rotating blade with its patches and electronics: everything a plant is built from."""
 
     beam: BeamConfig = field(default_factory=BeamConfig)
     patches: PatchLayout = field(default_factory=PatchLayout)
-    speed: float = 200.0
+    speed: Annotated[float, Number(ge=0.0, unit="rad/s")] = 200.0
     """rad/s."""
-    modes: int = 11
+    modes: Annotated[int, Count()] = 11
     """Retained modes: what a pretwisted blade's tip displacement and voltages need (thesis Fig. 5.2)."""
-    gyroscopic: bool = True
-    damping_ratio: float = 0.01
+    gyroscopic: Annotated[bool, Flag()] = True
+    damping_ratio: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.01
     """Of every mode."""
-    effort_weight: float = 0.5
+    effort_weight: Annotated[float, Number(gt=0.0)] = 0.5
     """ρ in R = ρ FᵀK⁻¹F: with ½, uᵀRu is the energy (J) that the actuators store in the blade at rest."""
-    white_load: float = 3.0
+    white_load: Annotated[float, Number(ge=0.0, unit="N/m")] = 3.0
     """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""
-    sensor_noise_fraction: float = 0.02
+    sensor_noise_fraction: Annotated[float, Number(ge=0.0)] = 0.02
     """Standard deviation of one sample over the sensors' full scale."""
-    sensor_full_scale: float | None = None
+    sensor_full_scale: Annotated[float | None, Number(gt=0.0, unit="A")] = None
     """A: the range of the data acquisition, and with it its noise, where patches move but the instrument stays; None fits it to
     the blade's largest current after a sudden reference load."""
-    voltage_limits: tuple[float, float] = (-1500.0, 1500.0)
+    voltage_limits: Annotated[tuple[float, float], Range(encloses=0.0, unit="V")] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
-    control_interval: float = 0.5e-3
+    control_interval: Annotated[float, Number(ge=1e-6, le=1.0, unit="s")] = 0.5e-3
     """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "voltage_limits", tuple(float(limit) for limit in self.voltage_limits))
-        check(self, "effort_weight", allowed="a positive number", valid=lambda value: value > 0.0)
-        check(self, "control_interval", allowed="from 1e-6 to 1 s", valid=lambda value: 1e-6 <= value <= 1.0)
-        check(
-            self,
-            "white_load",
-            "sensor_noise_fraction",
-            "speed",
-            allowed="zero or a positive number",
-            valid=lambda value: value >= 0.0,
-        )
-        check(self, "damping_ratio", allowed="at least 0 and below 1", valid=lambda value: 0.0 <= value < 1.0)
-        if self.sensor_full_scale is not None:
-            check(self, "sensor_full_scale", allowed="None or a positive number", valid=lambda value: value > 0.0)
-        low, high = self.voltage_limits
-        if not (np.isfinite(low) and np.isfinite(high) and low < 0.0 < high):
-            raise ValueError(f"voltage_limits = {self.voltage_limits!r} must be a negative and a positive number of volts.")
-
-
-def check(config: Any, *names: str, allowed: str, valid: Any) -> None:
-    """``ValueError`` naming the field, its value and what is allowed."""
-    for name in names:
-        value = getattr(config, name)
-        if not (isinstance(value, (int, float, np.number)) and np.isfinite(value) and valid(value)):
-            raise ValueError(f"{name} = {value!r} must be {allowed}.")
-
-
-def changed(config: Any, changes: Mapping[str, Any], name: str) -> Any:
-    """A copy of a frozen dataclass with the given fields changed, nested mappings reaching into nested dataclasses."""
-    if not isinstance(changes, Mapping):
-        raise ValueError(f"{name} = {changes!r} must be a mapping of field names to values.")
-    known = [entry.name for entry in fields(config)]
-    unknown = [key for key in changes if key not in known]
-    if unknown:
-        raise ValueError(f"{name} has no field {unknown[0]!r}; it has {', '.join(known)}.")
-    values = {}
-    for key, value in changes.items():
-        current = getattr(config, key)
-        if is_dataclass(current) and not isinstance(current, Lamina) and not isinstance(value, (Mapping, type(current))):
-            raise ValueError(f"{name}.{key} = {value!r} must be a mapping of field names to values.")
-        nested = is_dataclass(current) and isinstance(value, Mapping) and not isinstance(current, Lamina)
-        values[key] = changed(current, value, f"{name}.{key}") if nested else value
-    return replace(config, **values)

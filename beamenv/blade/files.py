@@ -8,8 +8,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from beamenv.blade.config import BladeConfig, changed
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
+from beamenv.configuration import read
+from beamenv.configuration.files import of_file, read_table
 
 
 def to_dict(config: Any) -> dict[str, Any]:
@@ -20,17 +22,11 @@ def to_dict(config: Any) -> dict[str, Any]:
 
 def from_dict(values: Mapping[str, Any]) -> BladeConfig:
     """The configuration that ``to_dict`` wrote; fields left out take the thesis' values."""
-    config: BladeConfig = changed(THESIS, values, "blade")
-    return config
+    return read(THESIS, values)
 
 
 def load_config(path: str | Path) -> BladeConfig:
-    """A blade from a JSON or TOML file (TOML needs Python 3.11)."""
-    path = Path(path)
-    if path.suffix == ".json":
-        return from_dict(json.loads(path.read_text()))
-    if path.suffix == ".toml":
-        import tomllib
-
-        return from_dict(tomllib.loads(path.read_text()))
-    raise ValueError(f"path = {str(path)!r} must end in .json or .toml.")
+    """A blade from a JSON or TOML file, fields left out as in the thesis; ``ValueError`` names the file and what is wrong in it."""
+    content = read_table(path)
+    with of_file(path):
+        return from_dict(content)

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from beamenv.blade.config import BeamConfig, BladeConfig, changed
+from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.configuration import Refused, read
 from beamenv.patches import PatchLayout
 
 THESIS = BladeConfig()
@@ -53,7 +54,7 @@ def blade_config(
 
     Raises ``ValueError`` for an unknown preset or field and for a value that is not allowed.
     """
-    if preset not in PRESETS:
-        raise ValueError(f"preset = {preset!r} must be one of {', '.join(PRESETS)}.")
-    config = overrides if isinstance(overrides, BladeConfig) else changed(PRESETS[preset], overrides or {}, "blade")
+    if not isinstance(preset, str) or preset not in PRESETS:
+        raise Refused("preset", preset, f"one of {', '.join(PRESETS)}")
+    config = PRESETS[preset] if overrides is None else read(PRESETS[preset], overrides)
     return config if speed is None else replace(config, speed=speed)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration import Number, configuration
 from beamenv.structure.walls.contour import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
 from beamenv.structure.walls.materials import Lamina, strain_rotation
@@ -17,18 +18,18 @@ FIBRE_ANGLE_DEG = 90.0
 """Fibres run along the span. The thesis prints θp = 0, which would leave −1.1 C/m² along the span and is not meant."""
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("patch_material")
 class PatchMaterial:
     """A piezoelectric sheet driven by one field E = V / ``electrode_spacing`` along its axis 1 (MFC) or through it (PZT)."""
 
     lamina: Lamina
-    d11: float
+    d11: Annotated[float, Number(unit="m/V")]
     """Free strain along the span per field, m/V (= C/N)."""
-    d12: float
+    d12: Annotated[float, Number(unit="m/V")]
     """Free strain across the span per field, m/V."""
-    thickness: float
+    thickness: Annotated[float, Number(gt=0.0, unit="m")]
     """m."""
-    electrode_spacing: float
+    electrode_spacing: Annotated[float, Number(gt=0.0, unit="m")]
     """m: between the fingers of an MFC's electrodes, the thickness of a PZT sheet."""
 
     def piezoelectric_stress(self) -> Array:

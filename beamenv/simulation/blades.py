@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, drive_limit, normalised
 from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.scenarios.drawing import draw_load_cases, draw_uniforms
 from beamenv.scenarios.load_cases import static_deflection
-from beamenv.scenarios.scenario import Scenario, draw_load_cases, draw_uniforms
+from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.kernel import advance, row_dot, row_product
 from beamenv.simulation.memory import batch_shape, columns_first, place
 from beamenv.simulation.plants.allotment import Allotment

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import InstanceOf
 
+from beamenv.configuration import Count, Number, Refused, checked, configuration
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
-from beamenv.structure.checks import check_positive, is_count, is_number
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
-from beamenv.structure.section.section import Section, SpanWalls, check_theory
+from beamenv.structure.section.section import FLOW, THEORY, Metres, Section, SpanWalls
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
 from beamenv.structure.walls.contour import Inlay
 from beamenv.structure.walls.laminate import Layup
@@ -21,8 +22,10 @@ Array = NDArray[np.float64]
 EXTRA_STATIONS = 6
 """Gauss stations beyond the number of terms on each piece of the span: pretwist and taper are then integrated to round-off."""
 
+TERMS = Count(1, 30)
 
-@dataclass(frozen=True, eq=False)
+
+@configuration("beam", slots=False, eq=False)
 class RotatingBeam:
     """A rotating, pretwisted, tapered, thin-walled composite cantilever (thesis chapters 2 and 3, corrected).
 
@@ -33,46 +36,37 @@ class RotatingBeam:
     not fit their wall.
     """
 
-    section: Section
+    section: InstanceOf[Section]
     """Mid-line section at the root."""
-    layup: Layup
-    length: float
+    layup: InstanceOf[Layup]
+    length: Metres
     """m."""
-    hub_radius: float = 0.0
+    hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.0
     """R₀, m."""
-    pretwist_deg: float = 0.0
+    pretwist_deg: Annotated[float, Number(unit="degrees")] = 0.0
     """Linear pretwist between root and tip."""
-    presetting_deg: float = 0.0
+    presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
     """Angle of the root section's chord from the plane of rotation."""
-    taper: float = 1.0
+    taper: Annotated[float, Number(gt=0.0)] = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
-    shear: str = "higher_order"
+    shear: Annotated[str, THEORY] = "higher_order"
     """"higher_order", "first_order" or "rigid"."""
-    shear_flow: str = "consistent"
+    shear_flow: Annotated[str, FLOW] = "consistent"
     """"consistent": constant around the cell; "thesis": without the couplings of off-axis plies."""
-    terms: int = 10
+    terms: Annotated[int, TERMS] = 10
     """Trial functions of each field."""
-    inlays: tuple[Inlay, ...] = ()
+    inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
 
     def __post_init__(self) -> None:
-        check_theory(self.shear, self.shear_flow)
-        check_positive(length=self.length, taper=self.taper)
-        if not (is_number(self.hub_radius) and self.hub_radius >= 0.0):
-            raise ValueError(f"hub_radius = {self.hub_radius!r} must be zero or a positive number of metres.")
-        for name in ("pretwist_deg", "presetting_deg"):
-            if not is_number(getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)!r} must be a finite number of degrees.")
-        if not is_count(self.terms, 1, 30):
-            raise ValueError(f"terms = {self.terms!r} must be an integer from 1 to 30.")
         self.layup.check_walls(self.section.walls)
-        self.section.check_thickness(min(1.0, 1.0 / self.taper))
+        self.section.check_thickness(min(1.0, 1.0 / self.taper), "section.thickness")
         check_inlays(self)
 
     @cached_property
     def space(self) -> TrialSpace:
         """The trial functions."""
-        return TrialSpace(self.length, int(self.terms), rigid=self.shear == "rigid")
+        return TrialSpace(self.length, self.terms, rigid=self.shear == "rigid")
 
     @cached_property
     def matrices(self) -> BeamMatrices:
@@ -114,18 +108,18 @@ class RotatingBeam:
 
         ``motions`` keeps only some of lag, flap, extension, twist, each with its section rotation.
         """
-        matrices = self._selected(speed, count, motions)
+        speed, count, matrices = self._selected(speed, count, motions)
         if gyroscopic and np.any(matrices.gyroscopic) and speed:
             return whirling_frequencies(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed))[:count]
         return normal_modes(matrices.mass, matrices.stiffness(speed), count)[0]
 
     def modes(self, speed: float = 0.0, count: int = 6, motions: tuple[str, ...] | None = None, gyroscopic: bool = True) -> Modes:
         """Frequencies, mode shapes and families of the first ``count`` modes at a speed in rad/s below the critical one."""
-        matrices = self._selected(speed, count, motions)
+        speed, count, matrices = self._selected(speed, count, motions)
         shapes: Array | NDArray[np.complex128]
         if gyroscopic and speed:
             if speed >= self.critical_speed:
-                raise ValueError(f"speed = {speed!r} rad/s must be below the critical speed, {self.critical_speed:.6g} rad/s.")
+                raise Refused("speed", speed, f"below the critical speed, {self.critical_speed:.6g} rad/s")
             frequencies, shapes = whirling_modes(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed), count)
         else:
             frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), count)
@@ -136,13 +130,11 @@ class RotatingBeam:
         families = tuple(names[k] for k in participation.argmax(axis=1))
         return Modes(frequencies, full, families, participation)
 
-    def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> BeamMatrices:
-        if not (is_number(speed) and speed >= 0.0):
-            raise ValueError(f"speed = {speed!r} must be zero or a positive number of rad/s.")
+    def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> tuple[float, int, BeamMatrices]:
+        speed = checked("speed", speed, Number(ge=0.0, unit="rad/s"))
         columns = self.space.columns(motions)
-        if not is_count(count, 1, len(columns)):
-            raise ValueError(f"count = {count!r} must be an integer from 1 to {len(columns)}, the number of trial functions.")
-        return self.matrices if motions is None else self.matrices.restricted(columns)
+        count = checked("count", count, Count(1, len(columns)))
+        return speed, count, self.matrices if motions is None else self.matrices.restricted(columns)
 
     def _all_coefficients(
         self, shapes: Array | NDArray[np.complex128], motions: tuple[str, ...] | None

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beamenv.configuration import Count, Refused, checked
 from beamenv.structure.assembly import BeamMatrices
 from beamenv.structure.beam import RotatingBeam
 from beamenv.structure.modes import critical_speed, diverged_frequencies, reduced, stable_frequencies
@@ -31,7 +32,7 @@ def frequency_sweep(
     """
     omega = np.atleast_1d(np.asarray(speeds, dtype=float))
     if omega.ndim != 1 or not np.all(np.isfinite(omega) & (omega >= 0.0)):
-        raise ValueError(f"speeds = {speeds!r} must be zero or positive numbers of rad/s in one row.")
+        raise Refused("speeds", speeds, "zero or positive numbers of rad/s in one row")
     if isinstance(beams, RotatingBeam):
         return _sweep(beams, omega, count, motions, gyroscopic)
     return np.stack([_sweep(beam, omega, count, motions, gyroscopic) for beam in beams])
@@ -39,8 +40,7 @@ def frequency_sweep(
 
 def _sweep(beam: RotatingBeam, speeds: Array, count: int, motions: tuple[str, ...] | None, gyroscopic: bool) -> Array:
     columns = beam.space.columns(motions)
-    if not 1 <= count <= len(columns):
-        raise ValueError(f"count = {count!r} must be from 1 to {len(columns)}, the number of trial functions.")
+    count = checked("count", count, Count(1, len(columns)))
     matrices = beam.matrices if motions is None else beam.matrices.restricted(columns)
     elastic, spin, coupling = mass_reduced(matrices)
     critical = critical_speed(matrices.elastic_stiffness, matrices.spin_stiffness)

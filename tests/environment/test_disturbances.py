@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
-from beamenv.scenarios.scenario import SCENARIOS, draw_load_cases
+from beamenv.scenarios.drawing import draw_load_cases
+from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.simulation.signals.disturbances import BLOCK, SeededDisturbances, SharedDisturbances, noise_factor
 
 PLANT = build_plant(blade_config())

@@ -48,24 +48,39 @@ def placed(**fields):
 
 
 REFUSED = {
-    "overlap": (placed(actuators=(0.0, 0.05)), r"actuators = \(0\.0, 0\.05\) must be at least one patch length, 0\.085 m, apart"),
-    "too many": (placed(sensors=18), "sensors = 18 must be at least one patch length, 0.085 m, apart"),
-    "same place twice": (placed(actuators=(0.4, 0.4)), "actuators = .* so that patches do not overlap"),
+    "overlap": (
+        placed(actuators=(0.0, 0.05)),
+        r"blade.patches.actuators is \(0\.0, 0\.05\), but must be at least one patch length, 0\.085 m, apart",
+    ),
+    "too many": (placed(sensors=18), "blade.patches.sensors is 18, but must be at least one patch length, 0.085 m, apart"),
+    "same place twice": (
+        placed(actuators=(0.4, 0.4)),
+        "blade.patches.actuators is .*, but must be .*so that patches do not overlap",
+    ),
     "before the root": (
         placed(actuators=(-0.01,)),
-        r"actuators = \(-0\.01,\) must have their root-side edges between 0 and 1\.315 m",
+        r"blade.patches.actuators is \(-0\.01,\), but must be root-side edges between 0 and 1\.315 m",
     ),
-    "beyond 0.7 L": (placed(sensors=(1.32,)), r"sensors = \(1\.32,\) must .* within 0 and 0\.7 of the 2 m span"),
-    "no room at all": (placed(length=1.5), r"length = 1\.5 of the patches must be at most 0\.7 of the 2 m span"),
-    "unknown material": (placed(material="PVDF"), "material = 'PVDF' of the patches must be one of MFC, PZT"),
-    "none": (placed(actuators=0), "actuators = 0 must be at least one patch"),
-    "minus one": (placed(sensors=-1), "sensors = -1 must be at least one patch"),
-    "empty list": (placed(sensors=()), r"sensors = \(\) must be one or more finite positions"),
-    "not a number": (placed(actuators=(0.1, math.nan)), r"actuators = \(0\.1, nan\) must be one or more finite positions"),
-    "yes": (placed(actuators=True), "actuators = True must be a number of patches or their positions"),
-    "text": (placed(actuators="root"), "actuators = 'root' must be a number of patches or their positions"),
-    "no length": (placed(length=0.0), r"length = 0\.0 of the patches must be a positive number of metres"),
-    "width as text": (placed(width="57 mm"), "width = '57 mm' of the patches must be a positive number of metres"),
+    "beyond 0.7 L": (
+        placed(sensors=(1.32,)),
+        r"blade.patches.sensors is \(1\.32,\), but must be .* within 0 and 0\.7 of the 2 m span",
+    ),
+    "no room at all": (placed(length=1.5), r"blade.patches.length is 1\.5, but must be at most 0\.7 of the 2 m span"),
+    "unknown material": (placed(material="PVDF"), "blade.patches.material is 'PVDF', but must be one of MFC, PZT"),
+    "none": (placed(actuators=0), "blade.patches.actuators is 0, but must be a number of patches, at least one"),
+    "minus one": (placed(sensors=-1), "blade.patches.sensors is -1, but must be a number of patches, at least one"),
+    "empty list": (placed(sensors=()), r"blade.patches.sensors is \(\), but must be .* one or more finite positions"),
+    "not a number": (
+        placed(actuators=(0.1, math.nan)),
+        r"blade.patches.actuators is \(0\.1, nan\), but must be .* one or more finite positions",
+    ),
+    "yes": (placed(actuators=True), "blade.patches.actuators is True, but must be a number of patches, at least one, or a list"),
+    "text": (
+        placed(actuators="root"),
+        "blade.patches.actuators is 'root', but must be a number of patches, at least one, or a list",
+    ),
+    "no length": (placed(length=0.0), r"blade.patches.length is 0\.0, but must be a positive number"),
+    "width as text": (placed(width="57 mm"), "blade.patches.width is '57 mm', but must be a positive number"),
     "wider than the wall, passive or not": (
         lambda: actuation(BLADE, PatchLayout(width=0.3, passive=False)),
         r"width = 0\.3 m must be positive and at most the top wall's 0\.254 m",

@@ -41,5 +41,5 @@ def test_json_and_toml_files_give_the_same_blade(tmp_path):
     (tmp_path / "blade.json").write_text(json.dumps({"speed": 100.0, "beam": {"taper": 2.0}}))
     (tmp_path / "blade.toml").write_text("speed = 100.0\n[beam]\ntaper = 2.0\n")
     assert load_config(tmp_path / "blade.json") == load_config(tmp_path / "blade.toml")
-    with pytest.raises(ValueError, match=r"must end in .json or .toml"):
+    with pytest.raises(ValueError, match=r"blade.yaml., but must be a file that ends in .toml or .json"):
         load_config(tmp_path / "blade.yaml")

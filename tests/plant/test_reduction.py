@@ -137,14 +137,14 @@ def test_speed_past_the_critical_one_is_refused_by_name_and_value():
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        ({"beam": {"thickness": -0.01}}, "thickness = -0.01"),
-        ({"patches": {"actuators": [0.0, 0.05]}}, "actuators = .* apart so that patches do not overlap"),
-        ({"patches": {"sensors": [1.9]}}, "sensors = .* lies within 0 and 0.7"),
-        ({"modes": 0}, "modes = 0"),
-        ({"damping_ratio": float("nan")}, "damping_ratio = nan"),
+        ({"beam": {"thickness": -0.01}}, "blade.beam.thickness is -0.01"),
+        ({"patches": {"actuators": [0.0, 0.05]}}, "blade.patches.actuators is .* apart so that patches do not overlap"),
+        ({"patches": {"sensors": [1.9]}}, "blade.patches.sensors is .* lies within 0 and 0.7"),
+        ({"modes": 0}, "blade.modes is 0"),
+        ({"damping_ratio": float("nan")}, "blade.damping_ratio is nan"),
         ({"beam": {"chord": 1.0}}, "blade.beam has no field 'chord'"),
         ({"voltage_limits": [0.0, 1.0]}, "voltage_limits"),
-        ({"beam": {"ply_angles_deg": "thirty"}}, "ply_angles_deg = 'thirty'"),
+        ({"beam": {"ply_angles_deg": "thirty"}}, "blade.beam.ply_angles_deg is 'thirty'"),
     ],
 )
 def test_a_bad_configuration_names_the_argument_and_its_value(overrides, words):
@@ -153,5 +153,5 @@ def test_a_bad_configuration_names_the_argument_and_its_value(overrides, words):
 
 
 def test_unknown_preset_lists_the_known_ones():
-    with pytest.raises(ValueError, match=r"preset = 'helicopter' must be one of thesis, .*chandra-chopra"):
+    with pytest.raises(ValueError, match=r"preset is 'helicopter', but must be one of thesis, .*chandra-chopra"):
         blade_config("helicopter")

@@ -6,7 +6,8 @@ from scipy.stats import kstest
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
-from beamenv.scenarios.scenario import SCENARIOS, draw_load_cases, scenario
+from beamenv.scenarios.drawing import draw_load_cases
+from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 
 PLANT = build_plant(blade_config())

@@ -1,4 +1,4 @@
-"""What the table says of the questions it was made for, by rule."""
+"""What the table answers to the questions it was made for, by rule."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MARGIN = 0.03
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A sentence, and whether it meets what was aimed at; None where nothing was."""
+    """A sentence, and whether it meets the target; None where there is none."""
 
     sentence: str
     met: bool | None = None
@@ -41,7 +41,7 @@ def nominal(agent: Row, rival: Row) -> Finding:
     excess = statistics.ratio(agent.cost, rival.cost)
     sentence = (
         f"{agent.controller} on nominal: J differs from LQG's by {_percent(excess.value - 1.0)} "
-        f"[{_percent(excess.low - 1.0)}, {_percent(excess.high - 1.0)}]; aimed at: no more than {_percent(MARGIN)}."
+        f"[{_percent(excess.low - 1.0)}, {_percent(excess.high - 1.0)}]; target: at most {_percent(MARGIN)}."
     )
     return Finding(sentence, excess.value <= 1.0 + MARGIN)
 
@@ -61,7 +61,7 @@ def winner(rows: Sequence[Row]) -> str:
         return f"{first.scenario}: every controller breaks blades."
     unstable = first.estimates["unstable"].value
     doubt = f"; unstable in {100.0 * unstable:.0f} % of its episodes" if unstable else ""
-    return f"{first.scenario}: least J has {first.controller} ({first.kind}), {_gap(gap)} beside LQG{doubt}."
+    return f"{first.scenario}: lowest J by {first.controller} ({first.kind}), {_gap(gap)} against LQG{doubt}."
 
 
 def _generalists(table: BenchmarkTable) -> list[tuple[Row, Row]]:
@@ -80,7 +80,7 @@ def _contest(rows: Sequence[Row]) -> tuple[Row, Row, Estimate] | None:
 
 
 def _told(agent: Row, fixed: Row, gap: Estimate) -> str:
-    verdict = "ahead" if gap.high < 0.0 else "behind" if gap.low > 0.0 else "not told apart"
+    verdict = "ahead" if gap.high < 0.0 else "behind" if gap.low > 0.0 else "no clear difference"
     return f"{agent.scenario}: best agent {agent.controller}, best fixed controller {fixed.controller}: {_gap(gap)}, {verdict}."
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import Blade
-from beamenv.blade.config import BeamConfig, BladeConfig, check
+from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.blade.presets import THESIS
+from beamenv.configuration import Choice, Number, Numbers, configuration
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
@@ -34,30 +35,25 @@ STEP_DURATION = 0.5
 """s."""
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("settings")
 class Settings:
     """What the sliders say; the rest is the thesis' blade.
 
     Raises ``ValueError`` for a value that is no number, or a load that is neither in lag nor in flap.
     """
 
-    ply_angle_deg: float = 30.0
+    ply_angle_deg: Annotated[float, Number(unit="degrees")] = 30.0
     """Of all six plies of every wall, from the contour tangent."""
-    speed: float = 200.0
+    speed: Annotated[float, Number(unit="rad/s")] = 200.0
     """rad/s."""
-    pretwist_deg: float = 30.0
-    taper: float = 1.0
+    pretwist_deg: Annotated[float, Number(unit="degrees")] = 30.0
+    taper: Annotated[float, Number()] = 1.0
     """Root chord over tip chord."""
-    actuators: tuple[float, ...] = THESIS.patches.actuator_positions(THESIS.beam.length)
+    actuators: Annotated[tuple[float, ...], Numbers()] = THESIS.patches.actuator_positions(THESIS.beam.length)
     """Root-side edges, m."""
-    sensors: tuple[float, ...] = THESIS.patches.sensor_positions(THESIS.beam.length)
+    sensors: Annotated[tuple[float, ...], Numbers()] = THESIS.patches.sensor_positions(THESIS.beam.length)
     """Root-side edges, m."""
-    load: Direction = "flap"
-
-    def __post_init__(self) -> None:
-        check(self, "ply_angle_deg", "speed", "pretwist_deg", "taper", allowed="a number", valid=lambda value: True)
-        if self.load not in ("lag", "flap"):
-            raise ValueError(f'load = {self.load!r} must be "lag" or "flap".')
+    load: Annotated[Direction, Choice(("lag", "flap"))] = "flap"
 
     def config(self) -> BladeConfig:
         """The blade."""

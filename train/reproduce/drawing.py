@@ -1,4 +1,4 @@
-"""The one drawing of all figures: panels of curves, told apart by lightness, marker and line, with the legend outside."""
+"""The one drawing of all figures: panels of curves, distinguished by lightness, marker and line, with the legend outside."""
 
 from __future__ import annotations
 

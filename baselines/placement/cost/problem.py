@@ -39,8 +39,8 @@ class PlacementProblem:
 
     Actuators: tr(P) in s, of PA + AᵀP + Q − PBR⁻¹BᵀP = 0. ½xᵀx is the vibration energy, so tr(P)/r is the mean cost (J s per J)
     of bringing the blade to rest, over initial states of 1 J in every direction of its 2r states.
-    Sensors: tr(S) in J, of AS + SAᵀ + W − SCᵀV⁻¹CS = 0 with the environment's noise; ½tr(S) is the mean energy that the filter
-    does not know of. The data acquisition, and so V, stays as it is when sensors move.
+    Sensors: tr(S) in J, of AS + SAᵀ + W − SCᵀV⁻¹CS = 0 with the environment's noise; ½tr(S) is the mean energy of the filter's
+    error. The data acquisition, and so V, stays as it is when sensors move.
     """
 
     config: BladeConfig

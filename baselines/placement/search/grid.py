@@ -23,7 +23,7 @@ class Grid:
     points: tuple[int, int] = (401, 121)
     """Positions of a single patch, and of each of two."""
     polished: int = 4
-    """The best local minima of the grid, from each of which SQP goes on."""
+    """The best local minima of the grid, from each of which SQP continues."""
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
         """Search; ``ValueError`` for more than two patches. Neither start nor generator matters."""

@@ -5,11 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BeforeValidator
 
-from beamenv.structure.checks import is_number
+from beamenv.configuration import Choice, Number, Refused, checked, configuration
+from beamenv.configuration.kinds import plain
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
 from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
@@ -33,6 +36,10 @@ from beamenv.structure.walls.wall_kinematics import (
 
 Array = NDArray[np.float64]
 
+Metres = Annotated[float, Number(gt=0.0, unit="m")]
+THEORY = Choice(SHEAR_THEORIES)
+FLOW = Choice(SHEAR_FLOWS)
+
 
 class Section(ABC):
     """A closed single-cell thin-walled section with walls of one thickness."""
@@ -55,14 +62,12 @@ class Section(ABC):
     def thickness_limit(self) -> float:
         """Wall thickness (m) at which the walls would fill the section."""
 
-    def check_thickness(self, scale: float = 1.0) -> None:
+    def check_thickness(self, scale: float = 1.0, name: str = "thickness") -> None:
         """``ValueError`` unless the wall is thinner than its limit in a section of ``scale`` times the size."""
         limit = scale * self.thickness_limit
-        if not (is_number(self.thickness) and self.thickness > 0.0):
-            raise ValueError(f"thickness = {self.thickness!r} of the section must be a positive number of metres.")
         if not self.thickness < limit:
             where = "" if scale == 1.0 else " at its narrow end"
-            raise ValueError(f"thickness = {self.thickness!r} of the section must be below {limit:.6g} m{where}, where walls meet.")
+            raise Refused(name, self.thickness, f"below {limit:.6g} m{where}, where walls meet")
 
     def wall_width(self, wall: str) -> float:
         """Length (m) along the contour of a wall; ``ValueError`` unless it is one straight edge."""
@@ -90,22 +95,18 @@ class Section(ABC):
         )
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("section")
 class BoxSection(Section):
     """A rectangular box: mid-line ``width`` along x, ``depth`` along y, wall ``thickness``, all in m.
 
     Its walls are right, top, left and bottom. Raises ``ValueError`` for a dimension that is not positive or a wall too thick.
     """
 
-    width: float
-    depth: float
-    thickness: float
+    width: Metres
+    depth: Metres
+    thickness: Metres
 
     def __post_init__(self) -> None:
-        for name in ("width", "depth"):
-            value = getattr(self, name)
-            if not (is_number(value) and value > 0.0):
-                raise ValueError(f"{name} = {value!r} of the section must be a positive number of metres.")
         self.check_thickness()
 
     @property
@@ -125,7 +126,7 @@ class BoxSection(Section):
         return min(self.width, self.depth)
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("section")
 class PolygonSection(Section):
     """Any closed polygon: corners (x, y) of the mid-line in m, counter-clockwise, the wall name of each edge, the wall thickness.
 
@@ -133,15 +134,15 @@ class PolygonSection(Section):
     or a wall too thick.
     """
 
-    corners: tuple[tuple[float, float], ...]
-    edge_walls: tuple[str, ...]
-    thickness: float
+    corners: Annotated[tuple[tuple[float, float], ...], BeforeValidator(plain)]
+    edge_walls: Annotated[tuple[str, ...], BeforeValidator(plain)]
+    thickness: Metres
 
     def __post_init__(self) -> None:
         if len(self.corners) < 3 or len(self.edge_walls) != len(self.corners):
-            raise ValueError(f"corners = {self.corners!r} must be at least three, with one wall name for each edge.")
+            raise Refused("corners", self.corners, "at least three, with one wall name for each edge")
         if not (self._area > 0.0 and np.all(self._edge_lengths > 0.0)):
-            raise ValueError(f"corners = {self.corners!r} must be distinct, go round counter-clockwise and enclose an area.")
+            raise Refused("corners", self.corners, "distinct, go round counter-clockwise and enclose an area")
         self.check_thickness()
 
     @property
@@ -228,10 +229,8 @@ class SpanWalls:
 
 def check_theory(shear: str, shear_flow: str) -> None:
     """``ValueError`` unless both names are known."""
-    if shear not in SHEAR_THEORIES:
-        raise ValueError(f"shear = {shear!r} must be one of {', '.join(SHEAR_THEORIES)}.")
-    if shear_flow not in SHEAR_FLOWS:
-        raise ValueError(f"shear_flow = {shear_flow!r} must be one of {', '.join(SHEAR_FLOWS)}.")
+    checked("shear", shear, THEORY)
+    checked("shear_flow", shear_flow, FLOW)
 
 
 def lay_out_laws(

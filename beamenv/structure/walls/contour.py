@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration import Number, Text, configuration
 from beamenv.structure.walls.laminate import Ply
 
 Array = NDArray[np.float64]
@@ -16,20 +18,20 @@ GAUSS_POSITIONS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
 """Two points an edge: exact, since every section integrand is at most quadratic along a straight edge."""
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("inlay")
 class Inlay:
     """A rectangle of foreign material let into the outer face of a wall, centred on it and flush with it."""
 
-    wall: str
-    start: float
+    wall: Annotated[str, Text()]
+    start: Annotated[float, Number(unit="m")]
     """Root-side edge, m from the clamp."""
-    length: float
+    length: Annotated[float, Number(unit="m")]
     """m along the span."""
-    width: float
+    width: Annotated[float, Number(unit="m")]
     """m along the contour."""
     ply: Ply
     """Material and fibre angle."""
-    thickness: float
+    thickness: Annotated[float, Number(unit="m")]
     """m."""
 
     def covers(self, z: Array) -> NDArray[np.bool_]:

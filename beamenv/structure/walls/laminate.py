@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.structure.checks import is_number
+from beamenv.configuration import Number, Numbers, checked, configuration
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -21,19 +22,16 @@ COMPONENT = np.array([component for component, _ in WALL_STRAINS])
 POWER = np.array([power for _, power in WALL_STRAINS])
 HIGHEST_MOMENT = 2 * int(POWER.max())
 
+PLY_ANGLES = Numbers(Number(unit="degrees"), least=1, of="ply angles")
+"""Of one wall, inner to outer face."""
 
-@dataclass(frozen=True, slots=True)
+
+@configuration("ply")
 class Ply:
     """One layer: its material and the angle of its fibres from the contour tangent (0 = hoop, 90 = spanwise), degrees."""
 
     material: Lamina
-    angle_deg: float
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.material, Lamina):
-            raise ValueError(f"material = {self.material!r} of a ply must be a Lamina.")
-        if not is_number(self.angle_deg):
-            raise ValueError(f"angle_deg = {self.angle_deg!r} must be a finite number of degrees.")
+    angle_deg: Annotated[float, Number(unit="degrees")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,10 +85,7 @@ class Layup:
 
 def stack(material: Lamina, angles_deg: Sequence[float], name: str) -> tuple[Ply, ...]:
     """Plies of one material at the given angles, inner to outer face."""
-    angles = [float(angle) if is_number(angle) else angle for angle in angles_deg] if isinstance(angles_deg, Iterable) else []
-    if not angles:
-        raise ValueError(f"{name} = {angles_deg!r} must hold at least one ply angle.")
-    return tuple(Ply(material, angle) for angle in angles)
+    return tuple(Ply(material, angle) for angle in checked(name, angles_deg, PLY_ANGLES))
 
 
 @dataclass(frozen=True, slots=True)

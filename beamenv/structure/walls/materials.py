@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.structure.checks import check_positive, is_number
+from beamenv.configuration import Number, Refused, checked, configuration
+
+Modulus = Annotated[float, Number(gt=0.0, unit="Pa")]
+Density = Annotated[float, Number(gt=0.0, unit="kg/m³")]
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("lamina")
 class Lamina:
     """A unidirectional ply in its material axes: 1 along the fibres, 2 across them in the plane, 3 through the thickness.
 
@@ -18,34 +21,30 @@ class Lamina:
     store negative energy.
     """
 
-    E1: float
+    E1: Modulus
     """Pa."""
-    E2: float
+    E2: Modulus
     """Pa."""
-    G12: float
+    G12: Modulus
     """Pa."""
-    G13: float
+    G13: Modulus
     """Pa."""
-    G23: float
+    G23: Modulus
     """Pa."""
-    nu12: float
+    nu12: Annotated[float, Number()]
     """Contraction along 2 per extension along 1."""
-    density: float
+    density: Density
     """kg/m³."""
 
     def __post_init__(self) -> None:
-        check_positive(**{field.name: getattr(self, field.name) for field in fields(self) if field.name != "nu12"})
-        if not (is_number(self.nu12) and abs(self.nu12) < np.sqrt(self.E1 / self.E2)):
-            raise ValueError(
-                f"nu12 = {self.nu12!r} must be smaller in magnitude than sqrt(E1/E2) = {np.sqrt(self.E1 / self.E2):.4g}."
-            )
+        if not abs(self.nu12) < np.sqrt(self.E1 / self.E2):
+            raise Refused("nu12", self.nu12, f"smaller in magnitude than sqrt(E1/E2) = {np.sqrt(self.E1 / self.E2):.4g}")
 
     @classmethod
     def isotropic(cls, E: float, nu: float, density: float) -> Lamina:
         """An isotropic sheet with Young's modulus E (Pa), Poisson's ratio nu and density (kg/m³)."""
-        check_positive(E=E, density=density)
-        if not (is_number(nu) and -1.0 < nu < 0.5):
-            raise ValueError(f"nu = {nu!r} must lie between -1 and 0.5.")
+        E = checked("E", E, Number(gt=0.0, unit="Pa"))
+        nu = checked("nu", nu, Number(gt=-1.0, lt=0.5))
         shear_modulus = E / (2.0 * (1.0 + nu))
         return cls(E1=E, E2=E, G12=shear_modulus, G13=shear_modulus, G23=shear_modulus, nu12=nu, density=density)
 

@@ -14,9 +14,9 @@ from train.shared.files import write_whole
 INTRODUCTION = """\
 # The benchmark
 
-Every controller in every scenario on the same held-out episodes. Controllers are built from the design plant and agents are shipped
-as trained; what a scenario does to the true blade neither is told. The scenarios are the files in `beamenv/scenarios/named/`, the
-controllers those in `train/controllers/contenders/`: another file there is another row or column.
+Every controller in every scenario on the same held-out episodes. Controllers are built from the design plant and agents are used
+as shipped; neither knows what a scenario does to the true blade. The scenarios are the files in `beamenv/scenarios/named/`, the
+controllers those in `train/controllers/contenders/`: a further file there adds a column or a row.
 """
 
 

@@ -21,7 +21,7 @@ Beams = Mapping[str, RotatingBeam]
 ORDINALS = ("first", "second", "third", "fourth", "fifth")
 SPEEDS = np.linspace(0.0, 400.0, 41)
 FEW_PERIODS = 0.12
-"""s: what can be told apart of four responses in one panel."""
+"""s: what can be distinguished of four responses in one panel."""
 PLY_ANGLES_DEG = np.linspace(0.0, 90.0, 19)
 
 

@@ -40,7 +40,7 @@ def convergence_best_fit(model: Model) -> Array:
 
 
 def chandra_chopra(model: Model) -> Array:
-    """(6,), Hz: flap 1, lag 1 and flap 2, each at rest and at 1000 rev/min (Table 3.2), told apart by their kinetic energy."""
+    """(6,), Hz: flap 1, lag 1 and flap 2, each at rest and at 1000 rev/min (Table 3.2), distinguished by their kinetic energy."""
     beam = model.validation_box.build()
     columns = []
     for speed in (0.0, 1000.0 * REV_PER_MIN):

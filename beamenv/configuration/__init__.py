@@ -1,0 +1,37 @@
+"""How arguments are read: what each may be (``kinds``), tables of them (``reading``), files, and one sentence for a refusal.
+
+The rules, the same for every argument, dictionary and file:
+
+- A number is an ``int``, a ``float``, or NumPy's, also as an array of no dimensions, and finite. It is never a bool nor a string.
+- A count is an integer, Python's or NumPy's, or a float without a fraction: 11.0 is 11, and 11.5 is refused.
+- True and false are ``True``, ``False`` and NumPy's ``bool_``; 1, "yes" and "no" are refused.
+- A sequence is a list, a tuple or a one-dimensional array, never a string. A range is two numbers that do not fall, and one
+  number means both ends.
+- The keys of a table are the names of its fields; an unknown one is refused, and those there are are told.
+- A table may be partial. What it leaves out stays as it stood: that of the preset or scenario it departs from, also within
+  tables of tables, and a material's as well.
+- A constructor takes objects: tables are for ``blade_config``, ``scenario``, ``from_dict`` and files.
+- What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
+"""
+
+from beamenv.configuration.kinds import Choice, Count, Flag, Number, Numbers, Patches, Range, Table, Text
+from beamenv.configuration.reading import checked, checked_table, configuration, read
+from beamenv.configuration.sentence import Refused, shown
+
+__all__ = [
+    "Choice",
+    "Count",
+    "Flag",
+    "Number",
+    "Numbers",
+    "Patches",
+    "Range",
+    "Refused",
+    "Table",
+    "Text",
+    "checked",
+    "checked_table",
+    "configuration",
+    "read",
+    "shown",
+]

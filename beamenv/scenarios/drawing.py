@@ -1,0 +1,89 @@
+"""Load cases drawn from a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant.plant import Plant
+from beamenv.scenarios.load_cases import CASES, NEVER, LoadCases
+from beamenv.scenarios.scenario import Scenario
+from beamenv.scenarios.tables import Pair, Rotor
+
+DRAWS = 7
+"""Uniform numbers one load case takes, whatever the case: paired seeds stay paired when a scenario is altered."""
+
+
+def draw_load_cases(
+    chosen: Scenario,
+    plant: Plant,
+    generators: np.random.Generator | Sequence[np.random.Generator],
+    count: int,
+    speeds: NDArray[np.float64] | None = None,
+) -> LoadCases:
+    """Load cases of ``count`` blades from one generator for all of them, or from a sequence of one for each.
+
+    ``speeds`` (count,) in rad/s are needed where the rotor's harmonics act.
+    """
+    cases = _load_cases(chosen, plant, draw_uniforms(generators, count, DRAWS))
+    orders = len(chosen.rotor.harmonics)
+    if not orders:
+        return cases
+    assert speeds is not None
+    return _with_harmonics(cases, chosen.rotor, draw_uniforms(generators, count, 3 * orders), speeds * plant.control_interval)
+
+
+def draw_uniforms(generators: np.random.Generator | Sequence[np.random.Generator], count: int, numbers: int) -> NDArray[np.float64]:
+    """Uniform numbers (count, numbers) from one generator for all blades, or from a sequence of one for each."""
+    if isinstance(generators, np.random.Generator):
+        return generators.random((count, numbers))
+    return np.stack([generator.random(numbers) for generator in generators])
+
+
+def _with_harmonics(cases: LoadCases, rotor: Rotor, uniforms: NDArray[np.float64], revolution: NDArray[np.float64]) -> LoadCases:
+    share, phase, direction = np.split(uniforms, 3, axis=1)
+    amplitude = np.asarray(rotor.harmonics) * (0.5 + share)
+    angle = 2.0 * np.pi * direction
+    vector = amplitude[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    turn = 2.0 * np.pi * phase[..., None]
+    return replace(cases, cosine=vector * np.cos(turn), sine=vector * np.sin(turn), revolution=revolution)
+
+
+def _load_cases(chosen: Scenario, plant: Plant, uniforms: NDArray[np.float64]) -> LoadCases:
+    """Load cases (N) made of uniform numbers (N, DRAWS)."""
+    case = _choose(chosen, uniforms[:, 0])
+    is_pulse, is_release, is_harmonic = (case == CASES.index(name) for name in ("pulse", "deflection", "harmonic"))
+    magnitude = np.where(is_harmonic, *(_within(r, uniforms[:, 1]) for r in (chosen.harmonic_magnitude, chosen.magnitude)))
+    magnitude[case == CASES.index("none")] = 0.0
+    direction = np.radians(_within(chosen.direction_deg, uniforms[:, 2]))
+    load = magnitude[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
+    interval = plant.control_interval
+    onset = np.rint(_within(chosen.onset, uniforms[:, 3]) / interval).astype(np.int64)
+    lasting = np.maximum(np.rint(_within(chosen.duration, uniforms[:, 4]) / interval), 1).astype(np.int64)
+    rate = _within(chosen.frequency_ratio, uniforms[:, 5]) * plant.natural_frequencies[0] * interval
+    return LoadCases(
+        case=case,
+        amplitude=np.where(is_release[:, None], 0.0, load),
+        deflection=np.where(is_release[:, None], load, 0.0),
+        onset=onset,
+        end=np.where(is_pulse, onset + lasting, NEVER),
+        rate=np.where(is_harmonic, rate, 0.0),
+        phase=np.radians(_within(chosen.phase_deg, uniforms[:, 6])),
+        cosine=np.zeros((len(case), 0, 2)),
+        sine=np.zeros((len(case), 0, 2)),
+        revolution=np.zeros(len(case)),
+    )
+
+
+def _choose(chosen: Scenario, uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Positions in ``CASES``, each as often as its share says."""
+    thresholds = np.cumsum(chosen.shares)
+    thresholds[thresholds > 1.0 - 1e-9] = 1.0  # shares such as ten times 0.1 must leave nothing to "none"
+    return np.searchsorted(thresholds, uniform, side="right").astype(np.int64)
+
+
+def _within(limits: Pair, uniform: NDArray[np.float64]) -> NDArray[np.float64]:
+    return limits[0] + (limits[1] - limits[0]) * uniform
