@@ -95,10 +95,10 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self.set_task([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
 
     def set_task(self, tasks: Sequence[Task]) -> None:
-        """Take on one task for all blades, or one for each, in place of those before; what comes next must be ``reset``.
+        """Take on tasks, blade k that at k modulo their number, in place of those before; what comes next must be ``reset``.
 
-        The tasks may differ in their blades alone, and these not in how many patches they have. ``task``, ``plant`` and
-        ``design_plant`` are then the first blade's.
+        The tasks may differ in their blades alone, and these not in how many patches they have nor in their electronics.
+        ``task``, ``plant`` and ``design_plant`` are then the first blade's.
         """
         self.task = tasks[0]
         self.single_action_space = self.task.action_space()
@@ -109,7 +109,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if len(tasks) == 1:
             self._blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units)
         else:
-            self._blades = MixedBlades([task.bank for task in tasks], self.task.scenario, self.task.physical_units)
+            self._blades = _mixed(tasks, self.num_envs)
         self._actions_shape = (self.num_envs, *self.single_action_space.shape)
         self._steps = min(self.task.steps, self._time_limit)
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
@@ -251,6 +251,16 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def close_extras(self, **kwargs: Any) -> None:
         """Nothing is open; but a closed environment must be reset before it is stepped."""
         self._generators = None
+
+
+def _mixed(tasks: Sequence[Task], count: int) -> MixedBlades:
+    """Blades of several tasks, blade k that at k modulo their number; equal ones are one."""
+    different: dict[Any, Task] = {}
+    for task in tasks[:count]:
+        different.setdefault((task.blade, task.design_blade), task)
+    place = {blades: place for place, blades in enumerate(different)}
+    kind = np.resize(np.array([place[task.blade, task.design_blade] for task in tasks[:count]]), count)
+    return MixedBlades([task.bank for task in different.values()], kind, tasks[0].scenario, tasks[0].physical_units)
 
 
 def _masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:

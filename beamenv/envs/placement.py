@@ -107,6 +107,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
         self._layouts = self._resolved(given)
         self._positions = [{side: _first(layout[side]) for side in SIDES} for layout in self._layouts]
+        self._tasks: dict[tuple[Positions, ...], Task] = {}
+        """By positions: what layouts have had their blades built for, as long as they are in use."""
         self._move_to(self._positions)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -150,9 +152,12 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         return [{side: _drawn(layouts[k % len(layouts)][side], generator) for side in SIDES} for k in range(number)]
 
     def _move_to(self, positions: list[dict[Side, Positions]]) -> None:
-        tasks = [_moved(self._home, each) for each in positions]
-        spread = tasks if len(tasks) == 1 else [tasks[k % len(tasks)] for k in range(self.num_envs)]
-        self.env.unwrapped.set_task(spread)  # type: ignore[attr-defined]
+        kept, self._tasks = self._tasks, {}
+        for each in positions:
+            key = tuple(each[side] for side in SIDES)
+            self._tasks[key] = self._tasks.get(key) or kept.get(key) or _moved(self._home, each)
+        tasks = [self._tasks[tuple(each[side] for side in SIDES)] for each in positions]
+        self.env.unwrapped.set_task([replace(task) for task in tasks])  # type: ignore[attr-defined] # they share blades, not banks
         self._positions = positions
 
     def _told(self, info: dict[str, Any]) -> dict[str, Any]:

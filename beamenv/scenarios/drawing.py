@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,12 +29,27 @@ def draw_load_cases(
 
     ``speeds`` (count,) in rad/s are needed where the rotor's harmonics act.
     """
-    cases = _load_cases(chosen, plant, draw_uniforms(generators, count, DRAWS))
-    orders = len(chosen.rotor.harmonics)
-    if not orders:
+    uniforms, turns = draw_uniforms(generators, count, DRAWS), draw_uniforms(generators, count, 3 * len(chosen.rotor.harmonics))
+    return load_cases(chosen, plant.control_interval, plant.natural_frequencies[0], uniforms, turns, speeds)
+
+
+def load_cases(
+    chosen: Scenario,
+    interval: float,
+    lowest_frequency: Any,
+    uniforms: NDArray[np.float64],
+    turns: NDArray[np.float64],
+    speeds: NDArray[np.float64] | None = None,
+) -> LoadCases:
+    """Load cases of N blades made of uniform numbers (N, ``DRAWS``), and (N, 3) more for each of the rotor's harmonics.
+
+    ``lowest_frequency``, of one blade or of each (N,), and ``speeds`` (N,) are in rad/s.
+    """
+    cases = _load_cases(chosen, interval, lowest_frequency, uniforms)
+    if not len(chosen.rotor.harmonics):
         return cases
     assert speeds is not None
-    return _with_harmonics(cases, chosen.rotor, draw_uniforms(generators, count, 3 * orders), speeds * plant.control_interval)
+    return _with_harmonics(cases, chosen.rotor, turns, speeds * interval)
 
 
 def draw_uniforms(generators: np.random.Generator | Sequence[np.random.Generator], count: int, numbers: int) -> NDArray[np.float64]:
@@ -52,7 +68,7 @@ def _with_harmonics(cases: LoadCases, rotor: Rotor, uniforms: NDArray[np.float64
     return replace(cases, cosine=vector * np.cos(turn), sine=vector * np.sin(turn), revolution=revolution)
 
 
-def _load_cases(chosen: Scenario, plant: Plant, uniforms: NDArray[np.float64]) -> LoadCases:
+def _load_cases(chosen: Scenario, interval: float, lowest_frequency: Any, uniforms: NDArray[np.float64]) -> LoadCases:
     """Load cases (N) made of uniform numbers (N, DRAWS)."""
     case = _choose(chosen, uniforms[:, 0])
     is_pulse, is_release, is_harmonic = (case == CASES.index(name) for name in ("pulse", "deflection", "harmonic"))
@@ -60,10 +76,9 @@ def _load_cases(chosen: Scenario, plant: Plant, uniforms: NDArray[np.float64]) -
     magnitude[case == CASES.index("none")] = 0.0
     direction = np.radians(_within(chosen.direction_deg, uniforms[:, 2]))
     load = magnitude[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
-    interval = plant.control_interval
     onset = np.rint(_within(chosen.onset, uniforms[:, 3]) / interval).astype(np.int64)
     lasting = np.maximum(np.rint(_within(chosen.duration, uniforms[:, 4]) / interval), 1).astype(np.int64)
-    rate = _within(chosen.frequency_ratio, uniforms[:, 5]) * plant.natural_frequencies[0] * interval
+    rate = _within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval
     return LoadCases(
         case=case,
         amplitude=np.where(is_release[:, None], 0.0, load),

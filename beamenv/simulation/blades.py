@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, drive_limit, normalised
 from beamenv.plant.reduction import REFERENCE_LOAD
-from beamenv.scenarios.drawing import draw_load_cases, draw_uniforms
+from beamenv.scenarios.drawing import DRAWS as LOAD_DRAWS
+from beamenv.scenarios.drawing import draw_uniforms, load_cases
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.kernel import advance, row_dot, row_product
@@ -19,7 +20,7 @@ from beamenv.simulation.plants.allotment import Allotment
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 from beamenv.simulation.signals.electronics import Electronics
-from beamenv.simulation.signals.faults import DRAWS
+from beamenv.simulation.signals.faults import DRAWS as FAULT_DRAWS
 from beamenv.simulation.strain_limit import FAILURE_STRAIN as FAILURE_STRAIN
 from beamenv.simulation.strain_limit import safe_energy, strained_too_much
 
@@ -67,34 +68,51 @@ def _alike(values: Array) -> Array:
     return np.array(values[0]) if np.all(values == values[0]) else values
 
 
+class Numbers(NamedTuple):
+    """Random numbers that k beginning episodes take, in the order in which they are drawn."""
+
+    faults: Array
+    """(k, ``FAULT_DRAWS``) uniform, or (k, 0): plant and faults."""
+    load: Array
+    """(k, ``LOAD_DRAWS``) uniform: load case."""
+    turns: Array
+    """(k, 3 H) uniform: the rotor's harmonics."""
+    noise: Array
+    """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
+
+
 class Blades:
     """A batch of ``count`` blades, advanced together; ``count=None`` is a blade alone, without a batch axis.
 
     ``plant`` is the one plant of them all, or a bank of plants, of which each episode has one. ``generators`` is one generator
-    for all blades or a sequence of one for each, whichever ``begin`` was first given. With ``physical_units`` actions are volts
+    for all blades or a sequence of one for each, whichever ``begin`` was first given. Where the bank has groups, so have the blades:
+    equally large, one after the other, and rows that begin are to be in ascending order. With ``physical_units`` actions are volts
     and readings amperes, else both are normalised.
     """
 
     def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
         self.plant, self.scenario, self.count = self.bank.plant, scenario, count
-        self.shape = self._shape = batch_shape(count)
+        self.shape = self._shape = batch_shape(count, self.bank.groups)
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
-        self._reward_per_cost = -1.0 / reward_scale(self.plant)
         self._safe_energy = safe_energy(self.bank.strain)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, count or 1) if scenario.imperfect else None
-        self.plants = Allotment(self.bank, self._shape, np.zeros(count or 1, dtype=np.int64))
+        self.plants = Allotment(self.bank, self._shape)
+        own = self.plant, *self.bank.others
+        self._lowest_frequency = np.array([plant.natural_frequencies[0] for plant in own])
+        per_cost = np.array([-1.0 / reward_scale(plant) for plant in own])
+        self._reward_per_cost = per_cost[0] if len(own) == 1 else per_cost[self.plants.group]
         self._lay_out()
 
     def _lay_out(self) -> None:
-        """Column by column for one plant, blade by blade for several: each as BLAS likes it."""
+        """Column by column where all blades of a block have one plant, blade by blade for several: each as BLAS likes it."""
         n, m = self.plant.B.shape
         widths = n + m + 2, self.bank.operators.fused.shape[-1], m
-        if len(self.bank) == 1:
+        if len(self.bank) == self.bank.groups:
             self._joined, self._product, self._weighted = (columns_first(self._shape, width)[1] for width in widths)
         else:
             self._joined, self._product, self._weighted = (np.zeros((*self._shape, width)) for width in widths)
@@ -110,7 +128,7 @@ class Blades:
         self.__init__(*arguments)  # type: ignore[misc]
         self._joined[...] = joined
         self._disturbances, self.electronics = disturbances, electronics
-        self.plants = Allotment(self.bank, self._shape, index)
+        self.plants.load_state_dict({"index": index})
 
     @property
     def state(self) -> Array:
@@ -119,8 +137,8 @@ class Blades:
 
     @property
     def index(self) -> Rows:
-        """(N,) place of each blade's plant in the bank."""
-        return self.plants.index
+        """(N,) place of each blade's plant in the bank, or among the plants of its group."""
+        return self.plants.place
 
     @property
     def disturbances(self) -> SharedDisturbances | SeededDisturbances:
@@ -135,8 +153,8 @@ class Blades:
         if self.bank.to_design is None:
             raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
         state = self.state
-        if len(self.bank) == 1:
-            return np.asarray(state @ self.bank.to_design[0])
+        if len(self.bank) == self.bank.groups and self._shape:
+            return np.asarray(state.reshape(len(self.bank), -1, state.shape[-1]) @ self.bank.to_design).reshape(len(state), -1)
         seen = row_product(np.atleast_2d(state), self.bank.to_design[self.plants.index])
         return np.asarray(seen if self._shape else seen[0])
 
@@ -164,14 +182,17 @@ class Blades:
             turbulence = Turbulence.of(self.plant, scenario)
             self._disturbances = kind(noise_factor(self._normalised, scenario), self._shape, turbulence)
         assert self._disturbances is not None
-        own = generators if isinstance(generators, np.random.Generator) else [generators[row] for row in rows]
-        self._draw_plants_and_faults(rows, own)
+        numbers = self._draw(scenario, generators, rows)
+        self._begin_plants_and_faults(rows, numbers.faults)
         index = self.plants.index[rows]
-        cases = draw_load_cases(scenario, self.plant, own, len(rows), self.bank.speeds[index])
-        noise = self._disturbances.begin(rows, cases, generators)  # type: ignore[arg-type]
+        lowest = self._lowest_frequency[self.plants.group[rows]]
+        interval, speeds = self.plant.control_interval, self.bank.speeds[index]
+        cases = load_cases(scenario, interval, lowest, numbers.load, numbers.turns, speeds)
+        begins: Any = numbers.noise if isinstance(generators, np.random.Generator) else generators
+        noise = self._disturbances.begin(rows, cases, begins)
         state = row_product(cases.deflection, self.bank.release[index])
         if self.bank.start is not None:
-            state += self.bank.start
+            state += self.bank.start[self.plants.group[rows]]
         if initial_state is not None:
             state[...] = initial_state
         at = place(rows, self._shape)
@@ -180,12 +201,32 @@ class Blades:
         motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
-    def _draw_plants_and_faults(self, rows: Rows, own: Generators) -> None:
-        """Which plant each blade has, and what is wrong with it; nothing is drawn where a scenario leaves nothing to chance."""
-        drawn, first = self.plants.drawn, np.zeros(len(rows), dtype=np.int64)
-        uniforms = draw_uniforms(own, len(rows), DRAWS) if drawn or self.electronics is not None else None
-        self.plants.allot(rows, (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn and uniforms is not None else first)
-        if self.electronics is not None and uniforms is not None:
+    def _draw(self, scenario: Scenario, generators: Generators, rows: Rows) -> Numbers:
+        """What chance has a say in when episodes begin. One generator for all serves one group of blades after the other."""
+        widths = FAULT_DRAWS if self._chance_at_begin else 0, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
+        if not isinstance(generators, np.random.Generator):
+            own = [generators[row] for row in rows]
+            faults, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)
+            return Numbers(faults, load, turns, np.empty(0))
+        columns, drawn = self.disturbances.columns, []
+        for count in np.bincount(self.plants.group[rows]).tolist():
+            if count:
+                uniforms = [draw_uniforms(generators, count, width) for width in widths]
+                drawn.append((*uniforms, generators.standard_normal((count, columns))))
+        return Numbers(*drawn[0]) if len(drawn) == 1 else Numbers(*map(np.concatenate, zip(*drawn, strict=True)))
+
+    @property
+    def _chance_at_begin(self) -> bool:
+        """Whether a scenario leaves plants or faults to chance; else nothing is drawn for them."""
+        return self.plants.drawn or self.electronics is not None
+
+    def _begin_plants_and_faults(self, rows: Rows, uniforms: Array) -> None:
+        """Which plant each blade has, and what is wrong with it."""
+        if self.plants.drawn:
+            self.plants.draw(rows, uniforms[:, 0])
+        else:
+            self.plants.begin(rows)
+        if self.electronics is not None:
             self.electronics.begin(rows, uniforms)
 
     def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:

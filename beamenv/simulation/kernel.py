@@ -16,13 +16,13 @@ from beamenv.plant.plant import Plant, sample
 class Operators:
     """What one step needs, fused into one product; arrays of NumPy or of torch.
 
-    One plant for all blades, or one for each: ``fused`` then has their leading axes. With z = [state, voltages, loads] (row
+    One plant for all blades, for each block of them, or for each: ``fused`` then has their leading axes. With z = [state, voltages, loads] (row
     vectors, size s = n + m + 2) ``z @ fused`` is
     [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost (s)].
     """
 
     fused: Any
-    """(s, n + p + 2 + s), or (..., s, n + p + 2 + s) with the blades' own axes."""
+    """(s, n + p + 2 + s), or (..., s, n + p + 2 + s) with the blocks' or the blades' own axes."""
     states: int
     outputs: int
 
@@ -58,8 +58,10 @@ def advance(operators: Operators, joined: Any, out: Any = None) -> tuple[Any, An
 
 
 def row_product(rows: Any, matrix: Any, out: Any = None) -> Any:
-    """Rows (..., k) times one matrix (k, l), or each times its own (..., k, l); with NumPy, ``out`` may hold the result."""
-    if matrix.ndim > 2:
+    """Rows (..., k) times one matrix (k, l), each block of rows (b, i, k) times its own (b, k, l), or each row times its own
+    (..., k, l); with NumPy, ``out`` may hold the result.
+    """
+    if matrix.ndim > max(rows.ndim, 2):
         each = rows[..., None, :]
         return (each @ matrix if out is None else np.matmul(each, matrix, out[..., None, :]))[..., 0, :]
     if out is None:

@@ -12,11 +12,15 @@ _BLOCK = 256
 """Blades that lie together in memory: BLAS multiplies blocks of this size fastest."""
 
 
-def batch_shape(count: int | None) -> tuple[int, ...]:
-    """Shape of the batch: () for a blade alone, else (blocks, size) with size near ``_BLOCK`` where count has such a divisor."""
+def batch_shape(count: int | None, groups: int = 1) -> tuple[int, ...]:
+    """Shape of the batch: () for a blade alone, else (blocks, size) with size near ``_BLOCK`` where count has such a divisor.
+
+    Blades of several equal ``groups``, one after the other, share no block.
+    """
     if count is None:
         return ()
-    size = next((size for size in range(min(count, _BLOCK), _BLOCK // 4, -1) if count % size == 0), count)
+    each = count // groups
+    size = next((size for size in range(min(each, _BLOCK), _BLOCK // 4, -1) if each % size == 0), each)
     return count // size, size
 
 

@@ -1,4 +1,4 @@
-"""A batch of blades of several plants: as many ``Blades`` as there are plants, seen as one batch."""
+"""A batch of blades of several banks, in any order, seen as one."""
 
 from __future__ import annotations
 
@@ -16,39 +16,45 @@ Array = NDArray[np.float64]
 
 
 class MixedBlades:
-    """N blades, blade k of ``banks[k]``, with the interface of ``Blades``; their plants have equally many states and patches.
+    """N blades, blade k of ``banks[kind[k]]``, with the interface of ``Blades``; all have equally many states and patches.
 
-    Blades of the same bank object are advanced together.
+    Blades of one kind lie together, and neighbouring kinds of equally many blades are advanced together, by one product. One generator for all
+    serves kind after kind, in their order.
     """
 
-    def __init__(self, banks: Sequence[Bank], scenario: Scenario, physical_units: bool = False) -> None:
-        self.count = len(banks)
-        distinct = {id(bank): bank for bank in banks}
-        kind = np.array([list(distinct).index(id(bank)) for bank in banks])
-        self._rows: list[Rows] = [np.flatnonzero(kind == k) for k in range(len(distinct))]
-        self._groups = [
-            Blades(bank, scenario, len(rows), physical_units) for bank, rows in zip(distinct.values(), self._rows, strict=True)
-        ]
+    def __init__(self, banks: Sequence[Bank], kind: Rows, scenario: Scenario, physical_units: bool = False) -> None:
+        self.count = len(kind)
+        members = [rows for rows in (np.flatnonzero(kind == k) for k in range(len(banks))) if len(rows)]
+        present = [bank for k, bank in enumerate(banks) if np.any(kind == k)]
+        self._parts: list[Blades] = []
+        self._rows: list[Rows] = []
+        for together in _alike(members, present):
+            rows = np.concatenate([members[k] for k in together])
+            self._parts.append(Blades(Bank.joined([present[k] for k in together]), scenario, len(rows), physical_units))
+            self._rows.append(rows)
+        self._part, self._own = np.empty(self.count, dtype=np.int64), np.empty(self.count, dtype=np.int64)
+        for part, rows in enumerate(self._rows):
+            self._part[rows], self._own[rows] = part, np.arange(len(rows))
 
     @property
     def state(self) -> Array:
         """(N, n) true states in energy coordinates."""
-        return _together([blades.state for blades in self._groups], self._rows)
+        return _together([blades.state for blades in self._parts], self._rows)
 
     @property
     def design_state(self) -> Array:
         """(N, d) true states in the design plants' coordinates."""
-        return _together([blades.design_state for blades in self._groups], self._rows)
+        return _together([blades.design_state for blades in self._parts], self._rows)
 
     @property
     def index(self) -> Rows:
         """(N,) place of each blade's plant in its bank."""
-        return np.asarray(_together([blades.index for blades in self._groups], self._rows))
+        return np.asarray(_together([blades.index for blades in self._parts], self._rows))
 
     @property
     def speed(self) -> Array:
         """(N,) rad/s."""
-        return _together([blades.speed for blades in self._groups], self._rows)
+        return _together([blades.speed for blades in self._parts], self._rows)
 
     def begin(
         self,
@@ -58,34 +64,50 @@ class MixedBlades:
         initial_state: Array | None = None,
     ) -> Motion:
         """As ``Blades.begin``."""
-        wanted = np.arange(self.count) if rows is None else rows
         motions, places = [], []
-        for blades, members in zip(self._groups, self._rows, strict=True):
-            place = np.flatnonzero(np.isin(wanted, members))
+        for part, (blades, members) in enumerate(zip(self._parts, self._rows, strict=True)):
+            place = members if rows is None else self._of_part(part, rows)
             if len(place) == 0:
                 continue
-            own = None if rows is None else np.searchsorted(members, wanted[place])
+            own = None if rows is None else self._own[rows[place]]
             state = initial_state[place] if initial_state is not None and initial_state.ndim == 2 else initial_state
             motions.append(blades.begin(_of(generators, members), own, scenario, state))
             places.append(place)
         return _one_motion(motions, places)
 
+    def _of_part(self, part: int, rows: Rows) -> Rows:
+        """Places in ``rows`` of those that a part has, in its own order."""
+        places = np.flatnonzero(self._part[rows] == part)
+        return places[np.argsort(self._own[rows[places]])]
+
     def step(self, actions: Array, generators: Generators, resting: Rows | None = None) -> Motion:
         """As ``Blades.step``."""
         motions = []
-        for blades, members in zip(self._groups, self._rows, strict=True):
-            own = None if resting is None else np.searchsorted(members, np.intersect1d(resting, members))
+        for part, (blades, members) in enumerate(zip(self._parts, self._rows, strict=True)):
+            own = None if resting is None else self._own[resting[self._of_part(part, resting)]]
             motions.append(blades.step(actions[members], _of(generators, members), own if own is not None and len(own) else None))
         return _one_motion(motions, self._rows)
 
     def state_dict(self) -> dict[str, Any]:
-        """What moves, group by group: see ``Blades.state_dict``."""
-        return {"groups": [blades.state_dict() for blades in self._groups]}
+        """What moves, part by part: see ``Blades.state_dict``."""
+        return {"parts": [blades.state_dict() for blades in self._parts]}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of an equally made batch."""
-        for blades, own in zip(self._groups, state["groups"], strict=True):
+        for blades, own in zip(self._parts, state["parts"], strict=True):
             blades.load_state_dict(own)
+
+
+def _alike(members: Sequence[Rows], banks: Sequence[Bank]) -> list[list[int]]:
+    """Kinds, in their order, of which neighbours have equally many blades and banks that are alike."""
+    together: list[list[int]] = []
+    for kind, (rows, bank) in enumerate(zip(members, banks, strict=True)):
+        first = together[-1][0] if together else kind
+        if together and len(rows) == len(members[first]) and bank.is_like(banks[first]):
+            together[-1].append(kind)
+        else:
+            together.append([kind])
+    return together
 
 
 def _of(generators: Generators, members: Rows) -> Generators:
@@ -97,7 +119,7 @@ def _one_motion(motions: Sequence[Motion], places: Sequence[Rows]) -> Motion:
     return Motion(*(_together(parts, places) for parts in zip(*motions, strict=True)))
 
 
-def _together(parts: Sequence[NDArray], places: Sequence[Rows]) -> NDArray:  # type: ignore[type-arg]
+def _together(parts: Sequence[NDArray[Any]], places: Sequence[Rows]) -> NDArray[Any]:
     """Rows of several arrays, each at its places, in one."""
     whole = np.empty((sum(map(len, places)), *parts[0].shape[1:]), dtype=parts[0].dtype)
     for part, place in zip(parts, places, strict=True):

@@ -28,7 +28,7 @@ def test_white_loads_and_sensor_noise_have_the_plants_covariance(plant):
     shared = SharedDisturbances(noise_factor(plant, SCENARIOS["white"]), (8, 250))
     rng = np.random.default_rng(0)
     cases = draw_load_cases(SCENARIOS["white"], plant, rng, 2000)
-    shared.begin(np.arange(2000), cases, rng)
+    shared.begin(np.arange(2000), cases, rng.standard_normal((2000, shared.columns)))
     samples = []
     for _ in range(50):
         loads = np.empty((8, 250, 2))

@@ -77,8 +77,8 @@ def test_a_state_does_not_move_with_its_blades():
 
 
 def test_a_batch_of_several_plants_goes_on_too():
-    tasks = [resolve_task(preset, None, None, None, "default", 0.06, False) for preset in ("thesis", "thesis-untwisted", "thesis")]
-    batches = [MixedBlades([task.bank for task in tasks], tasks[0].scenario) for _ in range(2)]
+    tasks = [resolve_task(preset, None, None, None, "default", 0.06, False) for preset in ("thesis", "thesis-untwisted")]
+    batches = [MixedBlades([task.bank for task in tasks], np.array([0, 1, 0]), tasks[0].scenario) for _ in range(2)]
     generators = [np.random.default_rng(seed) for seed in (1, 2)]
     for batch, generator in zip(batches, generators, strict=True):
         batch.begin(generator)

@@ -20,11 +20,13 @@ Array = NDArray[np.float64]
 class Bank(ReadOnly):
     """K plants of n states with the same drive and data acquisition; voltages and readings normalised to these.
 
+    A bank may hold those of several blades, in ``groups`` of equal size, one after the other.
+
     Every plant has energy coordinates of its own: ½ xᵀx is the energy, in joules, whichever it is.
     """
 
     plant: Plant
-    """The one all others depart from."""
+    """The one all others depart from; the first blade's."""
     operators: Operators
     """``fused`` (K, …), or of one plant."""
     readout: Array
@@ -42,9 +44,11 @@ class Bank(ReadOnly):
     to_design: Array | None
     """(K, n, d): state to the design plant's coordinates; None where the two blades' displacements cannot be compared."""
     start: Array | None = None
-    """(n,): what a blade's state at the start of an episode is increased by."""
+    """(groups, n): what a blade's state at the start of an episode is increased by."""
     runs: bool = False
-    """Whether the plants follow one another, one each control interval, instead of being drawn."""
+    """Whether a group's plants follow one another, one each control interval, instead of being drawn."""
+    others: tuple[Plant, ...] = ()
+    """What ``plant`` is to the first group, for each further one."""
 
     def __post_init__(self) -> None:
         ReadOnly.__post_init__(self)
@@ -56,6 +60,18 @@ class Bank(ReadOnly):
 
     def __len__(self) -> int:
         return len(self.speeds)
+
+    @property
+    def groups(self) -> int:
+        """How many blades' plants these are."""
+        return 1 + len(self.others)
+
+    def is_like(self, other: Bank) -> bool:
+        """Whether another blade's bank has equally many plants, of as many states, behind the same electronics."""
+        sizes = [(len(bank), bank.runs, bank.operators.fused.shape, bank.plant.control_interval) for bank in (self, other)]
+        return sizes[0] == sizes[1] and all(
+            np.array_equal(getattr(self.plant, name), getattr(other.plant, name)) for name in _ELECTRONICS
+        )
 
     @classmethod
     def single(cls, plant: Plant, speed: float = 0.0, to_design: Array | None = None) -> Bank:
@@ -79,3 +95,26 @@ class Bank(ReadOnly):
             effort_weight=np.stack([unit.input_weight * unit.control_interval for unit in units]),
             to_design=to_design,
         )
+
+    @classmethod
+    def joined(cls, banks: Sequence[Bank]) -> Bank:
+        """One bank of several blades' banks, each like the first."""
+        first = banks[0]
+        if len(banks) == 1:
+            return first
+        views, starts = [bank.to_design for bank in banks], [bank.start for bank in banks]
+        fused = [bank.operators.fused.reshape(len(bank), *bank.operators.fused.shape[-2:]) for bank in banks]
+        whole = {name: np.concatenate([getattr(bank, name) for bank in banks]) for name in _BY_PLANT}
+        return cls(
+            plant=first.plant,
+            others=tuple(bank.plant for bank in banks[1:]),
+            operators=replace(first.operators, fused=np.concatenate(fused)),
+            to_design=None if any(view is None for view in views) else np.concatenate(views),  # type: ignore[arg-type]
+            start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
+            runs=first.runs,
+            **whole,
+        )
+
+
+_BY_PLANT = ("readout", "tip", "strain", "release", "speeds", "effort_weight")
+_ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale")

@@ -157,7 +157,7 @@ def spin_up_bank(blade: Blade, design: Blade, speeds: tuple[float, float], steps
         tip=back @ bank.tip,
         strain=bank.strain @ incoming,
         release=np.asarray(np.linalg.solve(incoming, bank.release.swapaxes(1, 2)), dtype=np.float64).swapaxes(1, 2),
-        start=_initial_state(run_up, roots[0]),
+        start=_initial_state(run_up, roots[0])[None],
         runs=True,
         to_design=_views(blade, design, roots[:-1]),
     )

@@ -99,17 +99,25 @@ class SharedDisturbances:
         self._rows[...], self._amplitude[...] = rows, amplitude
         self._steps, self._cases, self._gusts = steps, cases, gusts
 
-    def begin(self, rows: Rows, cases: LoadCases, generator: Generator) -> Array:
-        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2)."""
+    def begin(self, rows: Rows, cases: LoadCases, normals: Array) -> Array:
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2).
+
+        ``normals`` (len(rows), c) are standard normals for this instant.
+        """
         self._cases = merged(self._cases, rows, cases)
         self._steps[rows] = 0
         at = place(rows, self._rows.shape[:-1])
         self._amplitude[at] = cases.amplitude
-        disturbance = self._scaled(generator.standard_normal((len(rows), self._rows.shape[-1])))
+        disturbance = normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
         self._rows[at] = disturbance
         if self._turbulence is not None:
             self._gusts[at] = disturbance[:, -2:]
         return disturbance[:, 2:]
+
+    @property
+    def columns(self) -> int:
+        """c: how many normals an instant takes of each blade."""
+        return len(self._factor)
 
     def loads(self, out: Array) -> None:
         """Write the line loads of this instant to ``out`` (…, 2)."""
@@ -149,9 +157,6 @@ class SharedDisturbances:
         self._steps, self._gusts = np.asarray(state["steps"]).copy(), np.asarray(state["gusts"]).copy()
         self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
 
-    def _scaled(self, normals: Array) -> Array:
-        return normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
-
 
 class SeededDisturbances:
     """Disturbances of N blades, each from its own generator.
@@ -171,6 +176,11 @@ class SeededDisturbances:
         self._due: dict[int, Rows] = {}
         self._drawn = np.zeros(count, dtype=np.int64)  # instants drawn so far, of each blade's episode
         self._cases: LoadCases | None = None
+
+    @property
+    def columns(self) -> int:
+        """c: how many normals an instant takes of each blade."""
+        return len(self._factor)
 
     def _see_ring(self) -> None:
         seen = self._ring.reshape(BLOCK, *self._shape, len(self._factor))
