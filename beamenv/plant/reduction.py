@@ -111,7 +111,7 @@ def reduced_plant(
     voltage_limits: tuple[float, float],
     control_interval: float,
 ) -> Plant:
-    """The plant of a blade, which carries the inlays of passive patches; arguments as in ``configuration.BladeConfig``."""
+    """The plant of a blade, which carries the inlays of passive patches; arguments as in the blade's configuration."""
     modal, full = truncate(beam, speed, modes, gyroscopic), full_model(beam, layout)
     omega, shapes, forces = modal.natural_frequencies, modal.mode_shapes, full.forces
     still = np.zeros((modes, modes))
