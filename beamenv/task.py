@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.design import Design
 from beamenv.blade.presets import blade_config
 from beamenv.configuration import Flag, Number, Refused, checked, checked_table, read
 from beamenv.plant.plant import Plant
@@ -52,6 +53,11 @@ class Task:
     def design_plant(self) -> Plant:
         """The plant that controllers are designed for; the true one unless said otherwise."""
         return build_plant(self.design_config)
+
+    @property
+    def design(self) -> Design:
+        """All that a controller may be built from."""
+        return Design(self.design_plant, self.design_config)
 
     @property
     def bank(self) -> Bank:

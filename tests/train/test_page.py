@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import gymnasium as gym
 import numpy as np
+import plotly.graph_objects as go
 import pytest
 
 import beamenv
@@ -19,11 +20,11 @@ from beamenv.blade.build import build_plant
 from beamenv.plant.plant import sample
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
+from train.figures.screen_heat_map import heat_map
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record, write_page
 from train.page.blade import blade_figures, frame_times, magnification, motions
-from train.page.heat_map import heat_map
 from train.page.page import plots, render
-from train.page.plots import amplitude_density, pole_map, symmetric_logarithm
+from train.page.plots import amplitude_density
 from train.page.themes import THEMES
 from train.shared.versions import versions
 
@@ -227,17 +228,6 @@ def test_power_of_a_sine_is_half_its_amplitude_squared():
     assert frequencies[np.argmax(density)] == pytest.approx(frequency)
 
 
-def test_the_real_axis_of_poles_is_odd_linear_near_zero_and_logarithmic_far_out():
-    assert symmetric_logarithm(np.array([-90.0, 0.0, 90.0])).tolist() == [-1.0, 0.0, 1.0]
-    assert symmetric_logarithm(np.array([1e-3]))[0] == pytest.approx(1e-3 / (10.0 * np.log(10.0)), rel=1e-3)
-
-
-def test_an_unstable_pole_lies_right_of_the_imaginary_axis():
-    figure = pole_map({"loop": np.array([-5.0 + 100.0j, -5.0 - 100.0j, 2.0 + 0.0j])})
-    assert len(figure.data[0].x) == 2
-    assert figure.data[0].x[1] > 0.0
-
-
 def test_grey_is_without_control(page_content):
     shown = {plot.name: plot.figure for plot in plots(page_content)}
     for name in ("time-series", "spectra"):
@@ -280,7 +270,7 @@ def test_a_row_of_another_length_is_refused():
 
 def test_a_failed_blade_is_marked_with_the_share_of_failures():
     content = HeatMap(("step", "pulse"), ("LQG", "PPO"), np.array([[0.4, 0.5], [np.inf, 0.8]]), np.array([[0.0, 0.0], [0.25, 0.5]]))
-    cells, lost = heat_map(content).data
+    cells, lost = go.Figure(heat_map(content)).data
     assert np.asarray(cells.text).tolist() == [["0.40", "0.50"], ["", "0.80<br>✕ 50 %"]]
     assert np.isnan(cells.z[1][0])
     assert (list(lost.x), list(lost.y), list(lost.text)) == (["LQG"], ["pulse"], ["✕ 25 %"])

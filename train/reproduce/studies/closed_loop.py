@@ -14,7 +14,7 @@ from beamenv.blade.build import build_plant
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches import PatchLayout
 from beamenv.plant.plant import Plant, sample
-from train.reproduce.judging.study import Curve, Panel
+from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.response import settling_time
 
