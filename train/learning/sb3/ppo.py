@@ -28,7 +28,7 @@ class PPOSettings:
     history: int = 12
     """Instants the agent sees, 6 ms."""
     held: int = 4
-    """Control intervals for which an action is held, 2 ms: exploration that lasts tells more of the slow modes than white noise
+    """Control intervals for which an action is held, 2 ms: exploration that lasts moves the slow modes more than white noise
     does, against the white load."""
     rollout: int = 16
     """Actions of every blade between updates."""
