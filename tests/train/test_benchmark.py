@@ -153,7 +153,7 @@ def test_cells_that_failed_and_objects_are_measured_again(tmp_path):
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        ("[plants]\nspeeed_ratio = 1.0\n", "scenario has no field 'plants.speeed_ratio'"),
+        ("[plants]\nspeeed_ratio = 1.0\n", "scenario.plants has no field 'speeed_ratio'"),
         ("[acquisition]\ndropout = 1.5\n", "acquisition.dropout is 1.5, but must be a number from 0 to 0.99"),
         ("step = [", "cannot be read"),
     ],
@@ -186,7 +186,8 @@ def test_a_file_in_the_folder_is_a_contender(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("content", "sentence"), [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "KIND = 'fuzzy'")]
+    ("content", "sentence"),
+    [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "wrong.KIND is 'fuzzy', but must be one of fixed")],
 )
 def test_a_contender_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
     (tmp_path / "wrong.py").write_text(content)
@@ -252,8 +253,8 @@ def test_where_nothing_moves_no_cost_is_relative_to_it():
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"seeds": 1}, "seeds = 1 must be a whole number, at least 2"),
-        ({"controllers": ["pid"]}, "controller = 'pid' must be one of .*lqg, lqg-load"),
+        ({"seeds": 1}, "seeds is 1, but must be a whole number not below 2"),
+        ({"controllers": ["pid"]}, "controller is 'pid', but must be one of .*lqg, lqg-load"),
         ({"own": {"mine": 3}}, "controller 'mine' is of type int"),
         ({"own": {"lqg": Still()}}, "'lqg' is there twice"),
         ({"scenarios": []}, "scenarios is empty"),

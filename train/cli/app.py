@@ -22,6 +22,7 @@ from train.cli.options import (
     print_json,
 )
 from train.cli.place import place
+from train.cli.schema import schema
 from train.cli.train import train
 
 app = typer.Typer(
@@ -32,6 +33,7 @@ app = typer.Typer(
 app.command()(place)
 app.command()(train)
 app.command()(benchmark)
+app.command()(schema)
 
 
 @app.command()

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 
 import beamenv
+from beamenv.configuration import Choice, Number, checked
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining, TQCTraining
@@ -58,10 +58,8 @@ def train_agent(name: str, environment: Mapping[str, Any], budget: float, seed: 
 
     Raises ValueError for an unknown name or a budget that is not positive.
     """
-    if name not in AGENTS:
-        raise ValueError(f"agent = {name!r} must be one of {', '.join(AGENTS)}.")
-    if not (np.isfinite(budget) and budget > 0.0):
-        raise ValueError(f"seconds = {budget!r} must be a positive number.")
+    checked("agent", name, Choice(tuple(AGENTS)))
+    budget = checked("budget", budget, Number(gt=0.0, unit="s"))
     with one_torch_thread():
         training = AGENTS[name].training([task_of(environment)], AGENTS[name].settings(), seed, None)
         try:

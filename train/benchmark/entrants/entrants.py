@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from beamenv.configuration import Refused
 from train.benchmark.entrants.models import UNTRUSTED
 from train.benchmark.entrants.sources import Classical, Given, ModelFile, Source, Trained
 from train.controllers.contenders import KINDS, discover
@@ -52,7 +53,7 @@ def entrants(
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     if unknown := [name for name in names if name not in known]:
-        raise ValueError(f"controller = {unknown[0]!r} must be one of {', '.join(known)}.")
+        raise Refused("controller", unknown[0], f"one of {', '.join(known)}")
     brought = [Entrant(name, "own", {"": _given(name, each)}) for name, each in own.items()]
     brought += [Entrant(path.stem, "own", {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]

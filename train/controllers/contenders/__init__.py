@@ -14,6 +14,7 @@ from importlib import import_module
 from types import MappingProxyType
 
 from baselines import Controller
+from beamenv.configuration import Refused
 from beamenv.task import Task
 
 KINDS = ("fixed", "scheduled", "predictive", "bound")
@@ -31,7 +32,7 @@ class Contender:
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
-            raise ValueError(f"KIND = {self.kind!r} of the controller {self.name!r} must be one of {', '.join(KINDS)}.")
+            raise Refused(f"{self.name}.KIND", self.kind, f"one of {', '.join(KINDS)}")
 
 
 def discover() -> Mapping[str, Contender]:
@@ -50,5 +51,5 @@ def contender(name: str) -> Contender:
     """A contender by its short name; ``ValueError`` lists the known ones."""
     known = discover()
     if name not in known:
-        raise ValueError(f"controller = {name!r} must be one of {', '.join(known)}, or the folder of a trained agent.")
+        raise Refused("controller", name, f"one of {', '.join(known)}, or the folder of a trained agent")
     return known[name]
