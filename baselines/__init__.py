@@ -9,8 +9,9 @@ from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.persistent_load import PersistentLoad
 from baselines.evaluation.episodes import Episodes, roll_out
-from baselines.evaluation.evaluate import Estimate, Evaluation, evaluate
+from baselines.evaluation.evaluate import Evaluation, evaluate
 from baselines.evaluation.metrics import EpisodeMetrics
+from baselines.evaluation.statistics import Estimate
 from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.h_infinity import h_infinity
 from baselines.laws.lqg import lqg

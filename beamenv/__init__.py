@@ -16,6 +16,7 @@ from beamenv.scenarios.named import NAMES as BENCHMARK_SCENARIOS
 if TYPE_CHECKING:
     from beamenv.blade.build import build_plant
     from beamenv.blade.config import BladeConfig
+    from beamenv.blade.design import Design
     from beamenv.blade.presets import PRESETS, blade_config
     from beamenv.envs.batch import RotatingBeamVectorEnv
     from beamenv.envs.history import SensorHistory, VectorSensorHistory
@@ -31,6 +32,7 @@ ENV_ID = "beamenv/RotatingBeam-v0"
 _HOMES = {
     "PRESETS": "blade.presets",
     "BladeConfig": "blade.config",
+    "Design": "blade.design",
     "blade_config": "blade.presets",
     "build_plant": "blade.build",
     "RotatingBeamEnv": "envs.single",
@@ -53,6 +55,7 @@ __all__ = [
     "PRESETS",
     "SCENARIOS",
     "BladeConfig",
+    "Design",
     "PlacementWrapper",
     "Plant",
     "RotatingBeamEnv",

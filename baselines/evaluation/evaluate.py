@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,24 +10,16 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.vector import VectorEnv
 
-from baselines.design.controller import Array, Controller
-from baselines.evaluation.episodes import Environment, Episodes, Progress, roll_out
+from baselines.design.controller import Array, ControllerArgument, as_controller, name_of
+from baselines.evaluation.episodes import Episodes, Progress, roll_out
+from baselines.evaluation.loop import Environment
 from baselines.evaluation.metrics import EpisodeMetrics, finite, measure, settling_band
+from baselines.evaluation.statistics import Estimate, interval, paired_draws
 
-RESAMPLES = 2000
 WIDEST_BATCH = 1024
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """A mean over seeds and its percentile bootstrap interval."""
-
-    value: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Evaluation:
     """How one controller did on N seeds, beside no control on the same seeds."""
 
@@ -61,6 +53,13 @@ class Evaluation:
     reference: Episodes
     """The same without control; hand it to the next ``evaluate`` on these seeds to save its time."""
 
+    def __repr__(self) -> str:
+        cost, seeds = self.cost, self.episodes.seeds
+        return (
+            f"Evaluation({self.name!r}: J {cost.value:.4g} [{cost.low:.4g}, {cost.high:.4g}] J s, "
+            f"{self.relative_cost.value:.4g} of no control's, {len(seeds)} seeds {_abridged(seeds)})"
+        )
+
     def estimates(self) -> dict[str, Estimate]:
         """Every estimate by name, the relative cost first."""
         return {name: value for name in self.__dataclass_fields__ if isinstance(value := getattr(self, name), Estimate)}
@@ -91,7 +90,7 @@ class Evaluation:
 
 
 def evaluate(
-    controller: Controller,
+    controller: ControllerArgument,
     env: Environment | str,
     seeds: Sequence[int] = range(64),
     *,
@@ -101,11 +100,12 @@ def evaluate(
 ) -> Evaluation:
     """Run a controller through one episode for each seed and compare it with no control on the very same episodes.
 
-    ``controller`` is a law of this package, an SB3 model or anything with SB3's ``predict``; one that ``observes`` the "state" is
-    given the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id of one.
+    ``controller`` is a law of this package, an SB3 model or anything else with SB3's ``predict``, or a plain function that is
+    called with the observations (N, p) of all blades and returns their actions (N, m); a law that ``observes`` the "state" is given
+    the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id of one.
     ``reference`` spares the run without control: the ``reference`` of an evaluation on the same seeds and environment.
-    ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for no seeds, a confidence
-    outside (0, 1) or a reference with other seeds.
+    ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no
+    controller, no seeds, a confidence outside (0, 1) or a reference with other seeds.
     """
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"confidence = {confidence!r} is not allowed: it must lie between 0 and 1")
@@ -115,43 +115,34 @@ def evaluate(
             return evaluate(controller, made, seeds, reference=reference, confidence=confidence, progress=progress)
         finally:
             made.close()
+    controller = as_controller(controller)
     episodes = roll_out(controller, env, seeds, progress)
     if reference is None:
-        reference = roll_out(_Idle(env), env, seeds)
+        reference = roll_out(_idle(env), env, seeds)
     elif reference.seeds != episodes.seeds:
         raise ValueError(f"reference has seeds {_abridged(reference.seeds)}, but the evaluation has {_abridged(episodes.seeds)}")
     metrics = measure(episodes, settling_band(reference))
     estimates = _estimates(metrics, np.nansum(reference.cost, axis=0), confidence)
-    name = getattr(controller, "name", type(controller).__name__)
-    return Evaluation(name, confidence, metrics=metrics, episodes=episodes, reference=reference, **estimates)
+    return Evaluation(name_of(controller), confidence, metrics=metrics, episodes=episodes, reference=reference, **estimates)
 
 
 def _estimates(metrics: EpisodeMetrics, reference_cost: Array, confidence: float) -> dict[str, Estimate]:
-    count = len(reference_cost)
-    draws = np.random.default_rng(count).integers(count, size=(RESAMPLES, count))
+    draws = paired_draws(len(reference_cost))
 
     def estimate(values: Array, over: Array | None = None) -> Estimate:
         value, resampled = values.mean(), values[draws].mean(axis=1)
         if over is not None:
             value, resampled = value / over.mean(), resampled / over[draws].mean(axis=1)
-        low, high = np.quantile(resampled, [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence], method="nearest")
-        return Estimate(float(value), float(low), float(high))
+        return interval(value, resampled, confidence)
 
     each = {name: estimate(getattr(metrics, name)) for name in metrics.__dataclass_fields__}
     return {"relative_cost": estimate(metrics.cost, reference_cost), **each}
 
 
-class _Idle:
+def _idle(env: Environment) -> Callable[[Any], Array]:
     """No control where no plant is known: zero actions of the environment's shape."""
-
-    def __init__(self, env: Environment) -> None:
-        space = env.single_action_space if isinstance(env, VectorEnv) else env.action_space
-        self._shape: tuple[int, ...] = space.shape or ()
-
-    def predict(
-        self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = True
-    ) -> tuple[Array, None]:
-        return np.zeros((len(observation), *self._shape)), None
+    shape = (env.single_action_space if isinstance(env, VectorEnv) else env.action_space).shape or ()
+    return lambda observation: np.zeros((len(observation), *shape))
 
 
 def _abridged(seeds: tuple[int, ...]) -> str:

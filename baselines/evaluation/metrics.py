@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from baselines.design.controller import Array
 from baselines.evaluation.episodes import Episodes
@@ -57,7 +58,7 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     magnitude = np.abs(episodes.voltages)
     low, high = 0.999 * episodes.voltage_limits  # single precision and tanh come near a limit without touching it
     at_limit = np.where(np.isnan(magnitude), np.nan, (episodes.voltages >= high) | (episodes.voltages <= low))
-    settling_time = _settling_time(episodes, band)
+    settling_time = np.asarray(episodes.interval * settled_from(_excursion(episodes), band), dtype=np.float64)
     return EpisodeMetrics(
         cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
         effort=np.nansum(episodes.effort, axis=0),
@@ -82,7 +83,7 @@ def _excursion(episodes: Episodes) -> Array:
     return np.nan_to_num(np.linalg.norm(episodes.load_response - final, axis=-1), nan=np.inf)  # a blade that failed never settles
 
 
-def _settling_time(episodes: Episodes, band: Array) -> Array:
-    outside = _excursion(episodes) > band
-    inside_since = np.where(outside.any(axis=0), np.argmax(outside[::-1], axis=0), len(outside))  # intervals before the end
-    return episodes.interval * (len(outside) - inside_since)
+def settled_from(excursion: Array, band: Array | float) -> NDArray[np.intp]:
+    """(…,): the first of T instants from which on an ``excursion`` (T, …) stays within its ``band`` (…,); T if it does not."""
+    outside = excursion > band
+    return np.where(outside.any(axis=0), len(outside) - np.argmax(outside[::-1], axis=0), 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -100,6 +101,15 @@ class LoadCases:
                 exchanged[each.name] = getattr(self, each.name).copy()
                 exchanged[each.name][rows] = getattr(others, each.name)
         return LoadCases(**exchanged)
+
+    def state_dict(self) -> dict[str, Array | Integers]:
+        """A copy of each array by its name: ``LoadCases.from_state_dict`` makes equal load cases of them."""
+        return {each.name: getattr(self, each.name).copy() for each in fields(self) if each.init}
+
+    @classmethod
+    def from_state_dict(cls, state: Mapping[str, ArrayLike]) -> LoadCases:
+        """The load cases of a ``state_dict``."""
+        return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
 
 
 def static_deflection(plant: Plant, line_load: ArrayLike) -> Array:

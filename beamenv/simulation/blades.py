@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -125,7 +125,8 @@ class Blades:
     @property
     def disturbances(self) -> SharedDisturbances | SeededDisturbances:
         """Loads and noise, from the first ``begin`` on."""
-        assert self._disturbances is not None
+        if self._disturbances is None:
+            raise ValueError("blades have not begun: call begin first.")
         return self._disturbances
 
     @property
@@ -241,6 +242,27 @@ class Blades:
         """One control interval later: where plants follow one another, the next is on."""
         if self.bank.runs:
             self.plants.follow()
+
+    def state_dict(self) -> dict[str, Any]:
+        """What moves, from the first ``begin`` on: copies of arrays, in dictionaries; the generators are the caller's.
+
+        An equally made batch that has begun as this one did, with one generator or with one for each blade, goes on from it bit
+        for bit after ``load_state_dict``.
+        """
+        return {
+            "joined": self._joined.copy(),
+            "plants": self.plants.state_dict(),
+            "disturbances": self.disturbances.state_dict(),
+            "electronics": None if self.electronics is None else self.electronics.state_dict(),
+        }
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to a ``state_dict``, of arrays or of what NumPy makes arrays of."""
+        self._joined[...] = np.asarray(state["joined"])
+        self.plants.load_state_dict(state["plants"])
+        self.disturbances.load_state_dict(state["disturbances"])
+        if self.electronics is not None:
+            self.electronics.load_state_dict(state["electronics"])
 
     def _by_blade(self, columns: Array) -> Array:
         """A copy (…, columns) of what is laid out in blocks."""

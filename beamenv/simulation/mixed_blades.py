@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +77,15 @@ class MixedBlades:
             own = None if resting is None else np.searchsorted(members, np.intersect1d(resting, members))
             motions.append(blades.step(actions[members], _of(generators, members), own if own is not None and len(own) else None))
         return _one_motion(motions, self._rows)
+
+    def state_dict(self) -> dict[str, Any]:
+        """What moves, group by group: see ``Blades.state_dict``."""
+        return {"groups": [blades.state_dict() for blades in self._groups]}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to a ``state_dict`` of an equally made batch."""
+        for blades, own in zip(self._groups, state["groups"], strict=True):
+            blades.load_state_dict(own)
 
 
 def _of(generators: Generators, members: Rows) -> Generators:

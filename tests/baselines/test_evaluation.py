@@ -96,6 +96,41 @@ def test_bad_arguments_are_named(env, plant):
         evaluate(lqg(plant), env, [0], confidence=95)
 
 
+def test_a_plain_function_of_the_observations_is_a_controller(env, plant):
+    law = velocity_feedback(plant, gain=0.02 * 1500.0 / plant.sensor_full_scale[0])
+    gain = law.measurement_gain * plant.sensor_full_scale / 1500.0
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, **SHORT)
+    for where in (env, envs):
+        function = evaluate(lambda readings: readings @ gain.T, where, range(3))
+        np.testing.assert_allclose(numbers(function), numbers(evaluate(law, where, range(3))), rtol=1e-9)
+        assert function.name == "function"
+    assert function.relative_cost.value != 1.0
+    assert roll_out(np.zeros_like, env, [0]).voltages.max() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("controller", "sentence"),
+    [
+        (3, "controller = 3 is not allowed: it must be an object with Stable-Baselines3's predict, or a function"),
+        (PersistentLoad, "controller = <class .*PersistentLoad'> is not allowed"),
+        (lambda readings: readings[0], r"controller = function gives actions of shape \(4,\) for observations of shape \(1, 4\)"),
+    ],
+)
+def test_what_is_no_controller_is_refused_in_one_sentence(env, controller, sentence):
+    for run in (evaluate, roll_out):
+        with pytest.raises(ValueError, match=sentence):
+            run(controller, env, [0])
+
+
+def test_an_evaluation_is_told_in_one_line(env, plant):
+    result = evaluate(lqg(plant), env, range(6))
+    line = repr(result)
+    assert "\n" not in line
+    assert len(line) < 160
+    assert line.startswith(f"Evaluation('LQG': J {result.cost.value:.4g} [{result.cost.low:.4g}, {result.cost.high:.4g}] J s")
+    assert line.endswith("6 seeds (0, 1, …, 5))")
+
+
 def test_progress_counts_the_episodes(env, plant):
     told = []
     evaluate(no_control(plant), env, range(3), progress=lambda done, total: told.append((done, total)))

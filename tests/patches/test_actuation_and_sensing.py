@@ -185,8 +185,10 @@ def test_tip_per_volt_equals_charge_per_tip_force(cantilever):
 def test_ganged_actuators_push_with_the_sum_of_their_columns():
     """The thesis' first method (one voltage) against its second (one each)."""
     each, ganged = (actuation(OBLIQUE_BLADE, PatchLayout(ganged=together)) for together in (False, True))
-    assert each.shape == (60, 4)
-    assert ganged == pytest.approx(each.sum(axis=1, keepdims=True))
+    starts = np.linspace(0.0, 0.7 * 2.023 - 0.085, 4)
+    alone = [patch_force(OBLIQUE_BLADE, MFC, "top", start, 0.085, 0.057) for start in starts]
+    assert each == pytest.approx(np.column_stack(alone), abs=1e-9 * np.abs(each).max())
+    assert ganged == pytest.approx(sum(alone)[:, None], abs=1e-9 * np.abs(ganged).max())
 
 
 def test_patch_across_a_whole_oblique_wall_twists_what_its_mirror_image_twists_back():

@@ -79,8 +79,9 @@ def test_sqp_betters_what_the_genetic_algorithm_found():
 def test_optimal_actuator_shifts_towards_the_root_with_speed():
     """Thesis Table 6.3, one actuator: 0.194 m at rest, 0.002 m at 200 rad/s (untwisted); ours 0.176 and 0.039 m."""
     at_rest, rotating = (place(problem_of("actuators", 1, "thesis-untwisted", speed), "multistart") for speed in (0.0, 200.0))
-    assert at_rest.positions == pytest.approx([0.176], abs=0.002)
-    assert rotating.positions == pytest.approx([0.039], abs=0.002)
+    assert at_rest.positions[0] > rotating.positions[0] + 0.1
+    assert at_rest.positions == pytest.approx([0.176], abs=0.002)  # own output: guards, does not prove
+    assert rotating.positions == pytest.approx([0.039], abs=0.002)  # own output: guards, does not prove
 
 
 def test_history_counts_up_while_the_cost_comes_down():

@@ -6,8 +6,9 @@ import pytest
 from typer.testing import CliRunner
 
 from train.cli.app import app
+from train.figures.figure import Curve, Panel
 from train.reproduce.catalogue import chosen
-from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Holds, Verdict
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import load, run, source_fingerprint

@@ -20,9 +20,8 @@ def ticking():
     @contextmanager
     def clock(seconds):
         with pytest.MonkeyPatch.context() as patch:
-            for timed in ("through_plant.gradient", "session"):
-                readings = itertools.count()
-                patch.setattr(f"train.learning.{timed}.time", SimpleNamespace(monotonic=lambda kept=readings: seconds * next(kept)))
+            readings = itertools.count()
+            patch.setattr("train.learning.session.time", SimpleNamespace(monotonic=lambda: seconds * next(readings)))
             yield
 
     return clock

@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from dataclasses import fields
 
 import gymnasium
 import numpy as np
@@ -177,7 +178,7 @@ def test_a_scenario_file_is_a_scenario_of_its_name(tmp_path):
 def test_a_file_in_the_folder_is_a_contender(tmp_path, monkeypatch):
     (tmp_path / "half_lqg.py").write_text(
         "from dataclasses import replace\nfrom baselines import lqg\nKIND = 'fixed'\n\n"
-        "def build(task):\n    law = lqg(task.design_plant)\n    return replace(law, state_gain=0.5 * law.state_gain)\n"
+        "def build(design):\n    law = lqg(design.plant)\n    return replace(law, state_gain=0.5 * law.state_gain)\n"
     )
     monkeypatch.setattr(contenders, "__path__", [*contenders.__path__, str(tmp_path)])
     assert contender("half-lqg").kind == "fixed"
@@ -197,14 +198,40 @@ def test_a_contender_that_lacks_something_is_named(content, sentence, tmp_path, 
         discover()
 
 
+class Unseen:
+    """A task whose true blade may not be looked at."""
+
+    def __init__(self, task):
+        self._task = task
+
+    def __getattr__(self, name):
+        if name in ("plant", "config", "bank"):
+            raise AssertionError(f"{name} of the true blade was read")
+        return getattr(self._task, name)
+
+
 @pytest.mark.parametrize("name", sorted(discover()))
-def test_every_contender_is_built_from_the_design_alone(name):
-    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=2, scenario="spillover", **SHORT)
-    law = contender(name).build(envs.unwrapped.task)
-    seen = {"state": np.zeros((2, len(envs.unwrapped.design_plant.A))), "observation": np.zeros((2, 4))}
-    seen["observation and speed"] = np.hstack([seen["observation"], np.full((2, 1), 200.0)])
-    action, _ = law.predict(seen[law.observes])
-    assert np.array_equal(action, np.zeros((2, 4)))
+def test_a_controller_is_built_without_a_look_at_the_true_blade(name):
+    """Nor does another true blade behind the same design change what it does."""
+    electronics = {"sensor_full_scale": 2e-5}
+    blades = [electronics, {**electronics, "beam": {"pretwist_deg": 25.0}}]
+    tasks = [gymnasium.make(beamenv.ENV_ID, blade=blade, design=electronics, **SHORT).unwrapped.task for blade in blades]
+    assert tasks[0].plant.A.tobytes() != tasks[1].plant.A.tobytes()
+    actions = []
+    for task in tasks:
+        law = contender(name).build(type(task).design.fget(Unseen(task)))
+        seen = {"state": np.full((2, len(task.design_plant.A)), 1e-3), "observation": np.full((2, 4), 0.1)}
+        seen["observation and speed"] = np.hstack([seen["observation"], np.full((2, 1), 190.0)])
+        actions.append(law.predict(seen[law.observes])[0])
+    assert np.array_equal(*actions)
+    assert name == "none" or np.abs(actions[0]).max() > 0.0
+
+
+def test_a_task_that_lets_nobody_see_its_true_blade_notices_who_looks():
+    task = Unseen(gymnasium.make(beamenv.ENV_ID, **SHORT).unwrapped.task)
+    with pytest.raises(AssertionError, match="plant of the true blade was read"):
+        lqg(task.plant)
+    assert {each.name for each in fields(beamenv.Design)} == {"plant", "config"}
 
 
 def design_fingerprint(scenario):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from baselines.evaluation.statistics import resamples
 from train.benchmark.statistics import (
     better,
     difference,
@@ -11,7 +12,6 @@ from train.benchmark.statistics import (
     pooled_interquartile_mean,
     ratio,
     relative_cost,
-    resamples,
 )
 
 

@@ -5,24 +5,19 @@ import json
 import re
 
 import gymnasium
-import numpy as np
 import pytest
 
 import beamenv
 import train.comparison.compare
+import train.learning.job
 from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve
 from train.comparison.page import shown_pair
 from train.controllers.contenders import contender
-from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy
-from train.learning.agents import train_agent
+from train.learning.checkpoint import NAME as CHECKPOINT
+from train.learning.session import follow
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
-
-LIMITS = (-np.ones(4, np.float32), np.ones(4, np.float32))
-IDLE = HistoryPolicy(
-    "idle", {"weight0": np.zeros((4, 24), np.float32), "bias0": np.zeros(4, np.float32)}, {"input_gain": 1.0, "held": 1}, *LIMITS
-)
 
 
 class Notes(Listener):
@@ -51,8 +46,8 @@ def test_every_piece_is_written(finished):
     expected = {"configuration.json", "table.csv", "table.md", "episode.png", "learning.png", "poles.png", "report.html"}
     expected |= {f"evaluations/{name}.json" for name in (*CLASSICAL, "gradient", "ppo")}
     for agent in ("gradient", "ppo"):
-        expected |= {f"learning_{agent}.csv", f"agents/{agent}/weights.npz", f"agents/{agent}/agent.json"}
-    assert expected == written
+        expected |= {f"agents/{agent}/{name}" for name in ("weights.npz", "agent.json", "learning.csv", CHECKPOINT)}
+    assert expected == {name for name in written if "/tensorboard/" not in name}
 
 
 def test_the_table_has_every_controller_on_the_same_seeds(finished):
@@ -81,8 +76,8 @@ def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished
 
 def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
     _, evaluations, _ = finished
-    task = gymnasium.make(beamenv.ENV_ID).unwrapped.task
-    laws = {name: contender(name).build(task) for name in CLASSICAL}
+    design = gymnasium.make(beamenv.ENV_ID).unwrapped.task.design
+    laws = {name: contender(name).build(design) for name in CLASSICAL}
     left, right = shown_pair(evaluations[: len(laws)], laws)
     assert left is laws["none"]
     assert right.observes == "observation" and right is not left
@@ -98,13 +93,13 @@ def test_training_reports_its_cost_and_steps(finished):
         assert (curve[1:, 1] > curve[:-1, 1]).all()
 
 
-def test_a_second_run_goes_on_from_the_trained_agents(finished, monkeypatch):
+def test_a_second_run_takes_the_trained_agents(finished, monkeypatch):
     folder, evaluations, _ = finished
 
     def refuse(*arguments):
         raise AssertionError("trained again")
 
-    monkeypatch.setattr(train.comparison.compare, "train_agent", refuse)
+    monkeypatch.setattr(train.comparison.compare, "run", refuse)
     again = compare(SMALL, folder)
     assert [evaluation.relative_cost for evaluation in again] == [evaluation.relative_cost for evaluation in evaluations]
 
@@ -119,8 +114,23 @@ def test_an_interrupted_run_keeps_the_agents_it_has(tmp_path, ticking):
     with pytest.raises(ValueError, match="went down"), ticking(0.02):
         compare(SMALL, tmp_path, Impatient())
     assert load_policy(tmp_path / "agents" / "gradient").name
-    assert not (tmp_path / "agents" / "ppo").exists()
+    assert not (tmp_path / "agents" / "ppo" / "agent.json").exists()
     assert json.loads((tmp_path / "configuration.json").read_text())["comparison"]["seeds"] == 4
+
+
+def test_a_training_that_was_cut_off_resumes_from_its_checkpoint(tmp_path, monkeypatch, ticking):
+    def cut_off(training, budget, report, keep, elapsed):
+        follow(training, budget, lambda progress: None, keep, elapsed=0.9 * budget.seconds)
+        raise ValueError("the machine went down")
+
+    comparison, notes = Comparison({"duration": 0.05}, {"gradient": 10.0}, seeds=2), Notes()
+    with ticking(0.4):
+        with monkeypatch.context() as patched, pytest.raises(ValueError, match="went down"):
+            patched.setattr(train.learning.job, "follow", cut_off)
+            compare(comparison, tmp_path)
+        compare(comparison, tmp_path, notes)
+    assert notes.trained == []  # the checkpoint was that of its end
+    assert json.loads((tmp_path / "agents" / "gradient" / "agent.json").read_text())["seconds"] >= 10.0
 
 
 def test_ctrl_c_ends_a_training_and_goes_on_to_the_evaluation(tmp_path):
@@ -137,7 +147,7 @@ def test_ctrl_c_ends_a_training_and_goes_on_to_the_evaluation(tmp_path):
 
 @pytest.mark.parametrize("agent", ["gradient", "ppo"])
 def test_a_training_that_ends_before_its_first_report_is_evaluated_all_the_same(agent, tmp_path, monkeypatch):
-    monkeypatch.setattr(train.comparison.compare, "train_agent", lambda *arguments: IDLE)
+    monkeypatch.setattr(train.learning.job, "follow", lambda training, *_: training.policies())
     evaluations = compare(Comparison({"duration": 0.05}, {agent: 1.0}, seeds=2), tmp_path)
     assert len(evaluations) == len(CLASSICAL) + 1
     assert read_curve(tmp_path, agent).shape == (0, 3)
@@ -166,9 +176,5 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 
 
 def test_unknown_names_are_refused():
-    with pytest.raises(ValueError, match="agent is 'dreamer', but must be one of gradient, ppo"):
-        train_agent("dreamer", {}, 1.0, 0, lambda progress: None)
-    with pytest.raises(ValueError, match="budget is 0.0, but must be a positive number"):
-        train_agent("ppo", {}, 0.0, 0, lambda progress: None)
     with pytest.raises(ValueError, match="controller is 'pid', but must be one of .*lqg, lqg-load"):
         contender("pid")

@@ -27,7 +27,7 @@ from train.explore import Settings, serve, view  # noqa: E402 - they need the pa
 from train.explore.app import create_app, redraw  # noqa: E402
 from train.explore.blade import CAMPBELL_SPEEDS, built  # noqa: E402
 from train.explore.layout import RANGES  # noqa: E402
-from train.explore.loops import powers, step_responses, under_lqg  # noqa: E402
+from train.explore.loops import powers, step_responses  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 START = {name: entry.value for name, entry in RANGES.items()} | {"load": "flap"}
@@ -127,7 +127,7 @@ def test_powers_by_doubling_are_powers():
 
 def test_the_voltages_are_those_of_the_controller_saturated_or_not(plant, design):
     held, push = sample(plant), sample(plant).disturbance_input @ [0.0, 150.0]
-    _, volts = under_lqg(*design, plant.voltage_limits, push, 120)
+    volts = step_responses(plant, *design, np.array([0.0, 150.0]), 119 * plant.control_interval).volts
     law, memory, x, expected = lqg(plant), None, np.zeros(len(plant.A)), []
     for _ in range(120):
         action, memory = law.predict(held.C @ x / plant.sensor_full_scale, memory)

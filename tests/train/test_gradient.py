@@ -14,9 +14,9 @@ from beamenv.simulation.blades import Blades
 from beamenv.simulation.kernel import Operators, advance
 from beamenv.task import resolve_task
 from train.learning.through_plant.actors import ActorSettings
-from train.learning.through_plant.gradient import GradientSettings, new_actor, on_training_bank, train_gradient
+from train.learning.through_plant.gradient import GradientSettings, new_actor, train_gradient
 from train.learning.through_plant.windows import Windows
-from train.learning.training import uncontrolled_cost
+from train.learning.training import on_training_bank, uncontrolled_cost
 
 
 @pytest.fixture(scope="module")

@@ -5,22 +5,26 @@ import platform
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from itertools import islice
 from types import SimpleNamespace
 
 import gymnasium as gym
 import numpy as np
+import plotly.graph_objects as go
 import pytest
 
 import beamenv
-from baselines import evaluate, lqg, no_control
+from baselines import evaluate, lqg, lqr, no_control, scheduled_lqg_for
+from baselines.evaluation.loop import instants
 from beamenv.blade.build import build_plant
+from beamenv.plant.plant import sample
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
+from train.figures.screen_heat_map import heat_map
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record, write_page
 from train.page.blade import blade_figures, frame_times, magnification, motions
-from train.page.heat_map import heat_map
 from train.page.page import plots, render
-from train.page.plots import amplitude_density, pole_map, symmetric_logarithm
+from train.page.plots import amplitude_density
 from train.page.themes import THEMES
 from train.shared.versions import versions
 
@@ -119,6 +123,43 @@ def test_a_recorded_episode_is_the_one_that_was_evaluated():
     envs.close()
 
 
+@pytest.mark.parametrize(
+    ("law", "scenario"),
+    [
+        (lambda task: lqr(task.design_plant), "spillover"),
+        (lambda task: scheduled_lqg_for(task.design_config), "off-speed"),
+        (lambda task: lambda readings: -0.1 * readings, "nominal"),
+    ],
+)
+def test_laws_of_the_true_state_of_the_speed_and_plain_functions_are_recorded_as_they_are_evaluated(law, scenario):
+    """In "spillover" the true state is longer than the one that the law was designed for."""
+    arguments, seed = {"duration": 0.05, "scenario": scenario}, 5
+    env = gym.make(beamenv.ENV_ID, **arguments)
+    controller = law(env.unwrapped.task)
+    recording = record(controller, env, seed)
+    episodes = evaluate(controller, env, [seed]).episodes
+    np.testing.assert_allclose(recording.tip[1:], episodes.tip_displacement[:, 0], rtol=1e-12, atol=0)
+    np.testing.assert_allclose(recording.volts[1:], episodes.voltages[:, 0], rtol=1e-12, atol=0)
+    assert np.abs(recording.volts).max() > 1.0
+
+
+def test_the_recorded_cost_of_lqr_is_the_evaluated_one():
+    """Exactly integrated: from the recorded states, with the loads left out of the scenario."""
+    arguments = {"duration": 0.05, "scenario": {"white_load": False, "sensor_noise": False}}
+    env = gym.make(beamenv.ENV_ID, **arguments)
+    plant = env.unwrapped.plant
+    start = np.zeros(len(plant.A))
+    start[0] = 0.05
+    controller, options = lqr(plant), {"load": {"case": "none"}, "initial_state": start}
+    recording, held = record(controller, env, 0, options), sample(plant)
+    joined = np.hstack([recording.states[:-1], recording.volts[1:], np.zeros((len(recording.time) - 1, 2))])
+    cost = np.einsum("ki,ij,kj->", joined, held.cost, joined)
+    evaluated = sum(instant.info["cost_increment"][0] for instant in islice(instants(controller, env, [0], options), 1, None))
+    assert cost == pytest.approx(evaluated, rel=1e-9)
+    alone = record(no_control(plant), env, 0, options).states
+    assert cost < plant.control_interval * 0.5 * (alone**2).sum()
+
+
 def test_a_recording_ends_where_the_blade_fails():
     env = gym.make(beamenv.ENV_ID, duration=0.05)
     load = {"case": "step", "magnitude": 1e5, "onset": 0.01, "direction_deg": 90.0}
@@ -187,17 +228,6 @@ def test_power_of_a_sine_is_half_its_amplitude_squared():
     assert frequencies[np.argmax(density)] == pytest.approx(frequency)
 
 
-def test_the_real_axis_of_poles_is_odd_linear_near_zero_and_logarithmic_far_out():
-    assert symmetric_logarithm(np.array([-90.0, 0.0, 90.0])).tolist() == [-1.0, 0.0, 1.0]
-    assert symmetric_logarithm(np.array([1e-3]))[0] == pytest.approx(1e-3 / (10.0 * np.log(10.0)), rel=1e-3)
-
-
-def test_an_unstable_pole_lies_right_of_the_imaginary_axis():
-    figure = pole_map({"loop": np.array([-5.0 + 100.0j, -5.0 - 100.0j, 2.0 + 0.0j])})
-    assert len(figure.data[0].x) == 2
-    assert figure.data[0].x[1] > 0.0
-
-
 def test_grey_is_without_control(page_content):
     shown = {plot.name: plot.figure for plot in plots(page_content)}
     for name in ("time-series", "spectra"):
@@ -240,7 +270,7 @@ def test_a_row_of_another_length_is_refused():
 
 def test_a_failed_blade_is_marked_with_the_share_of_failures():
     content = HeatMap(("step", "pulse"), ("LQG", "PPO"), np.array([[0.4, 0.5], [np.inf, 0.8]]), np.array([[0.0, 0.0], [0.25, 0.5]]))
-    cells, lost = heat_map(content).data
+    cells, lost = go.Figure(heat_map(content)).data
     assert np.asarray(cells.text).tolist() == [["0.40", "0.50"], ["", "0.80<br>✕ 50 %"]]
     assert np.isnan(cells.z[1][0])
     assert (list(lost.x), list(lost.y), list(lost.text)) == (["LQG"], ["pulse"], ["✕ 25 %"])

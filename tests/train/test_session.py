@@ -1,4 +1,4 @@
-"""A training from beginning to end: its course, its checkpoints, and going on from them."""
+"""A training from beginning to end: its budget, its checkpoints, and resuming from them."""
 
 import csv
 import json
@@ -15,9 +15,9 @@ from beamenv.plant.fingerprint import fingerprint
 from train.controllers.policy_files import load_policy
 from train.learning.agents import task_of
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
-from train.learning.job import Assignment, carry_out
+from train.learning.job import Job, run
 from train.learning.recipe import parsed
-from train.learning.session import Course, follow
+from train.learning.session import Budget, follow
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"
@@ -28,8 +28,8 @@ SAC = parsed(
 )
 
 
-def assignment(recipe, scenario="nominal", seed=0, updates=6):
-    return Assignment(recipe.agent, recipe, scenario, seed, Course(updates=updates), SHORT)
+def job(recipe, scenario="nominal", seed=0, updates=6):
+    return Job(recipe.agent, recipe, scenario, seed, Budget(updates=updates), SHORT)
 
 
 def ignore(progress):
@@ -80,21 +80,21 @@ class Counting:
 
 def test_by_updates_the_learning_rate_falls_with_them():
     training = Counting()
-    follow(training, Course(updates=4), ignore)
+    follow(training, Budget(updates=4), ignore)
     assert training.remaining == [1.0, 0.75, 0.5, 0.25]
 
 
 def test_by_the_clock_it_falls_with_time(ticking):
     training = Counting()
     with ticking(1.0):  # every look at the clock takes a second
-        follow(training, Course(seconds=4), ignore)
+        follow(training, Budget(seconds=4), ignore)
     assert training.remaining == [1.0, 0.75, 0.5, 0.25]
 
 
 def test_a_checkpoint_is_written_every_so_often_and_at_the_end(ticking):
     kept = []
     with ticking(10.0):
-        follow(Counting(), Course(updates=7), ignore, kept.append, interval=30.0)
+        follow(Counting(), Budget(updates=7), ignore, kept.append, interval=30.0)
     assert kept == [30.0, 60.0, 70.0]
 
 
@@ -107,16 +107,16 @@ def test_ctrl_c_waits_for_the_end_of_an_update():
 
     training, kept = Interrupted(), []
     handler = signal.getsignal(signal.SIGINT)
-    follow(training, Course(updates=9), ignore, kept.append)
+    follow(training, Budget(updates=9), ignore, kept.append)
     assert training.updates == 3
     assert len(kept) == 1
     assert signal.getsignal(signal.SIGINT) is handler
 
 
 @pytest.mark.parametrize("given", [{"updates": 0}, {"seconds": -1.0}, {"seconds": float("nan")}, {}])
-def test_a_course_must_end(given):
+def test_a_budget_must_end(given):
     with pytest.raises(ValueError, match="must be"):
-        Course(**given)
+        Budget(**given)
 
 
 @pytest.mark.parametrize("scenario", ["nominal", "delay", "failure", "hysteresis", "rotor", "spin-up", "off-damping.toml"])
@@ -124,10 +124,10 @@ def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrup
     monkeypatch.chdir(tmp_path)
     (tmp_path / "off-damping.toml").write_text("[plants]\nbank = 4\ndamping_ratio = [0.003, 0.02]\n")
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    carry_out(assignment(GRADIENT, scenario), whole, ignore)
-    carry_out(assignment(GRADIENT, scenario), broken, interrupted_after(3))
+    run(job(GRADIENT, scenario), whole, ignore)
+    run(job(GRADIENT, scenario), broken, interrupted_after(3))
     halfway = weights(broken)
-    carry_out(assignment(GRADIENT, scenario), broken, ignore, resume=True)
+    run(job(GRADIENT, scenario), broken, ignore, resume=True)
     assert_same(weights(whole), weights(broken))
     assert any((halfway[name] != weight).any() for name, weight in weights(whole).items())
     costs = [[row["cost"] for row in curve(folder)] for folder in (whole, broken)]
@@ -135,11 +135,11 @@ def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrup
 
 
 @pytest.mark.parametrize("recipe", [PPO, SAC], ids=["ppo", "sac"])
-def test_a_resumed_training_goes_on_from_its_networks_and_counters(recipe, tmp_path):
-    carry_out(assignment(recipe), tmp_path, interrupted_after(3))
+def test_a_training_resumes_with_its_networks_and_counters(recipe, tmp_path):
+    run(job(recipe), tmp_path, interrupted_after(3))
     before = read_checkpoint(tmp_path)["training"]
     seen = []
-    carry_out(assignment(recipe), tmp_path, seen.append, resume=True)
+    run(job(recipe), tmp_path, seen.append, resume=True)
     assert [progress.updates for progress in seen] == [4, 5, 6]
     assert seen[0].steps > before["counters"]["steps"]
     after = read_checkpoint(tmp_path)["training"]["policy"]
@@ -151,15 +151,15 @@ def test_a_resumed_training_goes_on_from_its_networks_and_counters(recipe, tmp_p
 @pytest.mark.parametrize("recipe", [GRADIENT, PPO, SAC], ids=["gradient", "ppo", "sac"])
 def test_a_training_begun_again_is_the_same(recipe, tmp_path):
     for name in ("first", "second"):
-        carry_out(assignment(recipe, updates=3), tmp_path / name, ignore)
-    carry_out(assignment(recipe, updates=3, seed=1), tmp_path / "other", ignore)
+        run(job(recipe, updates=3), tmp_path / name, ignore)
+    run(job(recipe, updates=3, seed=1), tmp_path / "other", ignore)
     first, second, other = (weights(tmp_path / name) for name in ("first", "second", "other"))
     assert_same(first, second)
     assert any((first[name] != other[name]).any() for name in first)
 
 
 def test_what_is_saved_tells_what_it_depends_on(tmp_path):
-    (place,) = carry_out(assignment(GRADIENT), tmp_path / "agent", ignore)
+    (place,) = run(job(GRADIENT), tmp_path / "agent", ignore)
     about = json.loads((place / "agent.json").read_text())
     plant = task_of(SHORT).design_plant
     assert about["recipe"] == GRADIENT.to_dict()
@@ -173,7 +173,7 @@ def test_what_is_saved_tells_what_it_depends_on(tmp_path):
 
 def test_runs_side_by_side_are_saved_apart(tmp_path):
     recipe = replace(GRADIENT, settings=replace(GRADIENT.settings, runs=2))
-    places = carry_out(assignment(recipe, updates=2), tmp_path, ignore)
+    places = run(job(recipe, updates=2), tmp_path, ignore)
     assert [place.name for place in places] == ["0", "1"]
     curves = [(place / "learning.csv").read_text() for place in places]
     assert curves[0] != curves[1]
@@ -181,31 +181,31 @@ def test_runs_side_by_side_are_saved_apart(tmp_path):
 
 def test_a_generalist_knows_the_plant_of_every_scenario(tmp_path, monkeypatch):
     monkeypatch.setattr(train.learning.job, "NAMES", ("nominal", "hysteresis"))
-    (place,) = carry_out(assignment(PPO, "generalist", updates=1), tmp_path, ignore)
+    (place,) = run(job(PPO, "generalist", updates=1), tmp_path, ignore)
     tasks = [task_of({**SHORT, "scenario": name}) for name in ("nominal", "hysteresis")]
     assert load_policy(place, tasks[0].design_plant).lowest == pytest.approx(-1.0)
     assert load_policy(place, tasks[1].design_plant).lowest == pytest.approx(-1.0 / 3.0)
 
 
 def test_a_teacher_must_know_the_plant(tmp_path):
-    (teacher,) = carry_out(assignment(GRADIENT, updates=1), tmp_path / "teacher", ignore)
-    for_other = replace(assignment(PPO, "hysteresis"), teacher=teacher)
+    (teacher,) = run(job(GRADIENT, updates=1), tmp_path / "teacher", ignore)
+    for_other = replace(job(PPO, "hysteresis"), teacher=teacher)
     with pytest.raises(ValueError, match="none of those the agent .* was trained on"):
-        carry_out(for_other, tmp_path / "student", ignore)
+        run(for_other, tmp_path / "student", ignore)
     with pytest.raises(ValueError, match="'gradient' must start from scratch"):
-        carry_out(replace(assignment(GRADIENT), teacher=teacher), tmp_path / "student", ignore)
+        run(replace(job(GRADIENT), teacher=teacher), tmp_path / "student", ignore)
 
 
 def test_a_folder_s_training_is_neither_overwritten_nor_taken_for_another(tmp_path):
-    carry_out(assignment(PPO, updates=1), tmp_path, ignore)
+    run(job(PPO, updates=1), tmp_path, ignore)
     before = (tmp_path / NAME).read_bytes()
     with pytest.raises(ValueError, match="holds a training already"):
-        carry_out(assignment(PPO, updates=1), tmp_path, ignore)
+        run(job(PPO, updates=1), tmp_path, ignore)
     with pytest.raises(ValueError, match="holds another training"):
-        carry_out(assignment(PPO, updates=1, seed=1), tmp_path, ignore, resume=True)
+        run(job(PPO, updates=1, seed=1), tmp_path, ignore, resume=True)
     assert (tmp_path / NAME).read_bytes() == before
     with pytest.raises(ValueError, match="must hold a checkpoint"):
-        carry_out(assignment(PPO), tmp_path / "nothing", ignore, resume=True)
+        run(job(PPO), tmp_path / "nothing", ignore, resume=True)
 
 
 class Bomb:

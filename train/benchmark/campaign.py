@@ -40,8 +40,8 @@ def benchmark(
 ) -> BenchmarkTable:
     """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
 
-    - ``own``: objects with Stable-Baselines3's ``predict`` by the names they are to have. They are given the readings (N, p)
-      of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
+    - ``own``: objects with Stable-Baselines3's ``predict``, or plain functions, by the names they are to have. They are given the
+      readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
     - ``scenarios``: names or files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
       the others go on.
     - ``controllers``: names of contenders and shipped agents, all of them if None. No control and LQG are always among them.
@@ -130,7 +130,8 @@ def write_all(folder: Path, table: BenchmarkTable) -> None:
     from train.benchmark.showing.heat_map import heat_map
     from train.benchmark.showing.page import write_report
     from train.figures.paper import save
+    from train.figures.paper_heat_map import heat_map as drawn
 
     write_files(folder, table)
-    save(heat_map(table), folder / "heat_map.png")
+    save(drawn(heat_map(table)), folder / "heat_map.png")
     write_report(folder / "report.html", table)

@@ -1,58 +1,15 @@
-"""Estimates over training runs and seeds, with bootstrap intervals that resample both."""
+"""What the benchmark estimates over training runs and seeds, all of it with intervals that resample both."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import Estimate
+from baselines.evaluation.statistics import Estimate, Resamples, interval, resamples
 
 Array = NDArray[np.float64]
-
-RESAMPLES = 2000
-CONFIDENCE = 0.95
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Resamples:
-    """R draws with replacement of K runs and N seeds, each for itself.
-
-    Every run meets the same seeds, so that runs and seeds are crossed: this is the pigeonhole bootstrap (Owen, Annals of Applied
-    Statistics 1, 2007), never narrower than the stratified one of Agarwal et al. (NeurIPS 2021), whose seeds are each run's own.
-    Draws of N seeds are always the same ones: controllers are compared in pairs.
-    """
-
-    runs: NDArray[np.intp]
-    """(R, K)."""
-    seeds: NDArray[np.intp]
-    """(R, N)."""
-    run_counts: Array
-    """(R, K): how often each run was drawn."""
-    seed_counts: Array
-    """(R, N)."""
-
-    def mean(self, values: Array) -> Array:
-        """(R,): means of resampled ``values`` (K, N); infinite where an infinite one was drawn."""
-        infinite = np.isinf(values)
-        total = ((self.run_counts @ np.where(infinite, 0.0, values)) * self.seed_counts).sum(axis=1)
-        lost = ((self.run_counts @ infinite.astype(float)) * self.seed_counts).sum(axis=1) > 0.0
-        return np.where(lost, np.inf, total / values.size)
-
-    def pooled(self, values: Array) -> Array:
-        """(R, K · N): the resampled values themselves."""
-        return values[self.runs[:, :, None], self.seeds[:, None, :]].reshape(len(self.runs), -1)
-
-
-@lru_cache(maxsize=8)
-def resamples(runs: int, seeds: int, count: int = RESAMPLES) -> Resamples:
-    """``count`` draws of runs and seeds, the same at every call."""
-    drawn = [np.random.default_rng((index, size)).integers(size, size=(count, size)) for index, size in enumerate((runs, seeds))]
-    counts = [np.stack([np.bincount(row, minlength=each.shape[1]) for row in each]).astype(float) for each in drawn]
-    return Resamples(*drawn, *counts)
 
 
 def interquartile_mean(values: Any) -> Any:
@@ -66,13 +23,6 @@ def interquartile_mean(values: Any) -> Any:
 def better(cost: Array, rival: Array) -> Array:
     """1 where the cost is below the rival's, ½ where they are equal: its mean is the probability of improvement."""
     return np.where(cost == rival, 0.5, (cost < rival).astype(float))
-
-
-def interval(value: float, resampled: Array) -> Estimate:
-    """A value with the percentile interval of its resampled ones."""
-    tail = 0.5 * (1.0 - CONFIDENCE)
-    low, high = np.quantile(resampled, [tail, 1.0 - tail], method="nearest")
-    return Estimate(float(value), float(low), float(high))
 
 
 def mean(values: Array) -> Estimate:

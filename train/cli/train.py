@@ -24,7 +24,7 @@ def train(
     ] = None,
     recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
     start: Annotated[Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on from the folder's checkpoint, with the same arguments.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments.")] = False,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -35,21 +35,21 @@ def train(
     """
     with one_sentence():
         from train.cli.progress import Progressbar
-        from train.learning.job import Assignment, carry_out
+        from train.learning.job import Job, run
         from train.learning.recipe import load_recipe, named_recipe
-        from train.learning.session import Course
+        from train.learning.session import Budget
 
         chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
         if minutes is not None and updates is not None:
             raise ValueError("minutes and updates must not both be given.")
         if minutes is not None:
-            course = Course(seconds=60.0 * minutes)
+            budget = Budget(seconds=60.0 * minutes)
         else:
-            course = Course(updates=chosen.updates if updates is None else updates)
+            budget = Budget(updates=chosen.updates if updates is None else updates)
         environment = environment_arguments(preset, speed, blade)
         home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
-        assignment = Assignment(agent, chosen, scenario, seed, course, environment, start)
-        total, unit = (course.updates, "updates") if math.isinf(course.seconds) else (course.seconds, "s")
+        job = Job(agent, chosen, scenario, seed, budget, environment, start)
+        total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")
         with Progressbar({agent: total}, unit) as bar:
-            places = carry_out(assignment, home, lambda progress: bar.training(agent, total, progress), resume)
+            places = run(job, home, lambda progress: bar.training(agent, total, progress), resume)
     Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, field
@@ -16,21 +17,21 @@ import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.blade.files import to_dict
 from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
-from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant
 from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
 from train.controllers.contenders import contender
-from train.controllers.policy_files import load_policy, save_policy
-from train.learning.agents import AGENTS, train_agent
+from train.controllers.policy_files import load_policy
+from train.learning.agents import AGENTS
+from train.learning.checkpoint import NAME as CHECKPOINT
+from train.learning.job import Job, run
+from train.learning.recipe import Recipe
+from train.learning.session import Budget
 from train.learning.training import Progress
-from train.shared.files import check_folder, write_csv, write_json
+from train.shared.files import check_folder, write_json
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
 
 Array = NDArray[np.float64]
-
-CURVE = ("elapsed", "steps", "cost")
-"""Columns of a learning curve."""
 
 CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
 """The contenders that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
@@ -52,22 +53,29 @@ class Comparison:
         for name, seconds in checked_table("comparison.budget", self.budget, tuple(AGENTS)).items():
             checked(f"budget.{name}", seconds, Number(gt=0.0, unit="s"))
 
+    def job(self, agent: str) -> Job:
+        """The training of an agent, with its trainer's own settings."""
+        environment = dict(self.environment)
+        scenario = environment.pop("scenario", "default")
+        recipe = Recipe(agent, f"{agent} of a comparison", 1, AGENTS[agent].settings())
+        return Job(agent, recipe, scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
+
 
 class Listener:
-    """What a comparison tells while it runs; by default nothing."""
+    """What is called while a comparison runs; by default it does nothing."""
 
     def training(self, name: str, budget: float, progress: Progress) -> None:
-        """Called as the training of an agent goes on."""
+        """After every update of an agent."""
 
     def evaluated(self, evaluation: Evaluation) -> None:
-        """Called for each controller."""
+        """After each controller."""
 
 
 def compare(comparison: Comparison, folder: Path, listener: Listener | None = None) -> list[Evaluation]:
     """Train, evaluate, write tables, models, configuration, figures and a page to ``folder``, and return the evaluations.
 
-    Each piece is written as soon as it is there. A folder that holds trained agents of the same comparison is gone on from;
-    ``ValueError`` if it holds another comparison.
+    Each piece is written as soon as it is there. A folder of the same comparison is resumed: agents that it holds
+    are not trained again. ``ValueError`` if it holds another comparison.
     """
     from train.comparison.page import write_comparison_page  # plotly takes a while, and others want this module's names alone
 
@@ -77,7 +85,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
         plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)
         agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
-        laws: dict[str, Any] = {name: contender(name).build(envs.unwrapped.task) for name in CLASSICAL}
+        laws: dict[str, Any] = {name: contender(name).build(envs.unwrapped.task.design) for name in CLASSICAL}
         evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
     finally:
         envs.close()
@@ -110,27 +118,19 @@ def claim(folder: Path, comparison: Comparison, task: Any) -> None:
 
 
 def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, listener: Listener) -> Controller:
-    """The agent of an earlier run, or a freshly trained one, saved with its learning curve."""
+    """The agent of an earlier run, or one trained now, from its checkpoint on if it was interrupted."""
     home = folder / "agents" / name
-    if (home / "agent.json").exists():
-        return load_policy(home, plant)
-    curve: list[Progress] = []
-
-    def report(progress: Progress) -> None:
-        curve.append(progress)
-        listener.training(name, comparison.budget[name], progress)
-
-    agent = train_agent(name, comparison.environment, comparison.budget[name], comparison.training_seed, report)
-    rows = [{column: getattr(progress, column) for column in CURVE} for progress in curve]
-    write_csv(folder / f"learning_{name}.csv", rows, CURVE)  # training may end before its first report
-    save_policy(agent, home, {"plants": {str(comparison.environment.get("scenario", "default")): fingerprint(plant)}})
-    return agent
+    if not (home / "agent.json").exists():
+        budget = comparison.budget[name]
+        run(comparison.job(name), home, lambda progress: listener.training(name, budget, progress), (home / CHECKPOINT).exists())
+    return load_policy(home, plant)
 
 
 def read_curve(folder: Path, name: str) -> Array:
     """(k, 3): seconds, steps, running cost relative to no control."""
-    rows = (folder / f"learning_{name}.csv").read_text().splitlines()[1:]
-    return np.array([row.split(",") for row in rows], dtype=np.float64).reshape(-1, 3)
+    with (folder / "agents" / name / "learning.csv").open(encoding="utf-8", newline="") as file:
+        rows = [[float(row[column]) for column in ("elapsed", "steps", "cost")] for row in csv.DictReader(file)]
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
 
 def evaluate_all(

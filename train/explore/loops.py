@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines.analysis.response import linear_response
+from baselines.laws.lqg import compensator
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.plant.poles import damping_ratios, poles_of_sampled
 
@@ -57,11 +59,11 @@ def step_responses(plant: Plant, held: SampledPlant, K: Array, L: Array, line_lo
     steps, tip = round(duration / held.interval) + 1, plant.tip_displacement
     push = held.disturbance_input @ line_load
     at_rest = np.linalg.solve(np.eye(len(held.A)) - held.A, push)
-    states, volts = under_lqg(held, K, L, plant.voltage_limits, push, steps)
+    states, volts = linear_response(held, compensator(plant, "LQG", held, K, L), np.tile(line_load, (steps, 1)))
     return StepResponses(
         time=held.interval * np.arange(steps),
         free=(at_rest - powers(held.A, at_rest, steps)) @ tip.T,
-        controlled=states @ tip.T,
+        controlled=states[:-1] @ tip.T,
         volts=volts,
         at_rest=tip @ at_rest,
     )
@@ -73,22 +75,3 @@ def powers(transition: Array, start: Array, steps: int) -> Array:
     while len(rows) < steps:
         rows, power = np.vstack([rows, rows @ power.T]), power @ power
     return rows[:steps]
-
-
-def under_lqg(held: SampledPlant, K: Array, L: Array, limits: Array, push: Array, steps: int) -> tuple[Array, Array]:
-    """States (steps, n) and voltages (steps, m) from rest under a constant ``push`` (n,) a step.
-
-    The filter starts from zero and knows the voltages as the drive limits them.
-    """
-    n, m = held.B.shape
-    correct = np.eye(n) - L @ held.C
-    transition = np.block([[held.A, np.zeros((n, n))], [held.A - held.A @ correct, held.A @ correct]])
-    gain, drive = -np.hstack([K @ (np.eye(n) - correct), K @ correct]), np.vstack([held.B, held.B])
-    load = np.concatenate([push, np.zeros(n)])
-    states, volts = np.empty((steps, 2 * n)), np.empty((steps, m))
-    both = np.zeros(2 * n)
-    for step in range(steps):
-        states[step] = both
-        volts[step] = u = np.minimum(np.maximum(gain @ both, limits[0]), limits[1])
-        both = transition @ both + drive @ u + load
-    return states[:, :n], volts

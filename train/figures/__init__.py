@@ -1,1 +1,1 @@
-"""What figures consist of, and how they are drawn on paper and on the screen."""
+"""One vocabulary of figures, and two renderers: ``paper`` makes PNG with matplotlib, ``screen`` makes plotly's dictionaries."""

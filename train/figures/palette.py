@@ -1,13 +1,35 @@
-"""The colours of lines, which are legible on white and on both themes of a page, and the signs beside them."""
+"""The colours and signs of figures by their role; lines are legible on white and on both themes of a page."""
 
 from __future__ import annotations
 
+from train.figures.figure import Look
+
 PALETTE = ("#2f7fc2", "#d9601a", "#23945a", "#9a63c9", "#b8860b", "#d6428f")
 """Contrast of at least 3 on both panels, as WCAG 2.1 (1.4.11) asks of lines."""
+BLACK = "#000000"
+"""What is shown, on paper."""
 NEUTRAL = "#7d8793"
-"""What is without control."""
-DASHES = ("solid", "dash", "dot", "dashdot")
+"""What is without control, and what is only for orientation."""
+BEHIND = "#bfbfbf"
+"""What is without control where it lies behind a black curve."""
+LINES = ("solid", "dashed", "dotted", "dashdot")
 """The second sign besides colour."""
+SIGNS = ("x-thin", "cross-thin", "square", "circle", "diamond", "triangle-up")
+"""Of points, the second sign besides colour."""
+BETTER_OR_WORSE = "RdBu"
+"""Scale about no control, from red to blue."""
+DARK_IS_BAD = "cividis_r"
+"""Its lightness falls steadily: dark is bad in greyscale too, and for those who are colour-blind."""
+
+
+def colour(index: int) -> str:
+    """Of one curve among many."""
+    return PALETTE[index % len(PALETTE)]
+
+
+def actuator(index: int) -> tuple[Look, str]:
+    """Look and line of an actuator's voltage, or of a patch, told apart in greyscale too."""
+    return Look(colour(index + 2)), LINES[index % len(LINES)]
 
 
 def contrast(one: str, other: str) -> float:

@@ -1,12 +1,13 @@
-"""Figures as PNG."""
+"""Figures as PNG, by matplotlib."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from train.figures.figure import Curve, Marker, Panel, listed
 from train.shared.files import write_whole
 
 STYLE: Mapping[str, Any] = {
@@ -16,11 +17,38 @@ STYLE: Mapping[str, Any] = {
     "axes.titlesize": 9,
     "legend.frameon": False,
     "lines.linewidth": 1.0,
+    "lines.markersize": 5,
     "savefig.dpi": 160,
 }
-
-VOLTAGE_LINES = (("#000000", "-"), ("#0072b2", "-"), ("#d55e00", "--"), ("#7f7f7f", ":"))
-"""Colour and dashes of actuators 1 to 4: told apart in greyscale too."""
+DASHES: Mapping[str, Any] = {
+    "solid": "-",
+    "dotted": (0, (1.2, 1.4)),
+    "dashed": (0, (5, 2)),
+    "dashdot": (0, (6, 2, 1.2, 2)),
+    "points": "",
+}
+SIGNS = {
+    "point": ".",
+    "circle": "o",
+    "square": "s",
+    "triangle-up": "^",
+    "triangle-down": "v",
+    "triangle-left": "<",
+    "triangle-right": ">",
+    "diamond": "D",
+    "cross": "P",
+    "x": "X",
+    "pentagon": "p",
+    "cross-thin": "+",
+    "x-thin": "x",
+}
+"""By plotly's names."""
+FILLS: Mapping[str, Mapping[str, str]] = {
+    "full": {},
+    "none": {"markerfacecolor": "none"},
+    "white": {"markerfacecolor": "white"},
+}
+STEPS = {"ends": "steps-pre", "begins": "steps-post"}
 
 
 def save(figure: Any, path: Path) -> None:
@@ -31,3 +59,55 @@ def save(figure: Any, path: Path) -> None:
     figure.savefig(picture, format="png", bbox_inches="tight")
     plt.close(figure)
     write_whole(path, picture.getvalue())
+
+
+def draw_panel(axis: Any, panel: Panel) -> None:
+    """A panel on a pair of axes."""
+    for x in panel.marked:
+        axis.axvline(x, color="0.6", linewidth=0.8, linestyle=DASHES[panel.marked_line], zorder=0)
+    for curve in panel.curves:
+        draw_curve(axis, curve)
+    for note in panel.notes:
+        axis.text(note.x, note.y, note.text, ha="right", va="top")
+    axis.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+    if panel.x_linear_within is not None:
+        axis.set_xscale("symlog", linthresh=panel.x_linear_within)
+    if panel.logarithmic:
+        axis.set_yscale("log")
+    if panel.whole:
+        axis.yaxis.get_major_locator().set_params(integer=True)
+    if panel.x_limits != (None, None):
+        axis.set_xlim(*panel.x_limits)
+    if panel.y_limits != (None, None):
+        axis.set_ylim(*panel.y_limits)
+
+
+def draw_curve(axis: Any, curve: Curve) -> None:
+    """A curve on a pair of axes."""
+    every = {} if curve.look.marker is None else {"markevery": curve.look.marker.every}
+    steps = {"drawstyle": STEPS[curve.joined]} if curve.joined in STEPS else {}
+    axis.plot(curve.x, curve.y, **appearance(curve), **every, **steps)
+
+
+def appearance(curve: Curve) -> dict[str, Any]:
+    """How matplotlib draws a curve's line and markers, in the axes and in the legend."""
+    look = curve.look
+    style: dict[str, Any] = {"color": look.colour, "linestyle": DASHES[curve.line], "alpha": look.opacity}
+    if look.width is not None:
+        style["linewidth"] = look.width
+    if look.above:
+        style["zorder"] = 3
+    return style if look.marker is None else {**style, **marking(look.marker)}
+
+
+def marking(marker: Marker) -> dict[str, Any]:
+    """How matplotlib draws a sign."""
+    size = {} if marker.size is None else {"markersize": marker.size}
+    return {"marker": SIGNS[marker.sign], **FILLS[marker.fill], **size}
+
+
+def handles(panels: Sequence[Panel]) -> list[Any]:
+    """The entries of a legend of some panels, one for each label."""
+    from matplotlib.lines import Line2D
+
+    return [Line2D([], [], label=curve.label, **appearance(curve)) for curve in listed(panels)]

@@ -1,4 +1,4 @@
-"""The trainers by name, and each trained within a time on an environment."""
+"""The trainers by name, and the task of an environment."""
 
 from __future__ import annotations
 
@@ -10,17 +10,13 @@ from typing import Any
 import gymnasium as gym
 
 import beamenv
-from beamenv.configuration import Choice, Number, checked
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining, TQCTraining
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings, RecurrentPPOTraining
-from train.learning.session import Course, follow
-from train.learning.through_plant.gradient import GradientSettings
-from train.learning.through_plant.resumable_gradient import ResumableGradientTraining
-from train.learning.training import Report, Training
-from train.shared.threads import one_torch_thread
+from train.learning.through_plant.gradient import GradientSettings, GradientTraining
+from train.learning.training import Training
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +31,7 @@ class Agent:
 
 AGENTS: Mapping[str, Agent] = MappingProxyType(
     {
-        "gradient": Agent(GradientSettings, ResumableGradientTraining),
+        "gradient": Agent(GradientSettings, GradientTraining),
         "ppo": Agent(PPOSettings, PPOTraining),
         "sac": Agent(OffPolicySettings, SACTraining),
         "tqc": Agent(OffPolicySettings, TQCTraining),
@@ -51,18 +47,3 @@ def task_of(environment: Mapping[str, Any]) -> Task:
     envs.close()
     task: Task = envs.unwrapped.task
     return task
-
-
-def train_agent(name: str, environment: Mapping[str, Any], budget: float, seed: int, report: Report) -> Policy:
-    """Train an agent for ``budget`` s on the environment with the given keyword arguments; Ctrl-C ends training early.
-
-    Raises ValueError for an unknown name or a budget that is not positive.
-    """
-    checked("agent", name, Choice(tuple(AGENTS)))
-    budget = checked("budget", budget, Number(gt=0.0, unit="s"))
-    with one_torch_thread():
-        training = AGENTS[name].training([task_of(environment)], AGENTS[name].settings(), seed, None)
-        try:
-            return follow(training, Course(seconds=budget), report)[0]
-        finally:
-            training.close()

@@ -1,4 +1,4 @@
-"""One training as ``beamenv train`` is told it: carried out in a folder, gone on from there, and saved with all it depends on."""
+"""One training job: run in a folder, resumed from its checkpoint there, and saved with all that it depends on."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from train.learning.agents import AGENTS, task_of
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
 from train.learning.scalars import Scalars
-from train.learning.session import Course, follow
+from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
 from train.shared.files import check_folder, write_csv
 from train.shared.threads import one_torch_thread
@@ -32,15 +32,16 @@ CURVE_POINTS = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Assignment:
-    """What is to be trained, on what, and for how long."""
+class Job:
+    """What is trained, on what, and for how long."""
 
     name: str
     """Of the recipe."""
     recipe: Recipe
-    scenario: str
+    scenario: Any
+    """A name, a TOML file, a table as JSON can hold it, or ``GENERALIST``."""
     seed: int
-    course: Course
+    budget: Budget
     environment: Mapping[str, Any]
     """Keyword arguments of the environment but the scenario, as JSON can hold them."""
     teacher: Path | None = None
@@ -48,11 +49,11 @@ class Assignment:
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario."""
-        names = NAMES if self.scenario == GENERALIST else (self.scenario,)
-        return {name: task_of({**self.environment, "scenario": name}) for name in names}
+        scenarios = NAMES if self.scenario == GENERALIST else (self.scenario,)
+        return {str(each): task_of({**self.environment, "scenario": each}) for each in scenarios}
 
     def identity(self) -> dict[str, Any]:
-        """What two runs must share for one to go on from the other."""
+        """What two runs must share for one to resume the other."""
         weights = None if self.teacher is None else sha256((self.teacher / "weights.npz").read_bytes()).hexdigest()
         return {
             "agent": self.name,
@@ -60,31 +61,32 @@ class Assignment:
             "scenario": self.scenario,
             "environment": dict(self.environment),
             "seed": self.seed,
-            "course": [str(self.course.updates), str(self.course.seconds)],
+            "budget": [str(self.budget.updates), str(self.budget.seconds)],
             "teacher": weights,
         }
 
 
-def carry_out(assignment: Assignment, folder: Path, report: Report, resume: bool = False) -> list[Path]:
-    """Train, with checkpoints, learning curves and TensorBoard's files in ``folder``; where the policies are.
+def run(job: Job, folder: Path, report: Report, resume: bool = False) -> list[Path]:
+    """Train, with checkpoints, learning curve and TensorBoard's files in ``folder``; the folders of the policies.
 
-    Raises ValueError if the folder holds a training and it is not to be resumed, or if what is to be resumed is another one.
+    ``report`` is called after every update. Raises ValueError if the folder holds a training and it is not to be resumed, or if
+    what is to be resumed is another one.
     """
     check_folder(folder)
-    identity = assignment.identity()
+    identity = job.identity()
     if not resume and (folder / NAME).exists():
         raise ValueError(f"folder = {str(folder)!r} holds a training already: resume it, or name another folder.")
     before = read_checkpoint(folder) if resume else None
     if before is not None and before["identity"] != json.dumps(identity):
-        raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the very arguments it was begun with.")
-    tasks = assignment.tasks()
+        raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the same arguments.")
+    tasks = job.tasks()
     with one_torch_thread():
-        start = AGENTS[assignment.recipe.agent].training
-        training = start(list(tasks.values()), assignment.recipe.settings, assignment.seed, teacher_for(assignment.teacher, tasks))
-        journal = Journal(folder, assignment.course, training, json.dumps(identity), report)
+        start = AGENTS[job.recipe.agent].training
+        training = start(list(tasks.values()), job.recipe.settings, job.seed, teacher_for(job.teacher, tasks))
+        journal = Journal(folder, job.budget, training, json.dumps(identity), report)
         try:
-            elapsed = 0.0 if before is None else journal.go_on(before)
-            policies = follow(training, assignment.course, journal.note, journal.keep, elapsed)
+            elapsed = 0.0 if before is None else journal.resume(before)
+            policies = follow(training, job.budget, journal.note, journal.keep, elapsed)
         finally:
             journal.scalars.close()
             training.close()
@@ -102,15 +104,15 @@ def teacher_for(folder: Path | None, tasks: Mapping[str, Task]) -> Policy | None
 class Journal:
     """The learning curve, the checkpoints and TensorBoard's files of a training."""
 
-    def __init__(self, folder: Path, course: Course, training: Training, identity: str, report: Report) -> None:
+    def __init__(self, folder: Path, budget: Budget, training: Training, identity: str, report: Report) -> None:
         self.curve: list[Progress] = []
         self.seconds = 0.0
         self.scalars = Scalars(folder / "tensorboard")
-        self._folder, self._course, self._training, self._identity, self._report = folder, course, training, identity, report
+        self._folder, self._budget, self._training, self._identity, self._report = folder, budget, training, identity, report
 
-    def go_on(self, before: Mapping[str, Any]) -> float:
-        """Take up a checkpoint; the seconds spent until then."""
-        self._training.load(before["training"])
+    def resume(self, before: Mapping[str, Any]) -> float:
+        """Resume from a checkpoint; the seconds spent until then."""
+        self._training.load_state_dict(before["training"])
         self.curve = [
             Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]
         ]
@@ -120,7 +122,7 @@ class Journal:
     def note(self, progress: Progress) -> None:
         """A point of the curve where it is time, and report."""
         self.seconds = progress.elapsed
-        if self._course.gone(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1:
+        if self._budget.share(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1:
             self.curve.append(progress)
             self.scalars.write(progress, self._training.losses)
         self._report(progress)
@@ -128,7 +130,7 @@ class Journal:
     def keep(self, elapsed: float) -> None:
         """Write a checkpoint."""
         curve = [[each.elapsed, each.steps, each.cost, each.updates, list(each.costs)] for each in self.curve]
-        state = {"training": self._training.state(), "seconds": elapsed, "curve": curve, "identity": self._identity}
+        state = {"training": self._training.state_dict(), "seconds": elapsed, "curve": curve, "identity": self._identity}
         write_checkpoint(self._folder, state)
 
     def write_curve(self, folder: Path, run: int) -> None:

@@ -22,10 +22,11 @@ CHECKPOINT_INTERVAL = 30.0
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
-    """How long a training goes on, and with it how fast learning rates fall.
+class Budget:
+    """How long a training lasts, and with it how fast learning rates fall.
 
-    By updates it is deterministic; by the clock it takes what time it is given.
+    By updates a training is deterministic; by the clock it takes the time it is given. ValueError for numbers that are not
+    positive, and if neither is given.
     """
 
     updates: float = math.inf
@@ -38,28 +39,28 @@ class Course:
         if math.isinf(self.updates) and math.isinf(self.seconds):
             raise ValueError("updates or seconds must be given: a training must end.")
 
-    def gone(self, updates: int, elapsed: float) -> float:
-        """Share of the training that is over, 1 at its end."""
+    def share(self, updates: int, elapsed: float) -> float:
+        """Share of the budget that is spent, 1 at the end."""
         return min(1.0, max(updates / self.updates, elapsed / self.seconds))
 
 
 def follow(
     training: Training,
-    course: Course,
+    budget: Budget,
     report: Report,
     keep: Callable[[float], None] | None = None,
     elapsed: float = 0.0,
     interval: float = CHECKPOINT_INTERVAL,
 ) -> list[Policy]:
-    """Train to the end of the course, or to Ctrl-C; the policies learnt by then.
+    """Train until the budget is spent, or until Ctrl-C; the policies learnt by then.
 
-    ``elapsed`` s were spent before. ``keep`` is told the seconds spent about every ``interval`` s and at the end.
+    ``elapsed`` s were spent before. ``keep`` is called with the seconds spent about every ``interval`` s and at the end.
     """
     begin = time.monotonic() - elapsed
     kept = elapsed
     with suppress(KeyboardInterrupt), Interruption() as interruption:
-        while (gone := course.gone(training.updates, elapsed)) < 1.0 and not interruption.asked:
-            training.update(1.0 - gone)
+        while (spent := budget.share(training.updates, elapsed)) < 1.0 and not interruption.asked:
+            training.update(1.0 - spent)
             elapsed = time.monotonic() - begin
             report(progress(training, elapsed))
             if keep is not None and elapsed - kept >= interval:

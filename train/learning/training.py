@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -33,7 +33,7 @@ Report = Callable[[Progress], None]
 
 
 class Training(Protocol):
-    """A training that goes on update by update. Equal arguments and equal calls make equal policies, bit for bit on one thread."""
+    """A training, update by update. Equal arguments and equal calls make equal policies, bit for bit on one thread."""
 
     steps: int
     """Control intervals so far."""
@@ -41,7 +41,7 @@ class Training(Protocol):
     cost: Any
     """J relative to no control, recently: a number, or one for each policy."""
     losses: dict[str, float]
-    """What else the last update told, by name."""
+    """Of the last update, by name."""
 
     def update(self, remaining: float) -> None:
         """One update; ``remaining``, from 1 to 0, is the share of the training still to come: learning rates fall with it."""
@@ -49,14 +49,20 @@ class Training(Protocol):
     def policies(self) -> list[Policy]:
         """What has been learnt so far: one policy, or those of several runs side by side."""
 
-    def state(self) -> dict[str, Any]:
-        """Numbers, strings, lists, dictionaries and tensors that ``load`` goes on from."""
+    def state_dict(self) -> dict[str, Any]:
+        """Numbers, strings, lists, dictionaries, arrays and tensors that ``load_state_dict`` resumes from."""
 
-    def load(self, state: Mapping[str, Any]) -> None:
-        """Go on from a state of an equally made training."""
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume from the ``state_dict`` of an equally made training."""
 
     def close(self) -> None:
         """Let go of the environments."""
+
+
+def on_training_bank(task: Task) -> Task:
+    """The task with plants drawn from another bank than the one that controllers are judged on."""
+    plants = replace(task.scenario.plants, seed=task.scenario.plants.seed + 1)
+    return replace(task, scenario=replace(task.scenario, plants=plants))
 
 
 def uncontrolled_cost(task: Task, episodes: int = 512) -> float:

@@ -1,8 +1,8 @@
 """One self-contained page, ``report.html``, about controllers and how they did."""
 
-from train.page.heat_map import HeatMap
+from train.figures.heat_map import HeatMap
+from train.figures.panels import LearningCurves
 from train.page.page import PageContent, write_page
-from train.page.plots import LearningCurves
 from train.page.recording import RecordedEpisode, Recording, record, record_episode
 from train.page.table import Cell, Table
 

@@ -110,12 +110,13 @@ def _patches(blade: BladeConfig) -> list[Skin]:
 
 def _raised(blade: BladeConfig, patches: list[Skin], displacement: Array) -> Array:
     """(F, V, 3), m: vertices of all patches, which follow the body between its stations."""
-    stations = _stations(blade)
-    moved = [
-        skin.displaced(np.apply_along_axis(lambda values, at=skin.span: np.interp(at, stations, values), -1, displacement))
-        for skin in patches
-    ]
+    moved = [skin.displaced(displacement @ _between(_stations(blade), skin.span)) for skin in patches]
     return np.concatenate([each.reshape(len(each), -1, 3) for each in moved], axis=1)
+
+
+def _between(stations: Array, span: Array) -> Array:
+    """(stations, S): weights of linear interpolation."""
+    return np.stack([np.interp(span, stations, each) for each in np.eye(len(stations))])
 
 
 def _mesh(points: Array) -> dict[str, Any]:
@@ -170,5 +171,5 @@ def _layout(blade: BladeConfig, half: float, limit: float, name: str) -> dict[st
 def _camera(blade: BladeConfig) -> dict[str, Any]:
     middle = np.radians(blade.beam.presetting_deg + 0.5 * blade.beam.pretwist_deg)
     side = -1.0 if np.sin(middle) > 0.0 else 1.0
-    points = {"eye": EYE * [side, 1.0, 1.0], "up": (0.0, 1.0, 0.0), "center": (0.0, -0.12, -0.07)}
+    points: dict[str, Any] = {"eye": EYE * [side, 1.0, 1.0], "up": (0.0, 1.0, 0.0), "center": (0.0, -0.12, -0.07)}
     return {name: dict(zip("xyz", map(float, point), strict=True)) for name, point in points.items()}

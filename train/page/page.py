@@ -14,9 +14,13 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
+from train.figures import screen
+from train.figures.figure import Panel
+from train.figures.heat_map import HeatMap
+from train.figures.panels import LearningCurves, learning_panel, pole_panel
+from train.figures.screen_heat_map import heat_map
 from train.page.blade import blade_figures, frame_times, motions
-from train.page.heat_map import HeatMap, heat_map
-from train.page.plots import LearningCurves, learning, pole_map, spectra, time_series
+from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
 from train.page.table import Table
 from train.page.themes import THEMES
@@ -140,17 +144,29 @@ def plots(content: PageContent) -> list[Plot]:
             "Continuous equivalents log(z)/Δt of the sampled loops' poles, upper half plane. "
             "The real axis is logarithmic beyond 10 rad/s."
         )
-        found.append(Plot("poles", "Closed-loop poles", note, pole_map(content.poles), 480))
+        found.append(Plot("poles", "Closed-loop poles", note, _plotted(pole_panel(content.poles)), 480))
     if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
         note = (
             "Agents: running cost in training, exploration included. "
             "Level lines: controllers that do not learn, on the held-out episodes."
         )
-        found.append(Plot("learning", "Learning curves", note, learning(content.learning), 420))
+        found.append(
+            Plot(
+                "learning",
+                "Learning curves",
+                note,
+                _plotted(learning_panel(content.learning), hovermode="x"),
+                420,
+            )
+        )
     return found
+
+
+def _plotted(panel: Panel, **layout: Any) -> go.Figure:
+    return go.Figure(screen.figure([panel])).update_layout(**layout)
 
 
 def _heat_map(content: HeatMap) -> Plot:
     note = "Blue: better than no control. ✕: share of episodes in which the blade failed or the loop was unstable. Empty: not run."
     height, width = 180 + 44 * len(content.scenarios), 260 + 62 * len(content.controllers)
-    return Plot("heat-map", "Scenarios", note, heat_map(content), height, width)
+    return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width)

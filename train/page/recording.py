@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import Controller, no_control
+from baselines.design.controller import ControllerArgument, as_controller, name_of
+from baselines.evaluation.loop import instants
 from beamenv.blade.config import BladeConfig
 
 Array = NDArray[np.float64]
@@ -53,27 +55,20 @@ class RecordedEpisode:
         return (self.without_control, *self.controlled)
 
 
-def record(controller: Controller, env: gym.Env[Any, Any], seed: int, options: dict[str, Any] | None = None) -> Recording:
+def record(
+    controller: ControllerArgument, env: gym.Env[Any, Any], seed: int, options: Mapping[str, Any] | None = None
+) -> Recording:
     """One episode of one environment, to its end or the last finite state; ``options`` go to its ``reset``."""
     inner: Any = env.unwrapped
-    wants_state = getattr(controller, "observes", "observation") == "state"
-    observation, info = env.reset(seed=seed, options=options)
-    rows, memory, ended = [_instant(inner, info)], None, False
-    while not ended:
-        seen = inner.state if wants_state else observation
-        action, memory = controller.predict(seen[None], state=memory, episode_start=np.array([len(rows) == 1]), deterministic=True)
-        observation, _, terminated, truncated, info = env.step(action[0])
-        ended = terminated or truncated or not np.isfinite(inner.state).all()
-        if np.isfinite(inner.state).all():
-            rows.append(_instant(inner, info))
+    rows: list[tuple[Array, ...]] = []
+    for instant in instants(controller, env, [seed], options):
+        state = np.array(inner.state, dtype=np.float64)
+        if not np.isfinite(state).all():
+            break
+        rows.append((state, instant.info["tip_displacement"][0], instant.info["volts"][0]))
     states, tip, volts = (np.stack(series) for series in zip(*rows, strict=True))
-    name = getattr(controller, "name", type(controller).__name__)
+    name = name_of(as_controller(controller))
     return Recording(name, inner.plant.control_interval * np.arange(len(rows)), states, tip, volts)
-
-
-def _instant(env: Any, info: Mapping[str, Any]) -> tuple[Array, ...]:
-    values = (env.state, info["tip_displacement"], info["volts"])
-    return tuple(np.array(value, dtype=np.float64) for value in values)
 
 
 def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controller, Controller]) -> RecordedEpisode:

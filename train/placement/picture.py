@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from train.figures.paper import STYLE, VOLTAGE_LINES, save
+from beamenv.blade.build import build_beam
+from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
+from train.figures.figure import Curve, Look, Marker, Panel
+from train.figures.palette import BLACK, actuator
+from train.figures.paper import STYLE, draw_panel, handles, save
 from train.placement.placed import PlacedSide
 
 Array = NDArray[np.float64]
 
-WALLS = {"actuators": "top wall", "sensors": "bottom wall"}
+WALLS = {"actuators": ACTUATOR_WALL, "sensors": SENSOR_WALL}
 NAMES = {"actuators": "tr(P), s", "sensors": "tr(S), J"}
 
 
@@ -48,18 +53,17 @@ def _draw_wall(axis: Any, side: PlacedSide) -> None:
     from matplotlib.patches import Rectangle
 
     config, bounds = side.problem.config, side.problem.bounds
-    span, root_chord = config.beam.length, config.beam.width
+    span, root_chord = config.beam.length, build_beam(config).section.wall_width(WALLS[side.placement.side])
     tip_chord, width = root_chord / config.beam.taper, config.patches.width
     chord = 1e3 * 0.5 * np.array([root_chord, tip_chord, -tip_chord, -root_chord])
     axis.fill([0.0, span, span, 0.0], chord, facecolor="0.93", edgecolor="black", linewidth=0.8)
     for start in bounds.uniform():
         axis.add_patch(Rectangle((start, -500.0 * width), bounds.length, 1e3 * width, fill=False, edgecolor="0.5", linestyle=":"))
-    for number, (start, (colour, _)) in enumerate(zip(side.placement.positions, VOLTAGE_LINES * 8, strict=False), start=1):
-        axis.add_patch(
-            Rectangle((start, -500.0 * width), bounds.length, 1e3 * width, facecolor=colour, edgecolor="black", linewidth=0.5)
-        )
-        axis.text(start + 0.5 * bounds.length, 900.0 * width, str(number), ha="center", va="center")
-    title = f"{side.placement.side}, {WALLS[side.placement.side]}, {config.speed:g} rad/s (dotted: equally spaced)"
+    for index, start in enumerate(side.placement.positions):
+        filled: dict[str, Any] = {"facecolor": actuator(index)[0].colour, "edgecolor": "black", "linewidth": 0.5}
+        axis.add_patch(Rectangle((start, -500.0 * width), bounds.length, 1e3 * width, **filled))
+        axis.text(start + 0.5 * bounds.length, 900.0 * width, str(index + 1), ha="center", va="center")
+    title = f"{side.placement.side}, {WALLS[side.placement.side]} wall, {config.speed:g} rad/s (dotted: equally spaced)"
     axis.set(
         title=title,
         ylabel="chord, mm",
@@ -69,17 +73,27 @@ def _draw_wall(axis: Any, side: PlacedSide) -> None:
 
 
 def _draw_cost(axis: Any, side: PlacedSide) -> None:
-    bounds, layout = side.problem.bounds, np.array(side.placement.positions)
-    for number, (colour, dashes) in zip(range(bounds.count), VOLTAGE_LINES * 8, strict=False):
-        where, cost = cost_along_span(side, number)
-        axis.plot(where, cost, color=colour, linestyle=dashes, label=f"patch {number + 1} moved")
-        axis.plot(layout[number], side.placement.cost, marker="o", color=colour, markersize=4)
-    axis.axhline(side.uniform_cost, color="black", linestyle=(0, (8, 3, 1, 3)), linewidth=0.7, label="equally spaced")
-    axis.set(xlabel="root-side edge, m from the root", ylabel=NAMES[side.placement.side])
+    panel = _cost_panel(side)
+    draw_panel(axis, panel)
     low, high = axis.get_ylim()
     if high > 3.0 * low:  # the valleys of weak patches would not be seen beside the cliffs of a strong one
         axis.set_yscale("log")
-    axis.legend(ncols=2)
+    axis.legend(handles=handles([panel]), ncols=2)
+
+
+def _cost_panel(side: PlacedSide) -> Panel:
+    """Cost over the position of each patch, with a dot where it is, and the cost of equal spacing."""
+    curves = []
+    for index, start in enumerate(side.placement.positions):
+        where, cost = cost_along_span(side, index)
+        look, line = actuator(index)
+        curves.append(Curve(where, cost, f"patch {index + 1} moved", line, look))
+        dot = replace(look, marker=Marker("circle", size=4))
+        curves.append(Curve(np.array([start]), np.array([side.placement.cost]), line="points", look=dot))
+    ends = np.array([-0.02, 1.02]) * side.problem.config.beam.length
+    level = Look(BLACK, width=0.7)
+    curves.append(Curve(ends, np.full(2, side.uniform_cost), "equally spaced", "dashdot", level))
+    return Panel("", "root-side edge, m from the root", NAMES[side.placement.side], curves, x_limits=tuple(ends.tolist()))
 
 
 def cost_along_span(side: PlacedSide, number: int, points: int = 161) -> tuple[Array, Array]:

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.resources import as_file, files
 from typing import Any
 
 import numpy as np
 
-from train.reproduce.judging.study import Curve, Grid, Outcome, Panel
+from train.figures.figure import PLAIN, Curve, Look, Marker, Panel
+from train.figures.paper import draw_panel, handles
+from train.reproduce.judging.study import Grid, Outcome
 
-DASHES: dict[str, Any] = {"solid": "-", "dotted": (0, (1.2, 1.4)), "dashed": (0, (5, 2)), "points": ""}
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
-PLAIN = {"color": "0.1"}
-Looks = dict[str, dict[str, Any]]
+SIGNS = (
+    *("circle", "square", "triangle-up", "diamond", "triangle-down"),
+    *("cross", "x", "triangle-left", "triangle-right", "pentagon"),
+)
+PALE = replace(PLAIN, width=2.6, opacity=0.5)
+NOTHING = np.empty(0)
+Looks = dict[str, Look]
 PAGE_WIDTH, SINGLE_WIDTH, PANEL_HEIGHT, LOW_PANEL_HEIGHT, LEGEND_ROW = 8.6, 6.2, 2.7, 1.9, 0.22
 """Inches."""
 
@@ -30,18 +36,21 @@ def draw(outcome: Outcome, title: str) -> bytes:
         columns = len(outcome.panels) if len(outcome.panels) <= 3 else 2
         rows = -(-len(outcome.panels) // columns)
         width = PAGE_WIDTH if columns > 1 else SINGLE_WIDTH
-        handles = legend_handles(outcome)
-        per_row = max(1, int(width // 2.1))
-        height = (PANEL_HEIGHT if rows < 4 else LOW_PANEL_HEIGHT) * rows + 0.3 + LEGEND_ROW * (-(-len(handles) // per_row))
-        figure, axes = pyplot.subplots(rows, columns, figsize=(width, height), squeeze=False)
         looks = appearances(outcome)
+        entries = handles([Panel("", "", "", legend_entries(outcome, looks))])
+        per_row = max(1, int(width // 2.1))
+        height = (PANEL_HEIGHT if rows < 4 else LOW_PANEL_HEIGHT) * rows + 0.3 + LEGEND_ROW * (-(-len(entries) // per_row))
+        figure, axes = pyplot.subplots(rows, columns, figsize=(width, height), squeeze=False)
         for axis, panel in zip(axes.flat, outcome.panels, strict=False):
-            draw_grid(axis, panel) if isinstance(panel, Grid) else draw_panel(axis, panel, looks, "dotted" in outcome.lines)
+            if isinstance(panel, Grid):
+                draw_grid(axis, panel)
+            else:
+                draw_panel(axis, dressed(panel, looks, in_pairs="dotted" in outcome.lines))
         for axis in axes.flat[len(outcome.panels) :]:
             axis.set_visible(False)
         figure.suptitle(title, fontsize=10, x=0.01, ha="left")
-        if handles:
-            figure.legend(handles=handles, loc="outside lower center", ncols=per_row)
+        if entries:
+            figure.legend(handles=entries, loc="outside lower center", ncols=per_row)
         buffer = io.BytesIO()
         figure.savefig(buffer, format="png")
         pyplot.close(figure)
@@ -57,99 +66,87 @@ def compact(picture: io.BytesIO) -> bytes:
     return smaller.getvalue()
 
 
+def curves_of(panels: Sequence[Panel | Grid]) -> list[Curve]:
+    """All curves."""
+    return [curve for panel in panels if isinstance(panel, Panel) for curve in panel.curves]
+
+
 def labels_of(panels: Sequence[Panel | Grid]) -> list[str]:
     """The labels of all curves, in the order of their first appearance."""
-    curves = [curve for panel in panels if isinstance(panel, Panel) for curve in panel.curves]
-    return list(dict.fromkeys(curve.label for curve in curves if curve.label))
+    return list(dict.fromkeys(curve.label for curve in curves_of(panels) if curve.label))
 
 
 def appearances(outcome: Outcome) -> Looks:
-    """Colour and marker of each label: a marker of its own, and a lightness that falls from dark to light within its panel."""
+    """Colour and sign of each label: a sign of its own, and a lightness that falls from dark to light within its panel."""
     from matplotlib import colormaps
+    from matplotlib.colors import to_hex
 
     labels = labels_of(outcome.panels)
     if len(labels) < 2:
         return {}
-    looks: dict[str, dict[str, Any]] = {}
+    looks: Looks = {}
     for panel in outcome.panels:
         together = labels_of([panel])
         for place, label in enumerate(together):
             lightness = 0.78 * place / max(1, len(together) - 1)
-            looks.setdefault(
-                label, {"color": colormaps["viridis"](lightness), "marker": MARKERS[labels.index(label) % len(MARKERS)]}
-            )
+            marker = Marker(SIGNS[labels.index(label) % len(SIGNS)])
+            looks.setdefault(label, Look(to_hex(colormaps["viridis"](lightness)), marker=marker))
     return looks
 
 
-def legend_handles(outcome: Outcome) -> list[Any]:
-    """One entry for each meaning of a line and for each label."""
-    from matplotlib.lines import Line2D
-
-    labels, looks = labels_of(outcome.panels), appearances(outcome)
-    used = {
-        label: {
-            curve.line for panel in outcome.panels if isinstance(panel, Panel) for curve in panel.curves if curve.label == label
-        }
-        for label in labels
-    }
-    pale: dict[str, Any] = {"linewidth": 2.6, "alpha": 0.5} if "dotted" in outcome.lines else {}
-    handles = [
-        Line2D(
-            [],
-            [],
-            color="0.1",
-            linestyle=DASHES[line],
-            marker="." if line == "points" else "",
-            label=text,
-            **(pale if line == "solid" else {}),
-        )
-        for line, text in outcome.lines.items()
-    ]
+def legend_entries(outcome: Outcome, looks: Looks) -> list[Curve]:
+    """One for each meaning of a line and for each label."""
+    labels, curves = labels_of(outcome.panels), curves_of(outcome.panels)
+    used = {label: {curve.line for curve in curves if curve.label == label} for label in labels}
+    solid = PALE if "dotted" in outcome.lines else PLAIN
+    known: dict[str, Look] = {"points": replace(PLAIN, marker=Marker()), "solid": solid}
+    entries = [Curve(NOTHING, NOTHING, text, line, known.get(line, PLAIN)) for line, text in outcome.lines.items()]
     scatters = all(lines == {"points"} for lines in used.values())
     for label in labels:
-        line = "" if used[label] == {"points"} else "-" if len(used[label]) > 1 else DASHES[next(iter(used[label]))]
-        fill = {"markerfacecolor": "none"} if scatters and label != labels[0] else {}
-        handles.append(Line2D([], [], linestyle=line, label=label, **{"marker": ".", **looks.get(label, PLAIN), **fill}))
-    return handles
+        line = "points" if used[label] == {"points"} else "solid" if len(used[label]) > 1 else next(iter(used[label]))
+        look = looks.get(label, replace(PLAIN, marker=Marker()))
+        if scatters and label != labels[0] and look.marker:
+            look = replace(look, marker=replace(look.marker, fill="none"))
+        entries.append(Curve(NOTHING, NOTHING, label, line, look))
+    return entries
 
 
-def draw_panel(axis: Any, panel: Panel, looks: Looks, in_pairs: bool) -> None:
-    """One pair of axes. Where dotted curves run on solid ones, these are broad and pale so that both show."""
+def dressed(panel: Panel, looks: Looks, in_pairs: bool) -> Panel:
+    """The panel with the looks of its curves. Where dotted curves run on solid ones, these are broad and pale so that both show."""
     points = any(curve.line == "points" for curve in panel.curves)
     scattered = all(curve.line == "points" for curve in panel.curves)
-    for value in panel.marked:
-        axis.axvline(value, color="0.6", linewidth=0.8, zorder=0)
+    curves = []
     for curve in panel.curves:
-        draw_curve(axis, curve, looks, in_pairs, marked=not points, hollow=scattered and curve is not panel.curves[0])
-    axis.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
-    if panel.logarithmic:
-        axis.set_yscale("log")
-    if panel.whole:
-        axis.yaxis.get_major_locator().set_params(integer=True)
+        if curve.line == "points":
+            look = point_look(curve, looks, hollow=scattered and curve is not panel.curves[0])
+        else:
+            look = line_look(curve, looks, in_pairs, marked=not points)
+        curves.append(replace(curve, look=look))
+    return replace(panel, curves=curves)
 
 
-def draw_curve(axis: Any, curve: Curve, looks: Looks, in_pairs: bool, marked: bool, hollow: bool = False) -> None:
-    """One curve; its markers are sparse and begin at a place of its own, so that they do not pile up.
+def point_look(curve: Curve, looks: Looks, hollow: bool) -> Look:
+    """``hollow`` points do not hide others."""
+    look = looks.get(curve.label, PLAIN)
+    marker = look.marker or Marker()
+    return replace(look, marker=replace(marker, fill="none", size=6) if hollow else marker)
 
-    Where points of the same label mean something (not ``marked``) the line goes without markers. ``hollow`` points do not hide
-    others.
+
+def line_look(curve: Curve, looks: Looks, in_pairs: bool, marked: bool) -> Look:
+    """Its signs are sparse and begin at a place of its own, so that they do not pile up.
+
+    Where points of the same label mean something (not ``marked``) the line goes without signs.
     """
-    style = {**looks.get(curve.label, PLAIN)}
-    if not marked and curve.line != "points":
-        style.pop("marker", None)
-    if curve.line == "points":
-        fill = {"markerfacecolor": "none", "markersize": 6} if hollow else {}
-        axis.plot(curve.x, curve.y, linestyle="", **{"marker": ".", **style, **fill})
-        return
-    if style.get("marker"):
+    look = looks.get(curve.label, PLAIN)
+    if look.marker is not None:
         place, points = list(looks).index(curve.label), len(curve.x)
         spacing = max(1, points // 7)
-        style["markevery"] = 1 if points <= 12 else (place * spacing // len(looks) % spacing, spacing)
-        if curve.line != "solid":
-            style["markerfacecolor"] = "white"
+        every = (0, 1) if points <= 12 else (place * spacing // len(looks) % spacing, spacing)
+        marker = replace(look.marker, every=every, fill="full" if curve.line == "solid" else "white")
+        look = replace(look, marker=marker if marked else None)
     if in_pairs:
-        style |= {"linewidth": 2.6, "alpha": 0.5} if curve.line == "solid" else {"zorder": 3}
-    axis.plot(curve.x, curve.y, linestyle=DASHES[curve.line], **style)
+        return replace(look, width=PALE.width, opacity=PALE.opacity) if curve.line == "solid" else replace(look, above=True)
+    return look
 
 
 def draw_grid(axis: Any, grid: Grid) -> None:

@@ -17,7 +17,7 @@ from train.reproduce.thesis import Model
 from train.shared.digests import digest, source_digest
 from train.shared.files import write_whole
 
-DEPENDS_ON = ("beamenv", "baselines", "train.reproduce")
+DEPENDS_ON = ("beamenv", "baselines", "train.reproduce", "train.figures.figure", "train.figures.paper")
 """Packages that decide what a study finds and shows."""
 
 

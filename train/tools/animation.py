@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import sys
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
 import gymnasium
@@ -18,6 +19,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import beamenv
 from baselines import Controller, lqg, no_control
+from baselines.evaluation.loop import instants
 from train.shared.files import write_whole
 
 Picture = NDArray[np.uint8]
@@ -40,13 +42,8 @@ TITLE_AT, TITLE_SIZE, INK = (330, 15), 22, "#1f2933"
 def pictures(controller: Controller, count: int) -> list[Picture]:
     """``count`` pictures (540, 960, 3) of one episode under a controller."""
     env = gymnasium.make(beamenv.ENV_ID, render_mode="rgb_array")
-    observation, _ = env.reset(seed=SEED, options={"load": PULSE})
-    state, shown = None, [np.asarray(env.render())]
-    for _ in range(1, count):
-        for _ in range(STEPS_PER_PICTURE):
-            action, state = controller.predict(observation, state)
-            observation, *_ = env.step(action)
-        shown.append(np.asarray(env.render()))
+    episode = instants(controller, env, [SEED], {"load": PULSE})
+    shown = [np.asarray(env.render()) for _ in islice(episode, 0, STEPS_PER_PICTURE * (count - 1) + 1, STEPS_PER_PICTURE)]
     env.close()
     return shown
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from beamenv.simulation.kernel import Operators
 from beamenv.simulation.memory import place
@@ -41,6 +43,15 @@ class Allotment:
     def follow(self) -> None:
         """Give each blade the next plant, where a bank's plants follow one another."""
         self.index = np.minimum(self.index + 1, len(self._bank) - 1)
+        self._gather()
+
+    def state_dict(self) -> dict[str, Rows]:
+        """Which plant each blade has."""
+        return {"index": self.index.copy()}
+
+    def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
+        """Go back to a ``state_dict`` of an allotment of the same bank and batch."""
+        self.index = np.asarray(state["index"]).copy()
         self._gather()
 
     def _gather(self) -> None:

@@ -13,7 +13,7 @@ generator: it is handed in at every call.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -133,6 +133,22 @@ class SharedDisturbances:
             self._gusts = self._turbulence.following(self._gusts, self._rows[..., -2:])
         return self._rows[..., 2:]
 
+    def state_dict(self) -> dict[str, Any]:
+        """Copies of what moves; the generator is the caller's."""
+        return {
+            "rows": self._rows.copy(),
+            "amplitude": self._amplitude.copy(),
+            "steps": self._steps.copy(),
+            "gusts": self._gusts.copy(),
+            "cases": None if self._cases is None else self._cases.state_dict(),
+        }
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to a ``state_dict`` of equally made disturbances."""
+        self._rows[...], self._amplitude[...] = np.asarray(state["rows"]), np.asarray(state["amplitude"])
+        self._steps, self._gusts = np.asarray(state["steps"]).copy(), np.asarray(state["gusts"]).copy()
+        self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
+
     def _scaled(self, normals: Array) -> Array:
         return normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
 
@@ -160,6 +176,9 @@ class SeededDisturbances:
         seen = self._ring.reshape(BLOCK, *self._shape, len(self._factor))
         self._loads, self._noise = list(seen[..., :2]), list(seen[..., 2:])
 
+    def _see_due(self) -> None:
+        self._due = {start: np.flatnonzero(self._begun == start) for start in np.unique(self._begun).tolist()}
+
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name not in ("_loads", "_noise")}
 
@@ -171,7 +190,7 @@ class SeededDisturbances:
         """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2)."""
         self._cases = merged(self._cases, rows, cases)
         self._begun[rows] = self._at
-        self._due = {start: np.flatnonzero(self._begun == start) for start in np.unique(self._begun).tolist()}
+        self._see_due()
         self._drawn[rows] = 0
         self._draw(rows, generators)
         return self._ring[self._at, rows, 2:]
@@ -190,6 +209,24 @@ class SeededDisturbances:
         if due is not None:
             self._draw(due if resting is None else np.setdiff1d(due, resting), generators)
         return self._noise[self._at]
+
+    def state_dict(self) -> dict[str, Any]:
+        """Copies of what moves; the generators are the caller's."""
+        return {
+            "ring": self._ring.copy(),
+            "at": self._at,
+            "begun": self._begun.copy(),
+            "drawn": self._drawn.copy(),
+            "gusts": self._gusts.copy(),
+            "cases": None if self._cases is None else self._cases.state_dict(),
+        }
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to a ``state_dict`` of equally made disturbances."""
+        self._ring[...], self._at = np.asarray(state["ring"]), int(state["at"])
+        self._begun, self._drawn, self._gusts = (np.asarray(state[name]).copy() for name in ("begun", "drawn", "gusts"))
+        self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
+        self._see_due()
 
     def _draw(self, rows: Rows, generators: Sequence[Generator]) -> None:
         """Draw the next block of ``rows``, whose blocks begin here."""

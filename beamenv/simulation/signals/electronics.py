@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import ndtri
 
 from beamenv.plant.plant import Plant, normalised
@@ -54,6 +56,18 @@ class Electronics:
         lost = None if self.threshold is None else disturbance[:, p : 2 * p] < self.threshold
         readings, self.memory = acquire(self.faults, self.memory, output, disturbance[:, :p], lost)
         return np.array(readings)
+
+    def state_dict(self) -> dict[str, dict[str, Array]]:
+        """Copies of what moves: the faults of the episodes under way, and what is remembered."""
+        return {
+            "faults": self.faults.state_dict(),
+            "memory": {name: np.array(values) for name, values in self.memory._asdict().items()},
+        }
+
+    def load_state_dict(self, state: Mapping[str, Mapping[str, ArrayLike]]) -> None:
+        """Go back to a ``state_dict`` of equally made electronics."""
+        self.faults = Faults.from_state_dict(state["faults"])
+        self.memory = SignalMemory(**{name: np.asarray(values).copy() for name, values in state["memory"].items()})
 
 
 def _hysteresis(plant: Plant, loop: float) -> Hysteresis | None:

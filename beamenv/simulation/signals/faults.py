@@ -4,12 +4,12 @@ on the way in; dead and biased sensors, lost readings on the way out. Pure funct
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from beamenv.scenarios.tables import Failures
 from beamenv.simulation.kernel import namespace
@@ -46,6 +46,15 @@ class Faults:
     def convert(self, to_array: Callable[[Any], Any]) -> Faults:
         """The same faults with each array passed through ``to_array``."""
         return replace(self, **{each.name: to_array(getattr(self, each.name)) for each in fields(self)})
+
+    def state_dict(self) -> dict[str, Any]:
+        """A copy of each array by its name: ``Faults.from_state_dict`` makes equal faults of them."""
+        return {each.name: getattr(self, each.name).copy() for each in fields(self)}
+
+    @classmethod
+    def from_state_dict(cls, state: Mapping[str, ArrayLike]) -> Faults:
+        """The faults of a ``state_dict``."""
+        return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
 
 
 class SignalMemory(NamedTuple):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from baselines.design.controller import as_controller
 from beamenv.configuration import Refused
 from train.benchmark.entrants.models import UNTRUSTED
 from train.benchmark.entrants.sources import Classical, Given, ModelFile, Source, Trained
@@ -63,9 +64,13 @@ def entrants(
 
 
 def _given(name: str, controller: Any) -> Given:
-    if not callable(getattr(controller, "predict", None)):
-        raise ValueError(f"controller {name!r} is of type {type(controller).__name__}, but must have Stable-Baselines3's predict.")
-    return Given(controller)
+    try:
+        return Given(as_controller(controller))
+    except ValueError:
+        raise ValueError(
+            f"controller {name!r} is of type {type(controller).__name__}, but must have Stable-Baselines3's predict, or be a "
+            "function of the readings (N, p)."
+        ) from None
 
 
 def agents(folder: Path) -> list[Entrant]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from baselines import Controller
+from baselines.design.controller import name_of
 from beamenv.plant.plant import Plant, normalised
 
 Array = NDArray[np.floating[Any]]
@@ -46,15 +47,13 @@ def load_model(path: Path) -> Any:
 def fitted(controller: Any, plant: Plant) -> Controller:
     """The controller itself, or, where it tells its spaces, a model shown readings or their history as these spaces want it.
 
-    Raises ValueError for an object without ``predict`` and for spaces that do not fit the plant's p sensors and m voltages.
+    Raises ValueError for spaces that do not fit the plant's p sensors and m voltages.
     """
-    if not callable(getattr(controller, "predict", None)):
-        raise ValueError(f"{type(controller).__name__} has no predict(observation, state, episode_start, deterministic).")
     seen, acts = getattr(controller, "observation_space", None), getattr(controller, "action_space", None)
     if seen is None or acts is None:
         return controller  # type: ignore[no-any-return]
     readings, voltages = len(plant.C), plant.B.shape[1]
-    name = getattr(controller, "name", type(controller).__name__)
+    name = name_of(controller)
     if getattr(acts, "shape", None) != (voltages,) or not _bounded_by_one(acts):
         raise ValueError(f"{name} acts in {acts}, but must in a Box from -1 to 1 of shape ({voltages},).")
     size = seen.shape[0] if getattr(seen, "shape", None) and len(seen.shape) == 1 else 0

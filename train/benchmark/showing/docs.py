@@ -9,6 +9,7 @@ from train.benchmark.showing.heat_map import heat_map
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import BenchmarkTable
 from train.figures.paper import save
+from train.figures.paper_heat_map import heat_map as drawn
 from train.shared.files import write_whole
 
 INTRODUCTION = """\
@@ -22,7 +23,7 @@ controllers those in `train/controllers/contenders/`: a further file there adds 
 
 def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
     """``benchmark.md`` with its heat map in ``images/``."""
-    save(heat_map(table), folder / "images" / "benchmark.png")
+    save(drawn(heat_map(table)), folder / "images" / "benchmark.png")
     write_whole(folder / "benchmark.md", page(table, command))
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from train.benchmark.showing.episode import shown_episode
-from train.benchmark.showing.heat_map import columns, relative_costs, unstable_shares
+from train.benchmark.showing.heat_map import heat_map
 from train.benchmark.showing.report import COLUMNS, legend
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
-from train.page import Cell, HeatMap, LearningCurves, PageContent, Table, write_page
+from train.page import Cell, LearningCurves, PageContent, Table, write_page
 
 
 def write_report(path: Path, table: BenchmarkTable) -> None:
@@ -24,7 +24,7 @@ def write_report(path: Path, table: BenchmarkTable) -> None:
         title="Controllers of a rotating blade across scenarios",
         note="\n".join([*(each.sentence for each in findings(table)), *wrong]),
         table=page_table(table),
-        heat_map=HeatMap(table.scenarios, columns(table), relative_costs(table), unstable_shares(table)),
+        heat_map=heat_map(table),
         episode=episode,
         episode_note=told,
         learning=learning_curves(table),

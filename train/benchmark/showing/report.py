@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from baselines.evaluation.metrics import finite
-from train.benchmark.statistics import CONFIDENCE, RESAMPLES
+from baselines.evaluation.statistics import CONFIDENCE, RESAMPLES
 from train.benchmark.table import UNSTABLE, BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.shared.columns import Column, number, share

@@ -1,8 +1,7 @@
 """The controllers that agents are compared with, a file each: a file put into this folder is a controller of its name.
 
-Such a module has a ``KIND``, one of ``KINDS``, and ``build(task)``, which returns the controller. It is built from
-``task.design_plant`` and ``task.design_config`` alone: what the true blade is like no controller is told. ``lqg_load.py`` is
-called "lqg-load".
+Such a module has a ``KIND``, one of ``KINDS``, and ``build(design)``, which returns the controller. A ``beamenv.Design`` is the
+design plant and its configuration: what the true blade is like no controller is told. ``lqg_load.py`` is called "lqg-load".
 """
 
 from __future__ import annotations
@@ -14,8 +13,8 @@ from importlib import import_module
 from types import MappingProxyType
 
 from baselines import Controller
+from beamenv import Design
 from beamenv.configuration import Refused
-from beamenv.task import Task
 
 KINDS = ("fixed", "scheduled", "predictive", "bound")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
@@ -28,7 +27,7 @@ class Contender:
 
     name: str
     kind: str
-    build: Callable[[Task], Controller]
+    build: Callable[[Design], Controller]
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -42,7 +41,7 @@ def discover() -> Mapping[str, Contender]:
         name = module.name.replace("_", "-")
         content = import_module(f"{__name__}.{module.name}")
         if missing := [wanted for wanted in ("KIND", "build") if not hasattr(content, wanted)]:
-            raise ValueError(f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND and build(task).")
+            raise ValueError(f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND and build(design).")
         found[name] = Contender(name, content.KIND, content.build)
     return MappingProxyType(found)
 

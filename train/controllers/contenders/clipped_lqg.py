@@ -1,11 +1,11 @@
 """LQG whose filter knows that readings clip at full scale."""
 
 from baselines import Controller, clipped_lqg
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """LQG itself while no reading clips."""
-    return clipped_lqg(task.design_plant)
+    return clipped_lqg(design.plant)

@@ -1,11 +1,11 @@
 """LQG that knows of clipping and estimates a load that lasts."""
 
 from baselines import Controller, PersistentLoad, clipped_lqg
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """The load is part of the state."""
-    return clipped_lqg(task.design_plant, persistent_load=PersistentLoad())
+    return clipped_lqg(design.plant, persistent_load=PersistentLoad())

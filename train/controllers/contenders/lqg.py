@@ -1,11 +1,11 @@
 """LQG of the sampled plant: what every other controller is compared with in pairs."""
 
 from baselines import Controller, lqg
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """Filter and regulator from two discrete Riccati equations."""
-    return lqg(task.design_plant)
+    return lqg(design.plant)

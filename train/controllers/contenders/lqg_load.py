@@ -1,11 +1,11 @@
 """LQG whose filter also estimates a load that lasts."""
 
 from baselines import Controller, PersistentLoad, lqg
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """The load is part of the state."""
-    return lqg(task.design_plant, persistent_load=PersistentLoad())
+    return lqg(design.plant, persistent_load=PersistentLoad())

@@ -1,11 +1,11 @@
 """LQG as in the thesis: designed in continuous time, then sampled."""
 
 from baselines import Controller, lqg
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """Filter and regulator from two continuous Riccati equations."""
-    return lqg(task.design_plant, design="continuous")
+    return lqg(design.plant, design="continuous")

@@ -1,11 +1,11 @@
 """LQR on the true state."""
 
 from baselines import Controller, lqr
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "bound"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """The regulator alone."""
-    return lqr(task.design_plant)
+    return lqr(design.plant)

@@ -1,11 +1,11 @@
 """LQR on the true state and an estimate of the load that lasts."""
 
 from baselines import Controller, PersistentLoad, lqr
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "bound"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """The regulator, with an observer for the load."""
-    return lqr(task.design_plant, persistent_load=PersistentLoad())
+    return lqr(design.plant, persistent_load=PersistentLoad())

@@ -1,11 +1,11 @@
 """Model-predictive control whose filter also estimates a load that lasts."""
 
 from baselines import Controller, PersistentLoad, mpc
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "predictive"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """The load is part of the state, of filter and plan alike."""
-    return mpc(task.design_plant, persistent_load=PersistentLoad())
+    return mpc(design.plant, persistent_load=PersistentLoad())

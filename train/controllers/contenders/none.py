@@ -1,11 +1,11 @@
 """No control: what every other controller is measured against."""
 
 from baselines import Controller, no_control
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """Zero volts always."""
-    return no_control(task.design_plant)
+    return no_control(design.plant)

@@ -1,11 +1,11 @@
 """Positive position feedback on the sensors' charge, its gains those of least stationary cost."""
 
 from baselines import Controller, positive_position_feedback
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """A filter for each of three modes on each pair of patches."""
-    return positive_position_feedback(task.design_plant)
+    return positive_position_feedback(design.plant)

@@ -1,11 +1,11 @@
 """LQG with a model of the loads at one to four per revolution."""
 
 from baselines import Controller, RotorHarmonics, rotor_lqg
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """Tuned to the speed of the design."""
-    return rotor_lqg(task.design_plant, RotorHarmonics(task.design_config.speed))
+    return rotor_lqg(design.plant, RotorHarmonics(design.config.speed))

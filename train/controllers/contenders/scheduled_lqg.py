@@ -3,7 +3,7 @@
 import numpy as np
 
 from baselines import Controller, scheduled_lqg_for
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "scheduled"
 
@@ -11,6 +11,6 @@ RANGE = np.linspace(0.5, 1.5, 11)
 """Speeds over that of the design: half of it either way, in steps of 20 rad/s on the default blade."""
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """An LQG for each of eleven speeds, mixed in between."""
-    return scheduled_lqg_for(task.design_config, RANGE * task.design_config.speed)
+    return scheduled_lqg_for(design.config, RANGE * design.config.speed)

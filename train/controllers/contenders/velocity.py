@@ -1,11 +1,11 @@
 """Collocated velocity feedback with the gains of least stationary cost."""
 
 from baselines import Controller, velocity_feedback
-from beamenv.task import Task
+from beamenv import Design
 
 KIND = "fixed"
 
 
-def build(task: Task) -> Controller:
+def build(design: Design) -> Controller:
     """One gain for each pair of actuator and sensor."""
-    return velocity_feedback(task.design_plant)
+    return velocity_feedback(design.plant)

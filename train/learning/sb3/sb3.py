@@ -14,8 +14,7 @@ from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import BladeVecEnv
-from train.learning.through_plant.gradient import on_training_bank
-from train.learning.training import uncontrolled_cost
+from train.learning.training import on_training_bank, uncontrolled_cost
 
 Envs = BladeVecEnv | SideBySide
 
@@ -57,7 +56,7 @@ class Meter(BaseCallback):
 class SB3Training:
     """A training (``train.learning.training.Training``) of one of SB3's models.
 
-    Its state holds networks, optimisers and generators. Episodes begin anew when it is gone on from, and a replay buffer fills
+    Its state holds networks, optimisers and generators. When it is resumed, episodes begin anew and a replay buffer fills
     anew: an interrupted training is no worse for it, but not bit for bit the uninterrupted one.
     """
 
@@ -116,7 +115,7 @@ class SB3Training:
         """Close the batch."""
         self.envs.close()
 
-    def state(self) -> dict[str, Any]:
+    def state_dict(self) -> dict[str, Any]:
         """Networks, optimisers, generators and counters."""
         kind, keys, position, has_gauss, cached = np.random.get_state(legacy=True)  # noqa: NPY002 - SB3's own generator
         return {
@@ -128,8 +127,8 @@ class SB3Training:
             "counters": {"steps": self.steps, "updates": self.updates, "cost": self.cost, "timesteps": self.model.num_timesteps},
         }
 
-    def load(self, state: Mapping[str, Any]) -> None:
-        """Go on from ``state``, in new episodes."""
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume from a ``state_dict``, in new episodes."""
         self.model.policy.load_state_dict(state["policy"])
         for name, each in self._optimisers().items():
             each.load_state_dict(state["optimisers"][name])

@@ -7,10 +7,9 @@ unrolled; the energy left at a window's end, times the time it would take to dec
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
-from dataclasses import field, replace
-from typing import Annotated
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+from typing import Annotated, Any
 
 import numpy as np
 import torch
@@ -18,10 +17,11 @@ import torch
 from beamenv.configuration import Choice, Number, Positive, Whole, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
+from train.learning.session import Budget, follow
 from train.learning.through_plant.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
 from train.learning.through_plant.linear_base import BASES, linear_base
 from train.learning.through_plant.windows import Windows
-from train.learning.training import Progress, Report, uncontrolled_cost
+from train.learning.training import Report, on_training_bank, uncontrolled_cost
 
 
 @configuration("settings")
@@ -58,9 +58,15 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
 
 
 class GradientTraining:
-    """A training on one task or several, in turns; its plants come from a bank of their own, not from that of the evaluation."""
+    """A ``train.learning.training.Training`` on one task or several, in turns. Resumed, it goes on bit for bit.
 
-    def __init__(self, tasks: Sequence[Task], settings: GradientSettings, seed: int) -> None:
+    Its plants come from a bank of their own, not from that of the evaluation. ValueError for a ``teacher``: it learns from
+    scratch.
+    """
+
+    def __init__(self, tasks: Sequence[Task], settings: GradientSettings, seed: int, teacher: Policy | None = None) -> None:
+        if teacher is not None:
+            raise ValueError("agent = 'gradient' must start from scratch: only ppo, sac and tqc start from a teacher.")
         torch.manual_seed(seed)
         self.settings, self._generator = settings, np.random.default_rng(seed)
         self.actor = new_actor(tasks[0], settings)
@@ -75,6 +81,7 @@ class GradientTraining:
         self.updates = 0
         self.cost = np.full(settings.runs, np.nan)
         """(runs,): J relative to no control, a running mean over the tasks."""
+        self.losses: dict[str, float] = {}
 
     def update(self, remaining: float) -> None:
         """One step of Adam, at the share ``remaining`` of its learning rate."""
@@ -108,11 +115,29 @@ class GradientTraining:
         """What each run has learnt so far."""
         return [self.actor.policy(run) for run in range(self.settings.runs)]
 
+    def state_dict(self) -> dict[str, Any]:
+        """Weights, optimiser, generator, counters, and the episodes under way."""
+        return {
+            "actor": self.actor.state_dict(),
+            "optimiser": self._optimiser.state_dict(),
+            "generator": self._generator.bit_generator.state,
+            "windows": [windows.state_dict() for windows in self._windows],
+            "counters": {"order": list(self._order), "steps": self.steps, "updates": self.updates, "cost": self.cost.copy()},
+        }
 
-def on_training_bank(task: Task) -> Task:
-    """The task with plants drawn from another bank."""
-    plants = replace(task.scenario.plants, seed=task.scenario.plants.seed + 1)
-    return replace(task, scenario=replace(task.scenario, plants=plants))
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume from the ``state_dict`` of an equally made training, with its tensors and arrays or as a checkpoint has them."""
+        self.actor.load_state_dict(state["actor"])
+        self._optimiser.load_state_dict(state["optimiser"])
+        self._generator.bit_generator.state = state["generator"]
+        for windows, saved in zip(self._windows, state["windows"], strict=True):
+            windows.load_state_dict(saved)
+        counters = state["counters"]
+        self._order, self.steps, self.updates = list(counters["order"]), counters["steps"], counters["updates"]
+        self.cost = np.asarray(counters["cost"]).copy()
+
+    def close(self) -> None:
+        """Nothing is open."""
 
 
 def train_gradient(
@@ -124,13 +149,11 @@ def train_gradient(
     seconds: float = np.inf,
     updates: float = np.inf,
 ) -> list[Policy]:
-    """Train until ``seconds`` or ``updates`` are over; the learning rate falls with the one that is given. Ctrl-C ends it early."""
+    """Train until ``seconds`` or ``updates`` are over, whichever is first; one policy of each run. Ctrl-C ends it early.
+
+    ``report`` is called after every update. The learning rate falls to zero over the training. ValueError unless ``seconds`` or
+    ``updates`` is given.
+    """
+    budget = Budget(updates, seconds)
     training = GradientTraining([tasks] if isinstance(tasks, Task) else tasks, settings or GradientSettings(), seed)
-    begin = time.monotonic()
-    try:
-        while (elapsed := time.monotonic() - begin) < seconds and training.updates < updates:
-            training.update(1.0 - max(elapsed / seconds, training.updates / updates))
-            report(Progress(time.monotonic() - begin, training.steps, float(training.cost.mean())))
-    except KeyboardInterrupt:
-        pass
-    return training.policies()
+    return follow(training, budget, report)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,6 +13,7 @@ from torch import Tensor
 from beamenv.plant.plant import normalised
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.kernel import advance
+from beamenv.simulation.signals.electronics import Electronics
 from beamenv.simulation.signals.faults import SignalMemory, acquire, drive
 from beamenv.task import Task
 
@@ -73,8 +74,32 @@ class Windows:
             self._signals = fresh
         for part, begun in zip(self._signals, fresh, strict=True):
             part[rows] = begun[rows]
-        self._faults = electronics.faults.convert(lambda part: _float(part) if part.dtype.kind == "f" else torch.as_tensor(part))
+        self._convert_faults(electronics)
         self._hysteresis = None if electronics.hysteresis is None else electronics.hysteresis.convert(_float)
+
+    def _convert_faults(self, electronics: Electronics) -> None:
+        self._faults = electronics.faults.convert(lambda part: _float(part) if part.dtype.kind == "f" else torch.as_tensor(part))
+
+    def state_dict(self) -> dict[str, Any]:
+        """Copies of what moves, before the next window; the generator is the caller's."""
+        return {
+            "phase": self._phase.copy(),
+            "state": self._state.clone(),
+            "readings": self._readings.clone(),
+            "memory": None if self._memory is None else [part.clone() for part in self._memory],
+            "signals": None if self._signals is None else [part.clone() for part in self._signals],
+            "blades": self._blades.state_dict(),
+        }
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to a ``state_dict`` of equally made windows."""
+        self._phase = np.asarray(state["phase"]).copy()
+        self._state, self._readings = state["state"].clone(), state["readings"].clone()
+        self._memory = None if state["memory"] is None else tuple(part.clone() for part in state["memory"])
+        self._signals = None if state["signals"] is None else SignalMemory(*(part.clone() for part in state["signals"]))
+        self._blades.load_state_dict(state["blades"])
+        if self._blades.electronics is not None:
+            self._convert_faults(self._blades.electronics)
 
     def _disturbances(self) -> Iterator[tuple[Tensor, Tensor]]:
         """Line loads (B, 2) and what disturbs the readings (B, c), step by step through this window."""

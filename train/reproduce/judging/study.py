@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from train.figures.figure import Panel
 from train.reproduce.judging.verdicts import Judgement, Rule, Verdict, weakest
 from train.reproduce.thesis import Model
 
@@ -29,31 +30,6 @@ class Statement:
     """What to know of it: why ours differs, or what the numbers mean."""
     aside: bool = False
     """Our own question beside the thesis' statement: shown, but no part of any verdict."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Curve:
-    """One curve of a panel. Curves of the same ``label`` look alike in all panels; ``line`` is solid, dotted, dashed or points."""
-
-    x: Array
-    y: Array
-    label: str = ""
-    line: str = "solid"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Panel:
-    """One pair of axes, with units in the axis labels."""
-
-    title: str
-    x_label: str
-    y_label: str
-    curves: Sequence[Curve]
-    logarithmic: bool = False
-    marked: Sequence[float] = ()
-    """Values of x drawn as thin vertical lines."""
-    whole: bool = False
-    """y counts something: whole numbers at its ticks."""
 
 
 @dataclass(frozen=True, slots=True)

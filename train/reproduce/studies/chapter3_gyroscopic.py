@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from beamenv.structure.sweep import frequency_sweep
-from train.reproduce.judging.study import WITH_AND_WITHOUT, Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import WITH_AND_WITHOUT, Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Large, Marginal, Small
 from train.reproduce.studies.parameter_studies import ORDINALS, SPEEDS
 from train.reproduce.studies.responses import forced_responses

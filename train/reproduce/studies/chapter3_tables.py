@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Matches, Verdict
 from train.reproduce.thesis import Model, printed_table
 from train.reproduce.thesis.frequencies import (

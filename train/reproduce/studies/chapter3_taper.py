@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from beamenv.structure.sweep import frequency_sweep
-from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Matches, Small
 from train.reproduce.studies.parameter_studies import (
     PLY_ANGLES_DEG,

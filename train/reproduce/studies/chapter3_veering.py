@@ -9,7 +9,8 @@ import numpy as np
 
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
-from train.reproduce.judging.study import WITH_AND_WITHOUT, Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import WITH_AND_WITHOUT, Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Holds, Matches
 from train.reproduce.studies.parameter_studies import ORDINALS
 from train.reproduce.thesis import Model

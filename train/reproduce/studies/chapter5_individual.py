@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from baselines import lqg
 from beamenv.blade.config import BladeConfig
-from train.reproduce.judging.study import WITH_AND_WITHOUT, Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import WITH_AND_WITHOUT, Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Below, Changes, Holds, Large
 from train.reproduce.studies.chapter5_one_voltage import EACH, WHY_PLIES, WHY_TAPER
 from train.reproduce.studies.closed_loop import (

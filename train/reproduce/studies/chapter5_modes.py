@@ -13,7 +13,8 @@ from baselines import lqr
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
-from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Small
 from train.reproduce.studies.closed_loop import Response, blade, patches, simulate
 from train.reproduce.thesis import Model

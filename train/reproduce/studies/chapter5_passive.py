@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
-from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Large
 from train.reproduce.studies.closed_loop import PATCH_LENGTH, PATCH_WIDTH, patches
 from train.reproduce.studies.parameter_studies import ORDINALS, PLY_ANGLES_DEG, SPEEDS

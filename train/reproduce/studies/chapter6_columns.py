@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamenv.blade.layouts import Side
-from train.reproduce.judging.study import Curve, Panel
+from train.figures.figure import Curve, Panel
 from train.reproduce.studies.placement_study import SPEEDS, TableRow
 from train.reproduce.thesis import printed_table
 

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from baselines.placement import PlacementProblem, place
 from beamenv.blade.config import BladeConfig
 from beamenv.patches import PatchLayout
-from train.reproduce.judging.study import Curve, Outcome, Panel, Statement, Study
+from train.figures.figure import Curve, Panel
+from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Marginal, Small, Substantial
 from train.reproduce.studies.closed_loop import (
     SHOWN,

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import Controller, lqg
+from baselines import LinearController, lqg
+from baselines.analysis.response import linear_response
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches import PatchLayout
-from beamenv.plant.plant import Plant
-from beamenv.simulation.kernel import Operators, advance
-from train.reproduce.judging.study import Curve, Panel
+from beamenv.plant.plant import Plant, sample
+from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.response import settling_time
 
@@ -88,31 +88,23 @@ class Response:
 
 def simulate(
     plant: Plant,
-    controller: Controller,
+    controller: LinearController,
     load: float,
     duration: float = DURATION,
     pulse: float | None = None,
     direction: str = "flap",
 ) -> Response:
     """The response to a uniform load (N/m) that sets in at once, for good or for ``pulse`` s; noise-free, voltages limited."""
-    operators, drive = Operators.from_plant(plant), np.abs(plant.voltage_limits).max(axis=0)
-    column = DIRECTIONS.index(direction)
+    column, held = DIRECTIONS.index(direction), sample(plant)
     steps = round(duration / plant.control_interval)
     until = steps if pulse is None else round(pulse / plant.control_interval)
-    state, memory, measured = np.zeros(len(plant.A)), None, np.zeros(len(plant.C))
-    tips, voltages = np.zeros(steps + 1), np.zeros((steps + 1, len(drive)))
     loads = np.zeros((steps, 2))
     loads[:until, column] = load
-    full_state = getattr(controller, "observes", "observation") == "state"
-    for step in range(steps):
-        action, memory = controller.predict(state if full_state else measured / plant.sensor_full_scale, memory)
-        voltages[step] = np.clip(action * drive, *plant.voltage_limits)
-        state, measured, tip, _ = advance(operators, np.concatenate([state, voltages[step], loads[step]]))
-        tips[step + 1] = tip[column]
-    voltages[-1] = voltages[-2]
-    final = 0.0 if pulse else float(tips[-steps // 10 :].mean())
-    asked = np.abs(voltages).max(axis=0)
-    return Response(np.linspace(0.0, steps * plant.control_interval, steps + 1), tips, voltages, final, asked)
+    states, voltages = linear_response(held, controller, loads)
+    tip = states @ plant.tip_displacement[column]
+    final = 0.0 if pulse else float(tip[-steps // 10 :].mean())
+    times = np.linspace(0.0, steps * plant.control_interval, steps + 1)
+    return Response(times, tip, np.vstack([voltages, voltages[-1:]]), final, np.abs(voltages).max(axis=0))
 
 
 def controlled(
@@ -122,9 +114,9 @@ def controlled(
     responses = {}
     for label, config in blades.items():
         limited, free = (plant_of(c) for c in (config, replace(config, voltage_limits=(-UNLIMITED, UNLIMITED))))
-        response = simulate(limited, lqg(limited), model.load, pulse=pulse, direction=direction)
+        found = simulate(limited, lqg(limited), model.load, pulse=pulse, direction=direction)
         asked = simulate(free, lqg(free), model.load, SHOWN, pulse, direction).asked
-        responses[label] = replace(response, asked=asked)
+        responses[label] = replace(found, asked=asked)
     return responses
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
-from train.reproduce.judging.study import Curve, Panel
+from train.figures.figure import Curve, Panel
 from train.reproduce.studies.responses import ForcedResponses, forced_responses
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.response import ForcedBlade

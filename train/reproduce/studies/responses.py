@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from train.reproduce.judging.study import Curve, Panel
+from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.response import ForcedBlade, settling_time
 

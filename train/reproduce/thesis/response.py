@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from baselines.evaluation.metrics import settled_from
 from beamenv.plant.reduction import ModalModel, truncate
 from beamenv.structure import RotatingBeam
 from beamenv.structure.beam import EXTRA_STATIONS
@@ -112,5 +113,4 @@ class ForcedBlade:
 def settling_time(times: Array, displacement: Array, final: float, band: float = 0.05) -> float:
     """When the response stays within ``band`` of its largest excursion from ``final`` for good, in s; or its duration."""
     excursion = np.abs(displacement - final)
-    outside = np.flatnonzero(excursion > band * excursion.max())
-    return float(times[min(outside[-1] + 1, len(times) - 1)]) if len(outside) else float(times[0])
+    return float(times[min(settled_from(excursion, band * excursion.max()), len(times) - 1)])

@@ -1,0 +1,152 @@
+"""Figures: one vocabulary, which both renderers draw to the same effect."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from train.figures import paper, paper_heat_map, screen
+from train.figures.figure import Curve, Look, Marker, Note, Panel
+from train.figures.heat_map import HeatMap
+from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS, actuator
+from train.figures.panels import LearningCurves, learning_panel, pole_panel, voltage_curves
+
+pyplot = pytest.importorskip("matplotlib.pyplot", reason="matplotlib is not installed")
+go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")
+
+X = np.array([1.0, 2.0, 4.0])
+
+
+@pytest.fixture
+def axis():
+    figure, axis = pyplot.subplots()
+    yield axis
+    pyplot.close(figure)
+
+
+def both(axis, panel):
+    """Matplotlib's axes and plotly's figure, which refuses a property that it does not know."""
+    paper.draw_panel(axis, panel)
+    return axis, go.Figure(screen.figure([panel]))
+
+
+@pytest.mark.parametrize("line", [*LINES, "points"])
+@pytest.mark.parametrize("fill", ["full", "none"])
+def test_every_line_and_sign_is_drawn_on_paper_and_on_the_screen(axis, line, fill):
+    signs = [sign for sign in paper.SIGNS if line == "points" or sign in SIGNS]
+    curves = [Curve(X, X, sign, line, Look(PALETTE[0], marker=Marker(sign, fill=fill))) for sign in signs]
+    drawn, shown = both(axis, Panel("", "x, m", "y, m", curves))
+    for curve, one, other in zip(curves, drawn.lines, shown.data, strict=True):
+        assert one.get_color() == PALETTE[0]
+        assert (one.get_linestyle() == "None") == (other.mode == "markers") == (line == "points")
+        np.testing.assert_array_equal(one.get_xdata(), other.x)
+        assert (one.get_markerfacecolor() == "none") == (fill == "none")
+        assert other.marker.symbol in (curve.label, f"{curve.label}-open", "circle", "circle-open")
+
+
+@pytest.mark.parametrize(("joined", "drawstyle", "shape"), [("ends", "steps-pre", "vh"), ("begins", "steps-post", "hv")])
+def test_a_held_value_is_a_step_on_both(axis, joined, drawstyle, shape):
+    drawn, shown = both(axis, Panel("", "", "", [Curve(X, X, "held", joined=joined)]))
+    assert (drawn.lines[0].get_drawstyle(), shown.data[0].line.shape) == (drawstyle, shape)
+
+
+def test_labels_limits_scales_marks_and_notes_are_the_same_on_both(axis):
+    panel = Panel(
+        *("title", "time, ms", "tip, µm"),
+        *([Curve(X, X, "tip")], True, (3.0,)),
+        x_limits=(0.0, 5.0),
+        y_limits=(None, None),
+        notes=[Note(2.0, 2.0, "here")],
+    )
+    drawn, shown = both(axis, panel)
+    assert (drawn.get_xlabel(), drawn.get_ylabel(), drawn.get_title()) == ("time, ms", "tip, µm", "title")
+    assert (shown.layout.xaxis.title.text, shown.layout.yaxis.title.text) == ("time, ms", "tip, µm")
+    assert drawn.get_xlim() == shown.layout.xaxis.range == (0.0, 5.0)
+    assert drawn.get_yscale() == shown.layout.yaxis.type == "log"
+    assert drawn.lines[0].get_xdata() == [3.0, 3.0] and shown.layout.shapes[0].x0 == 3.0
+    assert [note.text for note in shown.layout.annotations] == ["title", "here"]
+    assert [note.get_text() for note in drawn.texts] == ["here"]
+
+
+def test_a_legend_has_one_entry_for_each_label(axis):
+    curves = [Curve(X, X, "tip"), Curve(X, -X, "tip", listed=False), Curve(X, 0.0 * X), Curve(X, X, "other")]
+    panel = Panel("", "", "", curves)
+    _, shown = both(axis, panel)
+    assert [handle.get_label() for handle in paper.handles([panel])] == ["tip", "other"]
+    assert [trace.name for trace in shown.data if trace.showlegend] == ["tip", "other"]
+    assert [trace.hoverinfo for trace in shown.data] == [None, None, "skip", None]
+
+
+def test_panels_over_one_another_share_the_axis_of_the_last():
+    panels = [Panel(f"panel {k}", "time, s" if k == 2 else "", "V", [Curve(X, X, "volts")]) for k in range(3)]
+    figure = go.Figure(screen.figure(panels))
+    assert [trace.yaxis for trace in figure.data] == ["y", "y2", "y3"]
+    assert figure.layout.xaxis.title.text == "time, s"
+    assert figure.layout.grid.rows == 3
+    assert [note.yref for note in figure.layout.annotations] == ["y domain", "y2 domain", "y3 domain"]
+
+
+def test_compact_numbers_are_five_digits_at_even_intervals():
+    time = np.linspace(0.0, 1.0, 5)
+    (trace,) = screen.figure([Panel("", "", "", [Curve(time, 1e-3 * np.pi * time, "tip")])], compact=True)["data"]
+    assert (trace["x0"], trace["dx"]) == (0.0, 0.25)
+    assert trace["y"] == [0.0, 0.0007854, 0.0015708, 0.0023562, 0.0031416]
+
+
+def test_the_real_axis_of_poles_is_odd_linear_near_zero_and_logarithmic_far_out():
+    assert screen.symmetric_logarithm(np.array([-90.0, 0.0, 90.0]), 10.0).tolist() == [-1.0, 0.0, 1.0]
+    near = screen.symmetric_logarithm(np.array([1e-3]), 10.0)
+    assert near[0] == pytest.approx(1e-3 / (10.0 * np.log(10.0)), rel=1e-3)
+
+
+def test_an_unstable_pole_lies_right_of_the_imaginary_axis_on_both(axis):
+    panel = pole_panel({"no control": np.array([-1.0 + 5.0j]), "loop": np.array([-5.0 + 100.0j, -5.0 - 100.0j, 2.0 + 0.0j])})
+    drawn, shown = both(axis, panel)
+    imaginary = shown.layout.shapes[0].x0
+    assert imaginary == drawn.lines[0].get_xdata()[0] == 0.0
+    assert np.asarray(shown.data[1].customdata).tolist() == drawn.lines[2].get_xdata().tolist() == [-5.0, 2.0]
+    assert shown.data[1].x[0] < imaginary < shown.data[1].x[1]
+    assert (shown.data[0].marker.color, shown.data[1].marker.color) == (NEUTRAL, PALETTE[0])
+
+
+def test_actuators_are_told_apart_by_line_as_well_as_by_colour():
+    curves = voltage_curves(X, np.zeros((3, 6)))
+    assert len({curve.look.colour for curve in curves}) == 6
+    assert [curve.line for curve in curves] == ["solid", "dashed", "dotted", "dashdot", "solid", "dashed"]
+    assert actuator(1) == (curves[1].look, curves[1].line)
+
+
+def test_a_learning_curve_has_its_steps_and_levels_their_number():
+    told = np.array([[1.0, 1e5, 1.4], [2.0, 2e5, 0.9], [3.0, 3e5, 0.6]])
+    panel = learning_panel(LearningCurves({"PPO": told, "silent": np.empty((0, 3))}, {"LQG": 0.4}))
+    assert [curve.label for curve in panel.curves] == ["PPO (0.3 million steps)", "silent", "LQG: 0.400"]
+    assert panel.x_limits == (0.0, 3.0)
+    assert panel.y_limits == (0.0, 1.05)
+
+
+def test_a_heat_map_on_paper_writes_costs_instability_and_what_is_missing():
+    content = HeatMap(
+        ("step", "pulse"),
+        ("LQG", "PPO", "SAC"),
+        np.array([[0.4, np.inf, 0.5], [0.6, np.nan, np.nan]]),
+        np.array([[0.0, 0.002, 0.0], [0.0, np.nan, np.nan]]),
+        kinds=("fixed", "learned", "learned"),
+        best=("LQG", "LQG"),
+        lost=frozenset({("pulse", "PPO")}),
+    )
+    figure = paper_heat_map.heat_map(content)
+    cells = {tuple(text.get_position()): text for text in figure.axes[0].texts}
+    written = {(round(y), x): text.get_text() for (x, y), text in cells.items() if y >= -0.5 and "▲" not in text.get_text()}
+    assert written == {(0, 0): "0.40", (0, 1): "∞", (0, 2): "0.50", (1, 0): "0.60", (1, 1): "✕", (1, 2): "–"}
+    assert [text.get_text() for text in cells.values() if "▲" in text.get_text()] == ["▲ < 1 %"]
+    assert [cells[0, 0].get_weight(), cells[2, 0].get_weight()] == ["bold", "normal"]
+    assert {text.get_text() for (_, y), text in cells.items() if y < -0.5} == {"fixed", "learned"}
+    pyplot.close(figure)
+
+
+def test_a_png_is_written_whole(tmp_path):
+    figure, axis = pyplot.subplots()
+    paper.draw_panel(axis, replace(Panel("", "", "", [Curve(X, X)]), whole=True))
+    paper.save(figure, tmp_path / "a" / "figure.png")
+    assert [path.name for path in (tmp_path / "a").iterdir()] == ["figure.png"]
+    assert (tmp_path / "a" / "figure.png").read_bytes().startswith(b"\x89PNG")
