@@ -92,7 +92,7 @@ def build_plant(config: BladeConfig) -> Plant:
 
 
 def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
-    """The reduced plant of a beam of one's own, say of another section, with all else as a configuration has it."""
+    """The plant of a beam that ``config.beam`` does not describe, of any section, say; it carries the inlays of passive patches."""
     blade = Blade(config)
     vars(blade)["beam"] = beam
     return blade.plant
