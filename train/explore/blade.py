@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import plant_of
-from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, configuration
 from beamenv.patches import PatchLayout
@@ -59,7 +59,7 @@ class Settings:
         """The blade."""
         beam = replace(
             THESIS.beam,
-            ply_angles_deg=(self.ply_angle_deg,) * 6,
+            ply_angles_deg=((ON_EVERY_WALL, (self.ply_angle_deg,) * 6),),
             pretwist_deg=self.pretwist_deg,
             taper=self.taper,
         )
@@ -123,7 +123,7 @@ def campbell(beam: RotatingBeam) -> Array:
     return frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES)
 
 
-def mode_shapes(beam: RotatingBeam, coefficients: Array, half_chord: float) -> tuple[Array, NDArray[np.complex128]]:
+def mode_shapes(beam: RotatingBeam, coefficients: NDArray[Any], half_chord: float) -> tuple[Array, NDArray[np.complex128]]:
     """Stations (k,) in m and ``MOTIONS`` (modes, 4, k) there, turned and scaled so that the largest of each mode is 1."""
     stations = np.linspace(0.0, beam.length, STATIONS)
     rows = beam.displacements(stations)

@@ -60,10 +60,10 @@ def place_sides(
     for side in ("actuators", "sensors"):
         if side not in counts:
             continue
-        problem = PlacementProblem.of(config, side)  # type: ignore[arg-type]
-        told = None if progress is None else lambda done, cost, side=side: progress(side, done, cost)
-        found = place(problem, method, seed, progress=told)
-        config = with_positions(config, {side: found.positions})  # type: ignore[dict-item]
+        problem = PlacementProblem.of(config, side)
+        report = None if progress is None else lambda done, cost, side=side: progress(side, done, cost)
+        found = place(problem, method, seed, progress=report)
+        config = with_positions(config, {side: found.positions})
         sides.append(placed_side(problem, found))
     return sides
 

@@ -88,6 +88,6 @@ def all_panels(side: Side, rows: Sequence[TableRow]) -> list[Panel]:
         printed = [each for each in printed_table(NUMBERS[side, "all"]) if float(each["speed"]) == speed]
         stated = np.array([[float(each["sqp_position"]), float(each["count"]) + 0.1] for each in printed]).T
         ours = np.array([(at, row.count - 0.1) for row in rows if row.speed == speed for at in row.both.positions]).T
-        curves = [Curve(*stated, "thesis", "points"), Curve(*ours, "ours", "points")]
+        curves = [Curve(stated[0], stated[1], "thesis", "points"), Curve(ours[0], ours[1], "ours", "points")]
         panels.append(Panel(f"{speed:g} rad/s", "root-side edge from the root (m)", f"number of {side}", curves, whole=True))
     return panels
