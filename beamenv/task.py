@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.presets import blade_config
@@ -33,36 +34,52 @@ INFO = ("volts", "tip_displacement", "energy", "effort", "cost_increment")
 """What info holds of a ``Motion``."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Task:
-    """What an environment is made of, its arguments checked and resolved."""
+    """What an environment is made of, its arguments checked and resolved.
 
-    config: BladeConfig
-    design_config: BladeConfig
+    It owns its blades, with their plants, and its bank: each is built when it is first asked for. ``dataclasses.replace`` gives a
+    task that shares the blades that are not replaced.
+    """
+
+    blade: Blade
+    """The true blade: what moves."""
+    design_blade: Blade
+    """The blade that controllers are designed for; the true one unless said otherwise."""
     scenario: Scenario
     steps: int
     """Control intervals in an episode."""
     physical_units: bool
 
     @property
+    def config(self) -> BladeConfig:
+        """Of the true blade."""
+        return self.blade.config
+
+    @property
+    def design_config(self) -> BladeConfig:
+        """Of the blade that controllers are designed for."""
+        return self.design_blade.config
+
+    @property
     def plant(self) -> Plant:
         """The true plant: what moves."""
-        return build_plant(self.config)
+        return self.blade.plant
 
     @property
     def design_plant(self) -> Plant:
         """The plant that controllers are designed for; the true one unless said otherwise."""
-        return build_plant(self.design_config)
+        return self.design_blade.plant
 
     @property
     def design(self) -> Design:
         """All that a controller may be built from."""
         return Design(self.design_plant, self.design_config)
 
-    @property
+    @cached_property
     def bank(self) -> Bank:
         """The true plants that episodes draw from."""
-        return build_bank(self.config, self.design_config, self.scenario.plants, self.steps)
+        return build_bank(self.blade, self.design_blade, self.scenario.plants, self.steps)
 
     def action_space(self) -> Box:
         """Voltages, normalised or in V."""
@@ -94,10 +111,11 @@ def resolve_task(
     config = _in_scenario(config, chosen, chosen.plants.modes)
     own = config if design is None else _design_config(preset, speed, design)
     designed = _in_scenario(own, chosen, chosen.plants.design_modes)
-    _check_failures(chosen, build_plant(config))
+    true = Blade(config)
+    _check_failures(chosen, true.plant)
     return Task(
-        config=config,
-        design_config=designed if designed == config else _same_electronics(designed, config),
+        blade=true,
+        design_blade=true if designed == config else _same_electronics(designed, true),
         scenario=chosen,
         steps=round(duration / interval),
         physical_units=physical_units,
@@ -129,17 +147,18 @@ def _design_config(preset: str, speed: float | None, design: BladeConfig | Mappi
     return read(blade_config(preset, None, speed), design, "design")
 
 
-def _same_electronics(design: BladeConfig, true: BladeConfig) -> BladeConfig:
+def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     """The design blade behind the very sensors' range, drive and clock that the true one has."""
     for name in ("control_interval", "voltage_limits"):
-        if getattr(design, name) != getattr(true, name):
-            raise Refused(f"design.{name}", getattr(design, name), f"the true blade's, {getattr(true, name)!r}")
+        if getattr(design, name) != getattr(true.config, name):
+            raise Refused(f"design.{name}", getattr(design, name), f"the true blade's, {getattr(true.config, name)!r}")
     if design.sensor_full_scale is None:
-        design = replace(design, sensor_full_scale=float(build_plant(true).sensor_full_scale[0]))
-    shapes = [(plant.B.shape[1], len(plant.C)) for plant in (build_plant(design), build_plant(true))]
+        design = replace(design, sensor_full_scale=float(true.plant.sensor_full_scale[0]))
+    designed = true.changed(design)
+    shapes = [(plant.B.shape[1], len(plant.C)) for plant in (designed.plant, true.plant)]
     if shapes[0] != shapes[1]:
         raise ValueError(f"design has {shapes[0]} voltages and sensors, but must have as many as the true blade, {shapes[1]}.")
-    return design
+    return designed
 
 
 def checked_action(action: Any, shape: tuple[int, ...]) -> Array:

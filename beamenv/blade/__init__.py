@@ -1,6 +1,6 @@
 """A blade as a user describes it: configuration, presets, files, layouts of its patches; and what is built from it."""
 
-from beamenv.blade.build import build_beam, build_plant, plant_of
+from beamenv.blade.build import Blade, build_beam, build_plant
 from beamenv.blade.config import MATERIALS, BeamConfig, BladeConfig
 from beamenv.blade.files import from_dict, load_config, to_dict
 from beamenv.blade.presets import PRESETS, blade_config
@@ -9,12 +9,12 @@ __all__ = [
     "MATERIALS",
     "PRESETS",
     "BeamConfig",
+    "Blade",
     "BladeConfig",
     "blade_config",
     "build_beam",
     "build_plant",
     "from_dict",
     "load_config",
-    "plant_of",
     "to_dict",
 ]

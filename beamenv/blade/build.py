@@ -3,30 +3,92 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.plant.plant import Plant
-from beamenv.plant.reduction import reduced_plant, truncate
+from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
 from beamenv.structure import RotatingBeam
 
 Array = NDArray[np.float64]
 
 
-@lru_cache(maxsize=64)
+@dataclass(frozen=True)
+class Blade:
+    """A configuration and what is built of it: each part once, when it is first asked for, and kept as long as the blade is.
+
+    Blades are equal if their configurations are. Parts raise ``ValueError`` for a blade that cannot be.
+    """
+
+    config: BladeConfig
+
+    @cached_property
+    def beam(self) -> RotatingBeam:
+        """The blade with its patches' passive effect."""
+        return build_beam(self.config)
+
+    @cached_property
+    def modal(self) -> ModalModel:
+        """Its retained modes."""
+        return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
+
+    @cached_property
+    def full(self) -> FullModel:
+        """What acts on it and what is seen of it."""
+        return full_model(self.beam, self.config.patches)
+
+    @cached_property
+    def plant(self) -> Plant:
+        """Its reduced plant."""
+        modal, config = self.modal, self.config
+        return reduced_plant(
+            modal,
+            self.full,
+            self.beam.matrices.stiffness(config.speed),
+            damping_ratio=config.damping_ratio,
+            effort_weight=config.effort_weight,
+            white_load=config.white_load,
+            sensor_noise_fraction=config.sensor_noise_fraction,
+            sensor_full_scale=config.sensor_full_scale,
+            voltage_limits=config.voltage_limits,
+            control_interval=config.control_interval,
+        )
+
+    def changed(self, config: BladeConfig) -> Blade:
+        """The blade of another configuration, with the parts of this one that do not depend on the difference."""
+        other = Blade(config)
+        for part, fields in _MADE_OF.items():
+            if all(getattr(config, name) == getattr(self.config, name) for name in fields):
+                vars(other)[part] = getattr(self, part)
+        return other
+
+    def with_fixed_range(self) -> Blade:
+        """The blade behind the data acquisition that fits it now: another blade made of its configuration keeps it."""
+        return self.changed(replace(self.config, sensor_full_scale=float(self.plant.sensor_full_scale[0])))
+
+    def displacement_operator(self, stations: Sequence[float] | Array) -> Array:
+        """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
+        rows = self.beam.displacements(np.asarray(stations, dtype=float))
+        displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (self.modal.mode_shapes / self.modal.natural_frequencies)
+        return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)
+
+
+_MADE_OF = {"beam": ("beam", "patches"), "modal": ("beam", "patches", "speed", "modes", "gyroscopic"), "full": ("beam", "patches")}
+"""The fields of a configuration that each part depends on."""
+
+
 def build_beam(config: BladeConfig) -> RotatingBeam:
     """The blade with its patches' passive effect."""
     return config.beam.build(config.patches)
 
 
-@lru_cache(maxsize=64)
 def build_plant(config: BladeConfig) -> Plant:
-    """The reduced plant of a configuration, built once and cached; ``ValueError`` as the parts raise it."""
-    return plant_of(config, build_beam(config))
+    """The reduced plant of a configuration, built anew, in some hundredths of a second; ``ValueError`` as the parts raise it."""
+    return Blade(config).plant
 
 
 def changed_blade(
@@ -43,28 +105,6 @@ def changed_blade(
     return replace(config, beam=beam, speed=speed * config.speed, damping_ratio=damping_ratio)
 
 
-def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
-    """The reduced plant of a configuration whose blade has been built."""
-    return reduced_plant(
-        beam,
-        config.patches,
-        speed=config.speed,
-        modes=config.modes,
-        damping_ratio=config.damping_ratio,
-        gyroscopic=config.gyroscopic,
-        effort_weight=config.effort_weight,
-        white_load=config.white_load,
-        sensor_noise_fraction=config.sensor_noise_fraction,
-        sensor_full_scale=config.sensor_full_scale,
-        voltage_limits=config.voltage_limits,
-        control_interval=config.control_interval,
-    )
-
-
 def displacement_operator(config: BladeConfig, stations: Sequence[float] | Array) -> Array:
     """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
-    beam = build_beam(config)
-    modal = truncate(beam, config.speed, config.modes, config.gyroscopic)
-    rows = beam.displacements(np.asarray(stations, dtype=float))
-    displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (modal.mode_shapes / modal.natural_frequencies)
-    return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)
+    return Blade(config).displacement_operator(stations)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +12,7 @@ from gymnasium.utils import RecordConstructorArgs
 from gymnasium.vector import VectorEnv, VectorWrapper
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
 from beamenv.task import Task, reset_options
@@ -48,7 +48,7 @@ class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorA
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode, in another layout if ``options`` or the range say so."""
         layout, rest = _changed(self._home.config, self._layout, options, self._positions)
-        reset_options(self._task(self._positions), rest, rows=1)  # what it refuses must be refused before anything has changed
+        reset_options(self.env.unwrapped.task, rest, rows=1)  # type: ignore[attr-defined] # what it refuses must be refused before anything has changed
         drawn = any(isinstance(layout[side], Drawn) for side in SIDES)
         if drawn:
             self.env.reset(seed=seed)
@@ -113,7 +113,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         """Begin an episode of every blade."""
         options = dict(options or {})
         layouts = self._resolved(options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
-        reset_options(_moved(self._home, self._positions[0]), options, rows=self.num_envs)
+        reset_options(self.env.unwrapped.task, options, rows=self.num_envs)  # type: ignore[attr-defined]
         drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
         if drawn:
             self.env.reset(seed=seed)
@@ -165,16 +165,18 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
 
 def _with_fixed_range(task: Task) -> Task:
     """The task with the data acquisition that its blades have now, wherever their sensors go."""
-
-    def held(config: BladeConfig) -> BladeConfig:
-        return replace(config, sensor_full_scale=float(build_plant(config).sensor_full_scale[0]))
-
-    return replace(task, config=held(task.config), design_config=held(task.design_config))
+    return _of_blades(task, Blade.with_fixed_range)
 
 
 def _moved(task: Task, positions: Mapping[Side, Positions]) -> Task:
     """The task with the patches of the true and of the design blade at other positions."""
-    return replace(task, config=with_positions(task.config, positions), design_config=with_positions(task.design_config, positions))
+    return _of_blades(task, lambda blade: blade.changed(with_positions(blade.config, positions)))
+
+
+def _of_blades(task: Task, changed: Callable[[Blade], Blade]) -> Task:
+    """The task with its true and its design blade changed, which stay one where they are one."""
+    blade = changed(task.blade)
+    return replace(task, blade=blade, design_blade=blade if task.design_blade == task.blade else changed(task.design_blade))
 
 
 def _resolved(config: BladeConfig, given: Any, like: Mapping[Side, Positions] | None = None) -> Layout:

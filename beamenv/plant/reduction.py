@@ -1,9 +1,11 @@
-"""From a blade with patches to the reduced plant (thesis §5.3, corrected): modal truncation in energy coordinates."""
+"""From blades with patches to reduced plants (thesis §5.3, corrected): modal truncation in energy coordinates.
+
+What reduces is written for any number of blades at once, with leading axes "…"; one blade has none.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,14 +34,13 @@ class ModalModel(ReadOnly):
     """The first r undamped modes without gyroscopic coupling, at one speed."""
 
     natural_frequencies: Array
-    """(r,), rad/s."""
+    """(…, r), rad/s."""
     mode_shapes: Array
-    """Ψ (N, r), ΨᵀMΨ = I."""
+    """Ψ (…, N, r), ΨᵀMΨ = I."""
     gyroscopic: Array
-    """ΨᵀGΨ (r, r), 1/s."""
+    """ΨᵀGΨ (…, r, r), 1/s."""
 
 
-@lru_cache(maxsize=16)
 def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = True) -> ModalModel:
     """The modal model of a blade; ``ValueError`` at or beyond the critical speed or for more modes than trial functions."""
     if not (np.isfinite(speed) and 0.0 <= speed < beam.critical_speed):
@@ -52,13 +53,6 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
     frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), modes)
     coupling = speed * shapes.T @ matrices.gyroscopic @ shapes if gyroscopic else np.zeros((modes, modes))
     return ModalModel(frequencies, shapes, coupling)
-
-
-def stored_energy_weight(beam: RotatingBeam, speed: float, forces: Array) -> Array:
-    """Fᵀ K⁻¹ F (m, m), J/V²: twice the energy the actuators store in the blade at rest (in place of Eq. 5.9)."""
-    weight = forces.T @ np.linalg.solve(beam.matrices.stiffness(speed), forces)
-    regularised = weight + SAME_PATCH_REGULARISATION * np.trace(weight) / len(weight) * np.eye(len(weight))
-    return 0.5 * (regularised + regularised.T)
 
 
 def surface_strain(beam: RotatingBeam) -> Array:
@@ -83,7 +77,6 @@ class FullModel(ReadOnly):
     """(k, N)."""
 
 
-@lru_cache(maxsize=8)
 def full_model(beam: RotatingBeam, layout: PatchLayout) -> FullModel:
     """That of a blade which carries the inlays of passive patches."""
     tip = beam.displacements(np.array([beam.length]))
@@ -96,14 +89,53 @@ def full_model(beam: RotatingBeam, layout: PatchLayout) -> FullModel:
     )
 
 
-def reduced_plant(
-    beam: RotatingBeam,
-    layout: PatchLayout,
+@dataclass(frozen=True, slots=True, eq=False)
+class ReducedBlades:
+    """Blades in energy coordinates x = [ω η; η̇]: what ``Plant`` calls A, R, B, C and E."""
+
+    dynamics: Array
+    """A (…, 2r, 2r), 1/s."""
+    natural_frequencies: Array
+    """(…, r), rad/s."""
+    input: Array
+    """B (…, 2r, m), √J/s per V."""
+    input_weight: Array
+    """R (…, m, m), J/V²: effort_weight FᵀK⁻¹F."""
+    output: Array
+    """C (…, p, 2r), A per √J."""
+    disturbance_input: Array
+    """E (…, 2r, 2), √J/s per N/m."""
+
+
+def in_modes(
+    modal: ModalModel,
     *,
-    speed: float,
-    modes: int,
+    forces: Array,
+    charges: Array,
+    line_load: Array,
+    stored_energy: Array,
     damping_ratio: float,
-    gyroscopic: bool,
+    effort_weight: float,
+) -> ReducedBlades:
+    """Blades in given modes, from forces F (…, N, m), charges (…, p, N), loads (…, N, 2) and FᵀK⁻¹F (…, m, m)."""
+    shapes, frequency = modal.mode_shapes, diagonal(modal.natural_frequencies)
+    across = shapes.swapaxes(-1, -2)
+    return ReducedBlades(
+        dynamics=first_order(frequency, modal.gyroscopic + 2.0 * damping_ratio * frequency),
+        natural_frequencies=modal.natural_frequencies,
+        input=acting_on_velocities(across @ forces),
+        input_weight=effort_weight * regularised(stored_energy),
+        output=on_velocities(charges @ shapes),
+        disturbance_input=acting_on_velocities(across @ line_load),
+    )
+
+
+def reduced_plant(
+    modal: ModalModel,
+    full: FullModel,
+    stiffness: Array,
+    *,
+    damping_ratio: float,
     effort_weight: float,
     white_load: float,
     sensor_noise_fraction: float,
@@ -111,28 +143,31 @@ def reduced_plant(
     voltage_limits: tuple[float, float],
     control_interval: float,
 ) -> Plant:
-    """The plant of a blade, which carries the inlays of passive patches; arguments as in ``configuration.BladeConfig``."""
-    modal, full = truncate(beam, speed, modes, gyroscopic), full_model(beam, layout)
-    omega, shapes, forces = modal.natural_frequencies, modal.mode_shapes, full.forces
-    still = np.zeros((modes, modes))
-    damping = modal.gyroscopic + np.diag(2.0 * damping_ratio * omega)
-    dynamics = np.block([[still, np.diag(omega)], [-np.diag(omega), -damping]])
-    currents = on_velocities(full.charges @ shapes)
-    disturbance = acting_on_velocities(shapes.T @ full.line_load)
+    """The plant of one blade with the stiffness K (N, N) at its speed; other arguments as in ``BladeConfig``."""
+    forces, omega, shapes = full.forces, modal.natural_frequencies, modal.mode_shapes
+    blade = in_modes(
+        modal,
+        forces=forces,
+        charges=full.charges,
+        line_load=full.line_load,
+        stored_energy=forces.T @ np.linalg.solve(stiffness, forces),
+        damping_ratio=damping_ratio,
+        effort_weight=effort_weight,
+    )
     if sensor_full_scale is None:
-        sensor_full_scale = largest_current(dynamics, disturbance, currents, omega[0], control_interval)
-    full_scale = np.full(len(currents), sensor_full_scale)
+        sensor_full_scale = largest_current(blade, control_interval)
+    full_scale = np.full(len(blade.output), sensor_full_scale)
     return Plant(
-        A=dynamics,
-        B=acting_on_velocities(shapes.T @ forces),
-        C=currents,
-        D=np.zeros((len(currents), forces.shape[1])),
-        disturbance_input=disturbance,
+        A=blade.dynamics,
+        B=blade.input,
+        C=blade.output,
+        D=np.zeros((len(blade.output), forces.shape[1])),
+        disturbance_input=blade.disturbance_input,
         tip_displacement=on_displacements(full.tip @ shapes, omega),
         strain=on_displacements(full.strain @ shapes, omega),
         natural_frequencies=omega,
-        state_weight=0.5 * np.eye(2 * modes),
-        input_weight=effort_weight * stored_energy_weight(beam, speed, forces),
+        state_weight=0.5 * np.eye(2 * len(omega)),
+        input_weight=blade.input_weight,
         process_noise=white_load**2 * control_interval * np.eye(2),
         sensor_noise=np.diag((sensor_noise_fraction * full_scale) ** 2) * control_interval,
         voltage_limits=np.repeat(np.asarray(voltage_limits, dtype=float)[:, None], forces.shape[1], axis=1),
@@ -141,14 +176,21 @@ def reduced_plant(
     )
 
 
+def first_order(frequency: Array, damping: Array) -> Array:
+    """A = [[0, Ω], [−Ω, −D]] (…, 2r, 2r) in energy coordinates."""
+    above = np.concatenate([np.zeros_like(frequency), frequency], axis=-1)
+    below = np.concatenate([-frequency, -np.broadcast_to(damping, frequency.shape)], axis=-1)
+    return np.concatenate([above, below], axis=-2)
+
+
 def acting_on_velocities(modal_force: Array) -> Array:
-    """[0; ΨᵀF] (2r, m): a force enters the velocity half of the state."""
-    return np.vstack([np.zeros_like(modal_force), modal_force])
+    """[0; ΨᵀF] (…, 2r, m): a force enters the velocity half of the state."""
+    return np.concatenate([np.zeros_like(modal_force), modal_force], axis=-2)
 
 
 def on_velocities(modal_rows: Array) -> Array:
-    """[0, CΨ] (p, 2r): rows that read the modal velocities."""
-    return np.hstack([np.zeros_like(modal_rows), modal_rows])
+    """[0, CΨ] (…, p, 2r): rows that read the modal velocities."""
+    return np.concatenate([np.zeros_like(modal_rows), modal_rows], axis=-1)
 
 
 def on_displacements(modal_rows: Array, omega: Array) -> Array:
@@ -156,13 +198,27 @@ def on_displacements(modal_rows: Array, omega: Array) -> Array:
     return np.hstack([modal_rows / omega, np.zeros_like(modal_rows)])
 
 
-def largest_current(dynamics: Array, disturbance: Array, currents: Array, lowest_frequency: float, interval: float) -> float:
+def diagonal(values: Array) -> Array:
+    """Diagonal matrices (…, r, r)."""
+    return values[..., None] * np.eye(values.shape[-1])
+
+
+def regularised(stored_energy: Array) -> Array:
+    """FᵀK⁻¹F (…, m, m), J/V², twice the energy that actuators store in the blade at rest (in place of Eq. 5.9), symmetric and
+    positive definite even where actuators coincide.
+    """
+    size = stored_energy.shape[-1]
+    share = SAME_PATCH_REGULARISATION * np.trace(stored_energy, axis1=-2, axis2=-1) / size
+    return 0.5 * (stored_energy + stored_energy.swapaxes(-1, -2)) + share[..., None, None] * np.eye(size)
+
+
+def largest_current(blade: ReducedBlades, interval: float) -> float:
     """Sensor full scale (A): margin times the largest current in five periods after a sudden reference load in lag or in flap."""
-    steps = int(np.ceil(5 * 2.0 * np.pi / lowest_frequency / interval))
-    transition = expm(dynamics * interval)
-    displaced = -np.linalg.solve(dynamics, REFERENCE_LOAD * disturbance)
+    steps = int(np.ceil(5 * 2.0 * np.pi / blade.natural_frequencies[0] / interval))
+    transition = expm(blade.dynamics * interval)
+    displaced = -np.linalg.solve(blade.dynamics, REFERENCE_LOAD * blade.disturbance_input)
     offset, largest = -displaced, 0.0
     for _ in range(steps):
         offset = transition @ offset
-        largest = max(largest, float(np.abs(currents @ offset).max()))
+        largest = max(largest, float(np.abs(blade.output @ offset).max()))
     return FULL_SCALE_MARGIN * largest

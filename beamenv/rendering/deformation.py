@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_beam, changed_blade, displacement_operator
-from beamenv.plant.reduction import truncate
+from beamenv.blade.build import changed_blade
 from beamenv.simulation.plants.banks import varied
 from beamenv.simulation.plants.spin_up import Cycloid, RunUp
 from beamenv.task import Task
@@ -24,7 +23,7 @@ class Deformation:
         self._varied = varied(plants, task.config) if plants.varies else None
         self._run_up: RunUp | None = None
         if plants.spin_up is not None:
-            self._run_up = RunUp.of(task.config, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
+            self._run_up = RunUp.of(task.blade, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
 
     def displacement(self, state: Array, plant: int) -> Array:
         """(3, k): lag, flap (m) and twist (rad) of a state (n,) of the plant at this place of the bank."""
@@ -37,16 +36,15 @@ class Deformation:
         """(3, k, n)."""
         if self._run_up is not None:
             return self._running_operator(self._run_up, plant)
-        config = self._task.config
-        return displacement_operator(
-            config if self._varied is None else changed_blade(config, *self._varied[plant].tolist()), self._stations
-        )
+        blade = self._task.blade
+        if self._varied is not None:
+            blade = blade.changed(changed_blade(blade.config, *self._varied[plant].tolist()))
+        return blade.displacement_operator(self._stations)
 
     def _running_operator(self, run_up: RunUp, plant: int) -> Array:
         """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K."""
-        config = self._task.config
-        root = np.linalg.cholesky(run_up.stiffness(np.asarray(plant * config.control_interval)))
-        rows = build_beam(config).displacements(self._stations)
-        shapes = truncate(build_beam(config), config.speed, config.modes).mode_shapes
+        blade = self._task.blade
+        root = np.linalg.cholesky(run_up.stiffness(np.asarray(plant * blade.config.control_interval)))
+        rows, shapes = blade.beam.displacements(self._stations), blade.modal.mode_shapes
         displaced = np.stack([rows[name] for name in ("u", "v", "phi")]) @ shapes @ np.linalg.inv(root).T
         return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)

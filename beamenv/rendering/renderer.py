@@ -41,7 +41,7 @@ class BladeRenderer:
         _check_installed()
         self._task, self._rate = task, rate
         config, plant = task.config, task.plant
-        self._scene = Scene(config)
+        self._scene = Scene(task.blade)
         self._deformation = Deformation(task, self._scene.solid.stations)
         self._actuators = len(config.patches.actuator_positions(config.beam.length))
         self._limit = float(np.abs(plant.voltage_limits).max())

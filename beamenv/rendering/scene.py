@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_beam
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.build import Blade
 from beamenv.blade.shape import edges, sides
 from beamenv.rendering.camera import Camera, faces_camera
 from beamenv.rendering.canvas import Canvas, Frame
@@ -59,17 +58,18 @@ class Face(NamedTuple):
 class Scene:
     """Draws a ``BladeSolid`` on a canvas."""
 
-    def __init__(self, config: BladeConfig) -> None:
-        self.solid = BladeSolid(config)
-        length = config.beam.length
+    def __init__(self, blade: Blade) -> None:
+        self.solid = BladeSolid(blade)
+        beam = blade.config.beam
+        length = beam.length
         self._drop = np.array([0.0, -SENSOR_DROP * length, 0.0])
         self._rest = self.solid.pose(np.zeros((3, len(self.solid.stations))))
-        section = build_beam(config).section
+        section = blade.beam.section
         self._edges = edges(section)
         hub = _hub(self._rest.walls[0], min(2.5 * float(np.ptp(section.vertices[:, 1])), HUB_LENGTH * length))
         self._corners = len(section.vertices)
         self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
-        middle = np.radians(config.beam.presetting_deg + 0.5 * config.beam.pretwist_deg)
+        middle = np.radians(beam.presetting_deg + 0.5 * beam.pretwist_deg)
         side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])  # look at the side that the top wall is turned to
         self._light = side * LIGHT / np.linalg.norm(LIGHT)
         tip = [self._rest.walls[-1] + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]

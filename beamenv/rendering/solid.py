@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_beam, build_plant
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.build import Blade
 from beamenv.blade.shape import body, patch, quadrilaterals
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
+from beamenv.plant.plant import Plant
 from beamenv.plant.reduction import REFERENCE_LOAD
 from beamenv.scenarios.load_cases import static_deflection
 
@@ -23,9 +23,8 @@ SHOWN_DEFLECTION = 0.075
 greatest load of the default scenario, with its overshoot, then reaches three times as far."""
 
 
-def reference_deflection(config: BladeConfig) -> float:
+def reference_deflection(plant: Plant) -> float:
     """Static tip deflection, m, under the reference load in lag or in flap, whichever is larger."""
-    plant = build_plant(config)
     tip = plant.tip_displacement @ static_deflection(plant, np.diag([REFERENCE_LOAD] * 2)).T
     return float(np.linalg.norm(tip, axis=0).max())
 
@@ -55,9 +54,9 @@ class BladeSolid:
     ``stations`` (m from the root), of which ``even`` indexes evenly spaced ones.
     """
 
-    def __init__(self, config: BladeConfig) -> None:
-        beam, patches = build_beam(config), config.patches
-        self.reference_deflection = reference_deflection(config)
+    def __init__(self, blade: Blade) -> None:
+        beam, patches = blade.beam, blade.config.patches
+        self.reference_deflection = reference_deflection(blade.plant)
         self.magnification = magnification(beam.length, self.reference_deflection)
         starts = [patches.actuator_positions(beam.length), patches.sensor_positions(beam.length)]
         spans = [np.array(start)[:, None] + patches.length * np.array([0.0, 1.0]) for start in starts]

@@ -13,7 +13,7 @@ from gymnasium.utils.env_checker import check_env
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, blade_config, build_plant
-from beamenv.blade.build import displacement_operator
+from beamenv.blade.build import Blade, displacement_operator
 from beamenv.blade.shape import sides
 from beamenv.scenarios.load_cases import static_deflection
 
@@ -97,7 +97,7 @@ def test_sensors_are_orange_at_positive_and_violet_at_negative_output():
 
 def test_the_drawn_tip_moves_by_the_magnified_tip_displacement():
     config = blade_config()
-    plant, solid = build_plant(config), BladeSolid(config)
+    plant, solid = build_plant(config), BladeSolid(Blade(config))
     state = static_deflection(plant, [3.0, 30.0])
     operator = displacement_operator(config, solid.stations)
     rest, bent = (solid.pose(operator @ each).walls.mean(axis=1) for each in (0.0 * state, state))
@@ -120,7 +120,7 @@ def test_the_shape_of_every_plant_of_a_bank_ends_at_its_tip_displacement(preset)
 
 
 def test_a_twist_turns_the_section_about_its_axis_by_the_magnified_angle():
-    solid = BladeSolid(blade_config(overrides={"beam": {"pretwist_deg": 0.0}}))
+    solid = BladeSolid(Blade(blade_config(overrides={"beam": {"pretwist_deg": 0.0}})))
     twist = np.zeros((3, len(solid.stations)))
     twist[2, -1] = 0.3 / solid.magnification
     corner, turned = (solid.pose(each).walls[-1, 1, :2] for each in (0.0 * twist, twist))
@@ -129,7 +129,7 @@ def test_a_twist_turns_the_section_about_its_axis_by_the_magnified_angle():
 
 def test_the_solid_has_the_blade_s_pretwist_taper_and_outer_dimensions():
     config = blade_config(overrides={"beam": {"taper": 2.0}})
-    beam, solid = config.beam, BladeSolid(config)
+    beam, solid = config.beam, BladeSolid(Blade(config))
     walls = solid.pose(np.zeros((3, len(solid.stations)))).walls
     chord = walls[:, 1] - walls[:, 2]
     assert np.linalg.norm(chord[0]) == pytest.approx(beam.width + beam.thickness)
@@ -139,7 +139,7 @@ def test_the_solid_has_the_blade_s_pretwist_taper_and_outer_dimensions():
 
 @pytest.mark.parametrize("preset", sorted(beamenv.PRESETS))
 def test_the_reference_load_bends_the_drawn_blade_by_a_set_share_of_its_length_or_a_little_less(preset):
-    solid = BladeSolid(blade_config(preset))
+    solid = BladeSolid(Blade(blade_config(preset)))
     share = solid.magnification * solid.reference_deflection / blade_config(preset).beam.length
     assert 0.5 * SHOWN_DEFLECTION < share <= SHOWN_DEFLECTION
 
@@ -165,7 +165,7 @@ def test_three_faces_of_a_box_are_seen_from_above_beside_and_before_it():
 
 @pytest.mark.parametrize("preset", sorted(beamenv.PRESETS))
 def test_every_actuator_and_sensor_of_every_preset_is_in_the_scene(preset):
-    scene = Scene(blade_config(preset))
+    scene = Scene(Blade(blade_config(preset)))
     for patches in (scene._rest.actuators, scene._rest.sensors[:, ::-1] + scene._drop):
         corners, _ = scene._camera.project(patches)
         assert faces_camera(corners).all()

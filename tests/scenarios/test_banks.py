@@ -8,7 +8,7 @@ import pytest
 from baselines import lqg
 from baselines.analysis.stationary import closed_loop_poles
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
-from beamenv.blade.build import build_plant, changed_blade
+from beamenv.blade.build import Blade, build_plant, changed_blade
 from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import normalised
 from beamenv.scenarios.load_cases import static_deflection
@@ -24,7 +24,7 @@ CONFIG = blade_config()
 @pytest.mark.parametrize("name", ["off-speed", "off-model"])
 def test_a_plant_of_a_bank_is_that_of_its_configuration(name):
     variation = replace(SCENARIOS[name].plants, bank=6)
-    bank = build_bank(CONFIG, CONFIG, variation, 1000)
+    bank = build_bank(Blade(CONFIG), Blade(CONFIG), variation, 1000)
     assert len(bank) == 6
     ranged = replace(CONFIG, sensor_full_scale=float(build_plant(CONFIG).sensor_full_scale[0]))
     for k, row in enumerate(varied(variation, CONFIG)):
@@ -73,7 +73,7 @@ def test_every_stratum_of_the_latin_hypercube_is_hit_once():
 
 
 def test_a_bank_of_what_does_not_vary_is_one_plant():
-    bank = build_bank(CONFIG, CONFIG, PlantVariation(), 1000)
+    bank = build_bank(Blade(CONFIG), Blade(CONFIG), PlantVariation(), 1000)
     assert len(bank) == 1
     np.testing.assert_array_equal(bank.operators.fused, Operators.from_plant(normalised(build_plant(CONFIG))).fused)
     np.testing.assert_allclose(bank.to_design[0], np.eye(22), atol=1e-9)  # its own state

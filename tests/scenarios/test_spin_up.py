@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev
 from scipy.integrate import solve_ivp
 
 from beamenv import RotatingBeamEnv
-from beamenv.blade.build import build_beam
+from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
 from beamenv.simulation.plants.spin_up import Cycloid, RunUp
 
@@ -24,7 +24,7 @@ QUIET = {
 
 @pytest.fixture(scope="module")
 def run_up():
-    return RunUp.of(CONFIG, COURSE)
+    return RunUp.of(Blade(CONFIG), COURSE)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def test_the_cost_is_the_integral_of_the_time_varying_energy(run_up, integrated,
 @pytest.mark.parametrize("speed", [100.0, 300.0])
 def test_eleven_modes_of_200_rad_s_serve_at_other_speeds(run_up, speed):
     """Beside the whole model the first six frequencies are 0.16 % too high at most, all eleven 0.62 % (the fifth at 300 rad/s)."""
-    r, beam = len(run_up.elastic), build_beam(CONFIG)
+    r, beam = len(run_up.elastic), Blade(CONFIG).beam
     stiffness, rate = run_up.elastic + speed**2 * run_up.spin, speed * run_up.gyroscopic
     plain = np.sqrt(np.linalg.eigvalsh(stiffness)) / beam.natural_frequencies(speed=speed, count=r, gyroscopic=False) - 1.0
     assert plain.min() > -1e-9  # Rayleigh and Ritz: never below

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
 from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.simulation.kernel import advance
@@ -34,7 +35,7 @@ def memory():
 
 def test_a_plant_of_its_own_for_every_blade():
     config = blade_config()
-    bank = build_bank(config, config, replace(SCENARIOS["off-speed"].plants, bank=4), 100)
+    bank = build_bank(Blade(config), Blade(config), replace(SCENARIOS["off-speed"].plants, bank=4), 100)
     operators = bank.operators.pick(np.array([0, 3, 1, 1, 2, 0]))
     z = RNG.normal(size=(BLADES, 28))
     ours, theirs = advance(operators, z), advance(operators.convert(tensor), leaf := tensor(z).requires_grad_())

@@ -13,10 +13,10 @@ import beamenv
 from baselines import evaluate, lqg
 from beamenv.plant.fingerprint import fingerprint
 from train.benchmark import benchmark
-from train.benchmark.entrants.entrants import agents
+from train.benchmark.listed import agents
 from train.benchmark.targets import findings
-from train.controllers import contenders
-from train.controllers.contenders import contender, discover
+from train.controllers import named as named_controllers
+from train.controllers.named import discover, named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 from train.shared.held_out import HELD_OUT
@@ -175,13 +175,13 @@ def test_a_scenario_file_is_a_scenario_of_its_name(tmp_path):
     assert benchmark(**{**SMALL, "scenarios": [str(path)]}).scenarios == ("gusty",)
 
 
-def test_a_file_in_the_folder_is_a_contender(tmp_path, monkeypatch):
+def test_a_file_in_the_folder_is_a_controller(tmp_path, monkeypatch):
     (tmp_path / "half_lqg.py").write_text(
         "from dataclasses import replace\nfrom baselines import lqg\nKIND = 'fixed'\n\n"
         "def build(design):\n    law = lqg(design.plant)\n    return replace(law, state_gain=0.5 * law.state_gain)\n"
     )
-    monkeypatch.setattr(contenders, "__path__", [*contenders.__path__, str(tmp_path)])
-    assert contender("half-lqg").kind == "fixed"
+    monkeypatch.setattr(named_controllers, "__path__", [*named_controllers.__path__, str(tmp_path)])
+    assert named("half-lqg").kind == "fixed"
     table = benchmark(**{**SMALL, "scenarios": ["nominal"], "controllers": ["half-lqg"]})
     assert table.row("nominal", "half-lqg").estimates["difference_to_lqg"].value != 0.0
 
@@ -189,10 +189,10 @@ def test_a_file_in_the_folder_is_a_contender(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("content", "sentence"), [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "KIND = 'fuzzy'")]
 )
-def test_a_contender_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
+def test_a_controller_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
     (tmp_path / "wrong.py").write_text(content)
-    monkeypatch.setattr(contenders, "__path__", [str(tmp_path)])
-    sys.modules.pop("train.controllers.contenders.wrong", None)
+    monkeypatch.setattr(named_controllers, "__path__", [str(tmp_path)])
+    sys.modules.pop("train.controllers.named.wrong", None)
     with pytest.raises(ValueError, match=sentence):
         discover()
 
@@ -218,7 +218,7 @@ def test_a_controller_is_built_without_a_look_at_the_true_blade(name):
     assert tasks[0].plant.A.tobytes() != tasks[1].plant.A.tobytes()
     actions = []
     for task in tasks:
-        law = contender(name).build(type(task).design.fget(Unseen(task)))
+        law = named(name).build(type(task).design.fget(Unseen(task)))
         seen = {"state": np.full((2, len(task.design_plant.A)), 1e-3), "observation": np.full((2, 4), 0.1)}
         seen["observation and speed"] = np.hstack([seen["observation"], np.full((2, 1), 190.0)])
         actions.append(law.predict(seen[law.observes])[0])

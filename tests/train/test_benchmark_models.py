@@ -10,7 +10,7 @@ from baselines import evaluate
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from train.benchmark import benchmark
-from train.benchmark.entrants.models import fitted, load_model
+from train.controllers.models import fitted, load_model
 from train.shared.held_out import HELD_OUT
 
 SHORT = {"duration": 0.02}

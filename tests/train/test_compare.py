@@ -12,7 +12,7 @@ import train.comparison.compare
 import train.learning.job
 from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve
 from train.comparison.page import shown_pair
-from train.controllers.contenders import contender
+from train.controllers.named import named
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.session import follow
@@ -77,7 +77,7 @@ def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished
 def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
     _, evaluations, _ = finished
     design = gymnasium.make(beamenv.ENV_ID).unwrapped.task.design
-    laws = {name: contender(name).build(design) for name in CLASSICAL}
+    laws = {name: named(name).build(design) for name in CLASSICAL}
     left, right = shown_pair(evaluations[: len(laws)], laws)
     assert left is laws["none"]
     assert right.observes == "observation" and right is not left
@@ -177,4 +177,4 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 
 def test_unknown_names_are_refused():
     with pytest.raises(ValueError, match="controller = 'pid' must be one of .*lqg, lqg-load"):
-        contender("pid")
+        named("pid")

@@ -41,7 +41,7 @@ def test_a_module_that_is_not_where_it_is_named_is_told(copied, change):
         ("train/controllers/policies.py", True, False),
         ("train/controllers/lstm_policy.py", True, False),
         ("train/benchmark/cells.py", True, False),
-        ("train/benchmark/entrants/models.py", True, False),
+        ("train/controllers/models.py", True, False),
         ("baselines/laws/lqg.py", True, True),
         ("beamenv/simulation/blades.py", True, True),
         ("train/reproduce/runner.py", False, True),

@@ -10,7 +10,7 @@ from typing import Any
 import beamenv
 from beamenv.scenarios.scenario import Scenario, scenario
 from train.benchmark.cells import Cell, Job, Setting, read_cell, write_cell
-from train.benchmark.entrants.entrants import Entrant, entrants
+from train.benchmark.listed import ListedController, listed_controllers
 from train.benchmark.runner import run
 from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
@@ -42,7 +42,7 @@ def benchmark(
       readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
     - ``scenarios``: names or TOML files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
       the others go on.
-    - ``controllers``: names of contenders and shipped agents, all of them if None. No control and LQG are always among them.
+    - ``controllers``: names of controllers and shipped agents, all of them if None. No control and LQG are always among them.
     - ``seeds``: held-out episodes, equal for every controller.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
@@ -57,17 +57,17 @@ def benchmark(
         raise ValueError(f"seeds = {seeds!r} must be a whole number, at least 2: intervals need more than one episode.")
     if folder is not None:
         check_folder(folder)
-    entered = entrants(controllers, own or {}, models, trusted, trained)
+    listed = listed_controllers(controllers, own or {}, models, trusted, trained)
     known, refused = read_scenarios(scenarios)
     settings = [Setting(name, each, seeds, json.dumps(dict(environment or {}), sort_keys=True)) for name, each in known.items()]
     queue = [
         Job(setting, each.name, name, source)
         for setting in settings
-        for each in entered
+        for each in listed
         for name, source in each.runs(setting.name).items()
     ]
     cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
-    table = tabulate(cells, entered, refused, configuration(settings, entered))
+    table = tabulate(cells, listed, refused, configuration(settings, listed))
     if folder is not None:
         write_all(folder, table)
     return table
@@ -108,14 +108,14 @@ def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progr
     return [kept[job] for job in queue]
 
 
-def configuration(settings: Sequence[Setting], entered: Sequence[Entrant]) -> dict[str, Any]:
+def configuration(settings: Sequence[Setting], listed: Sequence[ListedController]) -> dict[str, Any]:
     """How the table was made, as JSON can hold it."""
     seeds = held_out(settings[0].seeds)
     return {
         "seeds": [seeds[0], seeds[-1]],
         "environment": json.loads(settings[0].arguments),
         "scenarios": {setting.name: setting.scenario.to_dict() for setting in settings},
-        "controllers": {each.name: each.kind for each in entered},
+        "controllers": {each.name: each.kind for each in listed},
         "versions": versions(),
     }
 

@@ -17,7 +17,7 @@ import beamenv
 from baselines import EpisodeMetrics, Episodes, no_control, roll_out
 from baselines.evaluation.metrics import finite, measure, settling_band
 from beamenv.scenarios.scenario import Scenario
-from train.benchmark.entrants.sources import Source
+from train.controllers.sources import Source
 from train.shared.digests import CONTROLLERS, digest, source_digest
 from train.shared.files import write_json
 from train.shared.held_out import held_out
@@ -25,7 +25,7 @@ from train.shared.versions import installed_version
 
 Array = NDArray[np.float64]
 
-DEPENDS_ON = (*CONTROLLERS, __name__, "train.benchmark.entrants.models", "train.shared.held_out")
+DEPENDS_ON = (*CONTROLLERS, __name__, "train.controllers.models", "train.shared.held_out")
 """Modules that decide the numbers of a cell, besides the controller's own file."""
 
 SERIES = tuple(each.name for each in fields(EpisodeMetrics))

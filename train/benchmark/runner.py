@@ -15,7 +15,7 @@ from typing import Any
 import cloudpickle
 
 from train.benchmark.cells import Cell, Job, measured
-from train.benchmark.entrants.sources import Source
+from train.controllers.sources import Source
 from train.shared.threads import ONE_THREAD
 
 

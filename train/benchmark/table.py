@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from baselines import Estimate
 from train.benchmark import statistics
 from train.benchmark.cells import SERIES, Cell
-from train.benchmark.entrants.entrants import ORDER, Entrant
+from train.benchmark.listed import ORDER, ListedController
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ class BenchmarkTable:
     """Everything a benchmark has found out."""
 
     rows: tuple[Row, ...]
-    """Scenario by scenario; within one by kind, then as they entered."""
+    """Scenario by scenario; within one by kind, then as they listed."""
     refused: Mapping[str, str]
     """Scenarios that could not be read, and why."""
     configuration: Mapping[str, Any]
@@ -92,14 +92,14 @@ class BenchmarkTable:
 
 
 def tabulate(
-    cells: Sequence[Cell], entered: Sequence[Entrant], refused: Mapping[str, str], configuration: Mapping[str, Any]
+    cells: Sequence[Cell], listed: Sequence[ListedController], refused: Mapping[str, str], configuration: Mapping[str, Any]
 ) -> BenchmarkTable:
     """The table of all cells."""
     rows = []
     for scenario in dict.fromkeys(cell.scenario for cell in cells):
-        found = {each.name: [c for c in cells if (c.scenario, c.controller) == (scenario, each.name)] for each in entered}
+        found = {each.name: [c for c in cells if (c.scenario, c.controller) == (scenario, each.name)] for each in listed}
         rivals = costs(found.get(RIVAL, []))
-        rows += [row(found[each.name], each.kind, rivals) for each in entered if found[each.name]]
+        rows += [row(found[each.name], each.kind, rivals) for each in listed if found[each.name]]
     return BenchmarkTable(tuple(rows), refused, configuration)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from baselines import Estimate
 from train.benchmark import statistics
-from train.benchmark.entrants.entrants import GENERALIST
+from train.benchmark.listed import GENERALIST
 from train.benchmark.table import RIVAL, BenchmarkTable, Row
 
 NOMINAL = "nominal"

@@ -19,7 +19,7 @@ from beamenv.blade.files import to_dict
 from beamenv.plant.plant import Plant
 from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
-from train.controllers.contenders import contender
+from train.controllers.named import named
 from train.controllers.policy_files import load_policy
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
@@ -33,7 +33,7 @@ from train.shared.held_out import HELD_OUT, held_out
 Array = NDArray[np.float64]
 
 CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
-"""The contenders that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
+"""The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
         plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)
         agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
-        laws: dict[str, Any] = {name: contender(name).build(envs.unwrapped.task.design) for name in CLASSICAL}
+        laws: dict[str, Any] = {name: named(name).build(envs.unwrapped.task.design) for name in CLASSICAL}
         evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
     finally:
         envs.close()

@@ -1,1 +1,1 @@
-"""A controller by its name: contenders, trained policies, those that ship."""
+"""A controller by its name: one file each, trained policies, models, and those that ship."""

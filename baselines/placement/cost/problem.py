@@ -21,12 +21,13 @@ from baselines.placement.model.equations import (
     trace_slopes,
 )
 from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes, layout_matrices, matrix_slopes
-from baselines.placement.model.reduced_layouts import ReducedLayouts, Reduction, reduce_layouts
+from baselines.placement.model.reduced_layouts import Reduction, reduce_layouts
 from baselines.placement.model.reduced_slopes import ReducedSlopes, reduce_with_slopes
 from beamenv.blade.bounds import Bounds
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
+from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
 Matrices = TypeVar("Matrices", LayoutMatrices, MatrixSlopes)
@@ -94,19 +95,19 @@ class PlacementProblem:
         own = slice(None, actuators.shape[1]) if self.side == "actuators" else slice(actuators.shape[1], None)
         return float(np.trace(solution)), by_patch[own]
 
-    def reduced(self, positions: Array) -> ReducedLayouts:
+    def reduced(self, positions: Array) -> ReducedBlades:
         """Layouts (N, count), m from the root, as reduced blades."""
         actuators, sensors = self._layouts(np.atleast_2d(positions))
         matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, self.config.patches.passive)
         return reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
 
-    def equation(self, reduced: ReducedLayouts) -> Equation:
+    def equation(self, reduced: ReducedBlades) -> Equation:
         """The regulator's or the filter's equation of reduced layouts."""
         if self.side == "actuators":
             return regulator_equation(reduced)
         return filter_equation(reduced, self.load_noise, self.sensor_noise)
 
-    def _equation_slopes(self, reduced: ReducedLayouts, slopes: ReducedSlopes) -> Equation:
+    def _equation_slopes(self, reduced: ReducedBlades, slopes: ReducedSlopes) -> Equation:
         if self.side == "actuators":
             return regulator_slopes(reduced, slopes)
         return filter_slopes(reduced, slopes, self.load_noise, self.sensor_noise)

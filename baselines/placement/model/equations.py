@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_continuous_lyapunov
 
-from baselines.placement.model.reduced_layouts import ReducedLayouts
 from baselines.placement.model.reduced_slopes import ReducedSlopes
+from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
 
@@ -22,26 +22,26 @@ class Equation(NamedTuple):
     Q: Array
 
 
-def regulator_equation(blades: ReducedLayouts) -> Equation:
+def regulator_equation(blades: ReducedBlades) -> Equation:
     """PA + AᵀP + ½I − PBR⁻¹BᵀP = 0 (thesis Eq. 5.11): Q is the vibration energy."""
     A, B = blades.dynamics, blades.input
     return Equation(A, B @ np.linalg.solve(blades.input_weight, transposed(B)), 0.5 * np.eye(A.shape[-1])[None])
 
 
-def regulator_slopes(blades: ReducedLayouts, slopes: ReducedSlopes) -> Equation:
+def regulator_slopes(blades: ReducedBlades, slopes: ReducedSlopes) -> Equation:
     """Derivatives of one blade's regulator equation."""
     gain = np.linalg.solve(blades.input_weight[0], blades.input[0].T)
     half = slopes.input @ gain
     return Equation(slopes.dynamics, half + transposed(half) - gain.T @ slopes.input_weight @ gain, np.zeros((1, 1, 1)))
 
 
-def filter_equation(blades: ReducedLayouts, load_noise: Array, sensor_noise: float) -> Equation:
+def filter_equation(blades: ReducedBlades, load_noise: Array, sensor_noise: float) -> Equation:
     """AS + SAᵀ + EWEᵀ − SCᵀV⁻¹CS = 0 (thesis Eq. 5.21 with the transpose it lacks): ``load_noise`` W (2, 2), ``sensor_noise`` V."""
     E, C = blades.disturbance_input, blades.output
     return Equation(transposed(blades.dynamics), transposed(C) @ C / sensor_noise, E @ load_noise @ transposed(E))
 
 
-def filter_slopes(blades: ReducedLayouts, slopes: ReducedSlopes, load_noise: Array, sensor_noise: float) -> Equation:
+def filter_slopes(blades: ReducedBlades, slopes: ReducedSlopes, load_noise: Array, sensor_noise: float) -> Equation:
     """Derivatives of one blade's filter equation."""
     information = transposed(slopes.output) @ blades.output[0] / sensor_noise
     loads = slopes.disturbance_input @ load_noise @ blades.disturbance_input[0].T

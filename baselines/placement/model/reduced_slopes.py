@@ -10,21 +10,15 @@ from scipy.linalg import eigh
 
 from baselines.placement.model.contributions import Contributions
 from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes
-from baselines.placement.model.reduced_layouts import (
-    ReducedLayouts,
-    Reduction,
-    first_order,
-    in_modes,
-    on_velocity_rows,
-    regularised,
-)
+from baselines.placement.model.reduced_layouts import Reduction, layouts_in_modes
+from beamenv.plant.reduction import ReducedBlades, acting_on_velocities, first_order, on_velocities, regularised
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReducedSlopes:
-    """Derivatives by the p patches' positions, per m, of the fields of the same name of ``ReducedLayouts``.
+    """Derivatives by the p patches' positions, per m, of the fields of the same name of ``ReducedBlades``.
 
     The kept modes turn among themselves as the layout changes; that turn, which no trace sees and which is without bound where
     two frequencies meet, is left out: the coordinates stay mass-normalised and the frequency matrix symmetric instead of diagonal.
@@ -44,14 +38,14 @@ class ReducedSlopes:
 
 def reduce_with_slopes(
     parts: Contributions, matrices: LayoutMatrices, slopes: MatrixSlopes, reduction: Reduction
-) -> tuple[ReducedLayouts, ReducedSlopes]:
+) -> tuple[ReducedBlades, ReducedSlopes]:
     """One layout, reduced, and its derivatives in the same coordinates."""
     stiffness = matrices.stiffness[0]
     inverse_squares, vectors = eigh(matrices.mass[0], stiffness)
     omega = inverse_squares[::-1] ** -0.5
     shapes, kept = vectors[:, ::-1] * omega, slice(reduction.modes)
     compliance = np.linalg.inv(stiffness)
-    reduced = in_modes(parts, matrices, compliance, omega[None, kept], shapes[None, :, kept], reduction)
+    reduced = layouts_in_modes(parts, matrices, compliance, omega[None, kept], shapes[None, :, kept], reduction)
     return reduced, reduced_slopes(parts, matrices, slopes, compliance, omega, shapes, reduction)
 
 
@@ -76,10 +70,10 @@ def reduced_slopes(
     output = matrices.charges[0] @ shapes @ turn + slopes.charges @ kept
     return ReducedSlopes(
         dynamics=first_order(frequency, damping),
-        input=on_velocity_rows(across @ (shapes.T @ forces) + kept.T @ slopes.forces),
+        input=acting_on_velocities(across @ (shapes.T @ forces) + kept.T @ slopes.forces),
         input_weight=reduction.effort_weight * weight_slopes(compliance @ forces, slopes),
-        output=on_velocity_rows(output.swapaxes(1, 2)).swapaxes(1, 2),
-        disturbance_input=on_velocity_rows(across @ (shapes.T @ parts.line_load)),
+        output=on_velocities(output),
+        disturbance_input=acting_on_velocities(across @ (shapes.T @ parts.line_load)),
     )
 
 

@@ -2,47 +2,45 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import lru_cache
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_beam, build_plant, changed_blade, plant_of
+from beamenv.blade.build import Blade, changed_blade
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
 from beamenv.simulation.plants.spin_up import spin_up_bank
-from beamenv.structure import RotatingBeam
 
 Array = NDArray[np.float64]
 
 
-def build_bank(config: BladeConfig, design: BladeConfig, variation: PlantVariation, steps: int) -> Bank:
-    """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals; built once and cached."""
+def build_bank(blade: Blade, design: Blade, variation: PlantVariation, steps: int) -> Bank:
+    """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals."""
     if variation.spin_up is not None:
-        return spin_up_bank(config, design, variation.spin_up, steps)
-    return drawn_bank(config, design, variation)
+        return spin_up_bank(blade, design, variation.spin_up, steps)
+    return drawn_bank(blade, design, variation)
 
 
-@lru_cache(maxsize=16)
-def drawn_bank(config: BladeConfig, design: BladeConfig, variation: PlantVariation) -> Bank:
+def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
     """The bank that each episode draws its plant from; of one plant where nothing varies."""
-    plant = build_plant(config)
     if not variation.varies:
-        return Bank.single(plant, config.speed, seen_from(config, build_beam(config), design))
-    ranged = replace(config, sensor_full_scale=float(plant.sensor_full_scale[0]))
-    configs = [changed_blade(ranged, *row) for row in varied(variation, config)]
-    built: dict[BeamConfig, RotatingBeam] = {}
-    plants, views = [], []
-    for each in configs:
-        if each.beam not in built:
-            built[each.beam] = each.beam.build(each.patches)
-        plants.append(plant_of(each, built[each.beam]))
-        views.append(seen_from(each, built[each.beam], design))
+        return Bank.single(blade.plant, blade.config.speed, seen_from(blade, design))
+    blades = list(varied_blades(blade, variation))
+    views = [seen_from(each, design) for each in blades]
     to_design = None if any(view is None for view in views) else np.stack(views)  # type: ignore[arg-type]
-    return Bank.gather(plant, plants, np.array([each.speed for each in configs]), to_design)
+    return Bank.gather(blade.plant, [each.plant for each in blades], np.array([each.config.speed for each in blades]), to_design)
+
+
+def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:
+    """The blades of a bank, behind the data acquisition of the one they depart from; those of one structure share it."""
+    ranged = blade.with_fixed_range()
+    built: dict[BeamConfig, Blade] = {}
+    for row in varied(variation, blade.config):
+        config = changed_blade(ranged.config, *row)
+        yield built.setdefault(config.beam, ranged.changed(config)).changed(config)
 
 
 def varied(variation: PlantVariation, config: BladeConfig) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.coordinates import seen_from
@@ -41,18 +41,19 @@ def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike) -> Sp
     grid = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
     if grid.ndim != 1 or not grid.size or not np.isfinite(grid).all() or np.any(np.diff(grid) <= 0.0):
         raise ValueError(f"speeds = {speeds!r} must be one or more numbers in rad/s, each greater than the one before")
-    full_scale = float(build_plant(config).sensor_full_scale[0])
-    family = [replace(config, speed=float(speed), sensor_full_scale=full_scale) for speed in grid]
-    return SpeedFamily(grid, tuple(map(build_plant, family)), np.stack([_from_common(config, each) for each in family]))
+    own = Blade(config).with_fixed_range()
+    family = [own.changed(replace(own.config, speed=float(speed))) for speed in grid]
+    return SpeedFamily(grid, tuple(each.plant for each in family), np.stack([_from_common(own, each) for each in family]))
 
 
-def _from_common(config: BladeConfig, other: BladeConfig) -> Array:
-    seen = seen_from(config, build_beam(config), other)
+def _from_common(own: Blade, other: Blade) -> Array:
+    seen = seen_from(own, other)
     assert seen is not None  # the blade is the same
-    least = np.linalg.svd(seen[config.modes :, config.modes :], compute_uv=False).min()
+    modes = own.config.modes
+    least = np.linalg.svd(seen[modes:, modes:], compute_uv=False).min()
     if least < _LEAST_IN_COMMON:
         raise ValueError(
-            f"speeds: the {config.modes} modes at {other.speed:g} rad/s are not those at {config.speed:g} rad/s (principal cosine "
-            f"{least:.2g}); retain another number of modes or stay nearer"
+            f"speeds: the {modes} modes at {other.config.speed:g} rad/s are not those at {own.config.speed:g} rad/s (principal "
+            f"cosine {least:.2g}); retain another number of modes or stay nearer"
         )
     return seen.T

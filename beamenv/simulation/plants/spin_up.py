@@ -22,16 +22,13 @@ over the interval; coordinates are energy coordinates at every instant.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_beam, build_plant
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.build import Blade
 from beamenv.plant.plant import Plant
-from beamenv.plant.reduction import truncate
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import coordinates
 from beamenv.structure.base_motion import base_loads
@@ -75,11 +72,10 @@ class RunUp:
     euler: Array
 
     @classmethod
-    def of(cls, config: BladeConfig, course: Cycloid) -> RunUp:
+    def of(cls, blade: Blade, course: Cycloid) -> RunUp:
         """In the modes of the configured speed, with their damping."""
-        beam = build_beam(config)
-        modal, matrices, loads = truncate(beam, config.speed, config.modes), beam.matrices, base_loads(beam)
-        shapes = modal.mode_shapes
+        config, matrices, loads = blade.config, blade.beam.matrices, base_loads(blade.beam)
+        shapes = blade.modal.mode_shapes
 
         def reduced(matrix: Array) -> Array:
             return np.asarray(shapes.T @ matrix @ shapes)
@@ -89,7 +85,7 @@ class RunUp:
             elastic=reduced(matrices.elastic_stiffness),
             spin=reduced(matrices.spin_stiffness),
             gyroscopic=reduced(matrices.gyroscopic) if config.gyroscopic else np.zeros((config.modes, config.modes)),
-            damping=np.diag(2.0 * config.damping_ratio * modal.natural_frequencies),
+            damping=np.diag(2.0 * config.damping_ratio * blade.modal.natural_frequencies),
             centrifugal=shapes.T @ loads.centrifugal,
             euler=shapes.T @ loads.euler,
         )
@@ -139,14 +135,13 @@ class RunUp:
         return at_rest - displaced, -np.asarray(moving)
 
 
-@lru_cache(maxsize=4)
-def spin_up_bank(config: BladeConfig, design: BladeConfig, speeds: tuple[float, float], steps: int) -> Bank:
-    """One plant for each of ``steps`` control intervals, built once and cached; ``ValueError`` past the critical speed."""
-    critical = build_beam(config).critical_speed
+def spin_up_bank(blade: Blade, design: Blade, speeds: tuple[float, float], steps: int) -> Bank:
+    """One plant for each of ``steps`` control intervals; ``ValueError`` past the critical speed."""
+    critical = blade.beam.critical_speed
     if max(speeds) >= critical:
         raise ValueError(f"scenario: plants.spin_up is {list(speeds)}, but must be below the critical speed, {critical:.6g} rad/s.")
-    reference, interval = build_plant(config), config.control_interval
-    run_up = RunUp.of(config, Cycloid(*speeds, steps * interval))
+    reference, interval = blade.plant, blade.config.control_interval
+    run_up = RunUp.of(blade, Cycloid(*speeds, steps * interval))
     edges: Array = interval * np.arange(steps + 1, dtype=np.float64)
     middles: Array = edges[:-1] + 0.5 * interval
     roots = _root(run_up.stiffness(edges))  # K = U Uᵀ, x = [Uᵀη; η̇]
@@ -164,7 +159,7 @@ def spin_up_bank(config: BladeConfig, design: BladeConfig, speeds: tuple[float, 
         release=np.asarray(np.linalg.solve(incoming, bank.release.swapaxes(1, 2)), dtype=np.float64).swapaxes(1, 2),
         start=_initial_state(run_up, roots[0]),
         runs=True,
-        to_design=_views(config, design, roots[:-1]),
+        to_design=_views(blade, design, roots[:-1]),
     )
 
 
@@ -217,11 +212,9 @@ def _initial_state(run_up: RunUp, root: Array) -> Array:
     return np.concatenate([root.T @ displaced, moving])
 
 
-def _views(config: BladeConfig, design: BladeConfig, roots: Array) -> Array | None:
+def _views(blade: Blade, design: Blade, roots: Array) -> Array | None:
     """(K, n, d): states at the begin of each interval in the design blade's coordinates."""
-    beam, other = build_beam(config), build_beam(design)
-    if beam.space != other.space:
+    if blade.beam.space != design.beam.space:
         return None
-    shapes, modal = truncate(beam, config.speed, config.modes).mode_shapes, truncate(other, design.speed, design.modes)
-    frequencies = modal.natural_frequencies
-    return np.stack([coordinates(shapes @ np.linalg.inv(root).T, shapes, other, modal.mode_shapes, frequencies) for root in roots])
+    shapes = blade.modal.mode_shapes
+    return np.stack([coordinates(shapes @ np.linalg.inv(root).T, shapes, design) for root in roots])

@@ -17,7 +17,7 @@ INTRODUCTION = """\
 
 Every controller in every scenario on the same held-out episodes. Controllers are built from the design plant and agents are used
 as shipped; neither knows what a scenario does to the true blade. The scenarios are the files in `beamenv/scenarios/named/`, the
-controllers those in `train/controllers/contenders/`: a further file there adds a column or a row.
+controllers those in `train/controllers/named/`: a further file there adds a column or a row.
 """
 
 

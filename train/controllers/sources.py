@@ -1,4 +1,4 @@
-"""Where a controller comes from: a contender, the folder of a trained agent, a model file, or an object the caller gives."""
+"""Where a controller comes from: a file of `named`, the folder of a trained agent, a model file, or an object the caller gives."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any, Protocol
 
 from baselines import Controller
 from beamenv import Design
-from train.benchmark.entrants.models import fitted, load_model
-from train.controllers.contenders import Contender
+from train.controllers.models import fitted, load_model
+from train.controllers.named import NamedController
 from train.controllers.policy_files import load_policy
 from train.shared.digests import digest
 
@@ -29,17 +29,17 @@ class Source(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Classical:
-    """A contender."""
+    """A controller with a name, designed afresh."""
 
-    contender: Contender
+    controller: NamedController
 
     def build(self, design: Design) -> Controller:
         """From the design plant."""
-        return self.contender.build(design)
+        return self.controller.build(design)
 
     def fingerprint(self) -> str:
         """Of its file."""
-        return digest(inspect.getsource(inspect.getmodule(self.contender.build) or self.contender.build).encode())
+        return digest(inspect.getsource(inspect.getmodule(self.controller.build) or self.controller.build).encode())
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Who takes part: contenders, trained agents, and what the caller brings along."""
+"""Which controllers the table lists: those with a name, trained agents, and what the caller brings along."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from baselines.design.controller import as_controller
-from train.benchmark.entrants.models import UNTRUSTED
-from train.benchmark.entrants.sources import Classical, Given, ModelFile, Source, Trained
-from train.controllers.contenders import KINDS, discover
+from train.controllers.models import UNTRUSTED
+from train.controllers.named import KINDS, discover
 from train.controllers.shipped import FOLDER, shipped
+from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
@@ -24,7 +24,7 @@ INDISPENSABLE = ("none", "lqg")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Entrant:
+class ListedController:
     """A controller of the table, with its training runs if it has learned."""
 
     name: str
@@ -39,23 +39,23 @@ class Entrant:
         return self.everywhere or self.only_in.get(scenario, {})
 
 
-def entrants(
+def listed_controllers(
     controllers: Sequence[str] | None, own: Mapping[str, Any], models: Sequence[Path], trusted: bool, trained: Path = FOLDER
-) -> list[Entrant]:
-    """Everyone named, all contenders and shipped agents if ``controllers`` is None, and what the caller brings.
+) -> list[ListedController]:
+    """Everyone named, all controllers and shipped agents if ``controllers`` is None, and what the caller brings.
 
     No control and LQG are always among them. Raises ValueError for an unknown name, two of one name, an object without
     ``predict``, and models that nobody vouches for.
     """
     if models and not trusted:
         raise ValueError(UNTRUSTED)
-    classical = [Entrant(name, each.kind, {"": Classical(each)}) for name, each in discover().items()]
+    classical = [ListedController(name, each.kind, {"": Classical(each)}) for name, each in discover().items()]
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     if unknown := [name for name in names if name not in known]:
         raise ValueError(f"controller = {unknown[0]!r} must be one of {', '.join(known)}.")
-    brought = [Entrant(name, "own", {"": _given(name, each)}) for name, each in own.items()]
-    brought += [Entrant(path.stem, "own", {"": ModelFile(path)}) for path in models]
+    brought = [ListedController(name, "own", {"": _given(name, each)}) for name, each in own.items()]
+    brought += [ListedController(path.stem, "own", {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]
     if doubled := [each.name for index, each in enumerate(chosen) if each.name in {other.name for other in chosen[:index]}]:
         raise ValueError(f"controller {doubled[0]!r} is there twice: give yours another name.")
@@ -72,7 +72,7 @@ def _given(name: str, controller: Any) -> Given:
         ) from None
 
 
-def agents(folder: Path) -> list[Entrant]:
+def agents(folder: Path) -> list[ListedController]:
     """The trained agents in a folder: of each the generalist and the specialists, with all their training runs."""
     homes: dict[str, dict[str, dict[str, Source]]] = {}
     for each in shipped(folder):
@@ -80,7 +80,7 @@ def agents(folder: Path) -> list[Entrant]:
     found = []
     for agent, runs in homes.items():
         if general := runs.pop(GENERALIST, {}):
-            found.append(Entrant(f"{agent}-{GENERALIST}", "learned", general))
+            found.append(ListedController(f"{agent}-{GENERALIST}", "learned", general))
         if runs:
-            found.append(Entrant(f"{agent}-specialist", "learned", only_in=runs))
+            found.append(ListedController(f"{agent}-specialist", "learned", only_in=runs))
     return found

@@ -21,7 +21,7 @@ and those that see the true state, which no real blade offers: bounds, not rival
 
 
 @dataclass(frozen=True, slots=True)
-class Contender:
+class NamedController:
     """A controller by its short name. Raises ValueError for another kind than those in ``KINDS``."""
 
     name: str
@@ -33,20 +33,20 @@ class Contender:
             raise ValueError(f"KIND = {self.kind!r} of the controller {self.name!r} must be one of {', '.join(KINDS)}.")
 
 
-def discover() -> Mapping[str, Contender]:
-    """Every contender in the folder by its name, in alphabetical order; ``ValueError`` for a file that lacks what it must have."""
+def discover() -> Mapping[str, NamedController]:
+    """Every controller in the folder by its name, in alphabetical order; ``ValueError`` for a file that lacks what it must have."""
     found = {}
     for module in sorted(pkgutil.iter_modules(__path__), key=lambda each: each.name):
         name = module.name.replace("_", "-")
         content = import_module(f"{__name__}.{module.name}")
         if missing := [wanted for wanted in ("KIND", "build") if not hasattr(content, wanted)]:
             raise ValueError(f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND and build(design).")
-        found[name] = Contender(name, content.KIND, content.build)
+        found[name] = NamedController(name, content.KIND, content.build)
     return MappingProxyType(found)
 
 
-def contender(name: str) -> Contender:
-    """A contender by its short name; ``ValueError`` lists the known ones."""
+def named(name: str) -> NamedController:
+    """A controller by its short name; ``ValueError`` lists the known ones."""
     known = discover()
     if name not in known:
         raise ValueError(f"controller = {name!r} must be one of {', '.join(known)}, or the folder of a trained agent.")

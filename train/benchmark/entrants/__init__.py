@@ -1,1 +1,0 @@
-"""Who takes part, and where a controller comes from."""
