@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
 from baselines.design.controller import Array
@@ -25,7 +26,7 @@ def stationary_cost(plant: Plant, controller: LinearController) -> float:
     return float(np.sum(held.cost * second_moment) / held.interval)
 
 
-def closed_loop_poles(plant: Plant, controller: LinearController) -> Array:
+def closed_loop_poles(plant: Plant, controller: LinearController) -> NDArray[np.complex128]:
     """Poles of plant and controller together, as the continuous equivalents log(z)/Δt in rad/s (complex), slowest first.
 
     Poles of the sampled loop at z = 0 have no continuous equivalent and are left out. Raises ValueError for a law that is not

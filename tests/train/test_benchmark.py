@@ -154,7 +154,7 @@ def test_cells_that_failed_and_objects_are_measured_again(tmp_path):
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        ("[plants]\nspeeed_ratio = 1.0\n", "scenario has no field 'plants.speeed_ratio'"),
+        ("[plants]\nspeeed_ratio = 1.0\n", "scenario.plants has no field 'speeed_ratio'"),
         ("[acquisition]\ndropout = 1.5\n", "acquisition.dropout is 1.5, but must be a number from 0 to 0.99"),
         ("step = [", "cannot be read"),
     ],

@@ -7,12 +7,12 @@ import pytest
 import torch
 from torch import nn
 
-from train.learning.agents import task_of
 from train.learning.sb3.cloning import Cloning, Follower, clone
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.vec_env import BladeVecEnv
 from train.learning.through_plant.actors import ActorSettings, RecurrentActor
+from train.shared.task import task_of
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 BRIEF = Cloning(actions=60, samples=500, batch=64, gradient_steps=2)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from train.learning.agents import task_of
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining, TQCTraining
+from train.shared.task import task_of
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = OffPolicySettings(

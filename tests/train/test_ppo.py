@@ -9,10 +9,10 @@ import torch
 from gymnasium.vector import AutoresetMode
 
 import beamenv
-from train.learning.agents import task_of
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings, RecurrentPPOTraining
 from train.learning.sb3.vec_env import BladeVecEnv
+from train.shared.task import task_of
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = PPOSettings(blades=8, history=3, rollout=4, batch=32, epochs=1, units=16)

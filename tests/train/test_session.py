@@ -13,11 +13,11 @@ import torch
 import train.learning.job
 from beamenv.plant.fingerprint import fingerprint
 from train.controllers.policy_files import load_policy
-from train.learning.agents import task_of
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.job import Job, run
 from train.learning.recipe import parsed
 from train.learning.session import Budget, follow
+from train.shared.task import task_of
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"

@@ -8,7 +8,7 @@ import pytest
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 from train.controllers.shipped import FOLDER, find_shipped, load_shipped, shipped
-from train.learning.agents import task_of
+from train.shared.task import task_of
 
 ONE = np.ones(4, np.float32)
 POLICY = HistoryPolicy(

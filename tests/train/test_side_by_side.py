@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from beamenv.simulation.blades import reward_scale
-from train.learning.agents import task_of
 from train.learning.sb3.sb3 import training_envs
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import REWARD_UNIT, BladeVecEnv
 from train.learning.training import uncontrolled_cost
+from train.shared.task import task_of
 
 SCENARIOS = ("nominal", "overload", "spillover")
 

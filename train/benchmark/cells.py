@@ -92,7 +92,7 @@ class Opened:
 @lru_cache(maxsize=1)
 def opened(setting: Setting) -> Opened:
     """Made once for all controllers that follow one another in a process."""
-    envs = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **json.loads(setting.arguments))
+    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **json.loads(setting.arguments))
     reference = roll_out(no_control(envs.unwrapped.design_plant), envs, held_out(setting.seeds))
     return Opened(envs, reference, settling_band(reference))
 

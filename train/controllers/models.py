@@ -51,7 +51,7 @@ def fitted(controller: Any, plant: Plant) -> Controller:
     """
     seen, acts = getattr(controller, "observation_space", None), getattr(controller, "action_space", None)
     if seen is None or acts is None:
-        return controller  # type: ignore[no-any-return]
+        return controller
     readings, voltages = len(plant.C), plant.B.shape[1]
     name = name_of(controller)
     if getattr(acts, "shape", None) != (voltages,) or not _bounded_by_one(acts):
@@ -64,7 +64,7 @@ def fitted(controller: Any, plant: Plant) -> Controller:
             f"{readings + voltages} as SensorHistory gives it."
         )
     lowest, highest = normalised(plant).voltage_limits.astype(np.float32)
-    return ShownHistory(controller, name, length, lowest, highest) if length else controller  # type: ignore[no-any-return]
+    return ShownHistory(controller, name, length, lowest, highest) if length else controller
 
 
 def _bounded_by_one(space: Any) -> bool:

@@ -8,7 +8,7 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def save_policy(policy: Policy, folder: Path, about: Mapping[str, Any] | None = 
     ``about`` is what else the latter is to tell; "plants", fingerprints by scenario, are those that ``load_policy`` accepts.
     """
     arrays = io.BytesIO()
-    np.savez_compressed(arrays, **policy.weights)
+    np.savez_compressed(arrays, **cast(dict[str, Any], policy.weights))
     write_whole(folder / "weights.npz", arrays.getvalue())
     own = (policy.kind, policy.name, dict(policy.settings), policy.lowest.tolist(), policy.highest.tolist())
     write_json(folder / "agent.json", {**dict(zip(OWN_KEYS, own, strict=True)), **(about or {})})

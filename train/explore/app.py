@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
@@ -79,12 +80,17 @@ def outputs() -> dict[str, Any]:
     }
 
 
-@threadpool_limits.wrap(limits=1)
 def redraw(**values: Any) -> dict[str, Any]:
     """Figures for the controls' values; for what makes no blade, one sentence in their place.
 
     On one BLAS thread: matrices are so small that a second one makes it five times slower.
     """
+    with threadpool_limits(limits=1):
+        return drawn(values)
+
+
+def drawn(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What ``redraw`` gives, on as many threads as there are."""
     texts = [entry.text(values[name]) for name, entry in RANGES.items()]
     try:
         seen = view(settings(**values))

@@ -58,10 +58,10 @@ def step_responses(plant: Plant, held: SampledPlant, K: Array, L: Array, line_lo
     """Exact responses, without noise, to a uniform ``line_load`` (2,) in N/m, sampled over ``duration`` s."""
     steps, tip = round(duration / held.interval) + 1, plant.tip_displacement
     push = held.disturbance_input @ line_load
-    at_rest = np.linalg.solve(np.eye(len(held.A)) - held.A, push)
+    at_rest: Array = np.asarray(np.linalg.solve(np.eye(len(held.A)) - held.A, push), dtype=np.float64)
     states, volts = linear_response(held, compensator(plant, "LQG", held, K, L), np.tile(line_load, (steps, 1)))
     return StepResponses(
-        time=held.interval * np.arange(steps),
+        time=held.interval * np.arange(steps, dtype=np.float64),
         free=(at_rest - powers(held.A, at_rest, steps)) @ tip.T,
         controlled=states[:-1] @ tip.T,
         volts=volts,

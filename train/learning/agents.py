@@ -1,4 +1,4 @@
-"""The trainers by name, and the task of an environment."""
+"""The trainers by name."""
 
 from __future__ import annotations
 
@@ -7,9 +7,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-import gymnasium as gym
-
-import beamenv
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining, TQCTraining
@@ -39,11 +36,3 @@ AGENTS: Mapping[str, Agent] = MappingProxyType(
     }
 )
 """By short name. All meet the true blade, whose plants come from a bank of their own."""
-
-
-def task_of(environment: Mapping[str, Any]) -> Task:
-    """The task that an environment with the given keyword arguments has."""
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=1, **environment)
-    envs.close()
-    task: Task = envs.unwrapped.task
-    return task

@@ -14,13 +14,14 @@ from beamenv.scenarios.named import NAMES
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
-from train.learning.agents import AGENTS, task_of
+from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
 from train.learning.scalars import Scalars
 from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
 from train.shared.files import check_folder, write_csv
+from train.shared.task import task_of
 from train.shared.threads import one_torch_thread
 from train.shared.versions import versions
 

@@ -6,9 +6,9 @@ from baselines import lqg
 from beamenv.scenarios.scenario import scenario
 from train.benchmark.table import BenchmarkTable, Row
 from train.controllers.shipped import load_shipped, shipped
-from train.learning.agents import task_of
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
+from train.shared.task import task_of
 
 
 def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:

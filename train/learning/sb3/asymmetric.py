@@ -70,11 +70,13 @@ class AsymmetricRecurrentPolicy(RecurrentActorCriticPolicy):
     def __init__(self, *args: Any, seen: int, actor_gain: float, units: int, **kwargs: Any) -> None:
         kwargs |= {"share_features_extractor": False, "enable_critic_lstm": False, "lstm_hidden_size": units}
         kwargs |= {"features_extractor_class": Part, "net_arch": {"pi": [], "vf": [units]}}
-        super().__init__(*args, features_extractor_kwargs={"begin": 0, "end": seen, "gain": actor_gain}, **kwargs)
+        kwargs |= {"features_extractor_kwargs": {"begin": 0, "end": seen, "gain": actor_gain}}
+        super().__init__(*args, **kwargs)
         width = int(self.observation_space.shape[0])  # type: ignore[index]
         self.vf_features_extractor = Part(self.observation_space, seen, width)
         self.critic = nn.Sequential(nn.Linear(width - seen, units), nn.Tanh())  # type: ignore[assignment]
-        self.optimizer = self.optimizer_class(self.parameters(), lr=self.optimizer.defaults["lr"], **self.optimizer_kwargs)
+        optimiser: Any = self.optimizer_class
+        self.optimizer = optimiser(self.parameters(), lr=self.optimizer.defaults["lr"], **self.optimizer_kwargs)
 
 
 class AsymmetricSACPolicy(SACPolicy):

@@ -75,7 +75,8 @@ def clone(
         places = (step * len(windows) + np.arange(len(windows))) % cloning.samples
         memory[places], labels[places] = windows, wanted
         own = _act(student, gain * windows)
-        observations, _, begun, _ = envs.step(wanted if step < cloning.taught * cloning.actions else own)
+        envs.step_async(wanted if step < cloning.taught * cloning.actions else own)
+        observations, _, begun, _ = envs.step_wait()
         windows = observations[:, : envs.seen]
         for group in optimiser.param_groups:
             group["lr"] = cloning.learning_rate * (1.0 - step / cloning.actions)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 import torch
@@ -99,7 +100,8 @@ class RecurrentPPOTraining(SB3Training):
         super().__init__(model, envs, tasks, settings, seed)
 
     def _held_back(self) -> list[nn.Parameter]:
-        return [*self.model.policy.lstm_actor.parameters(), *self.model.policy.action_net.parameters()]
+        policy: Any = self.model.policy
+        return [*policy.lstm_actor.parameters(), *policy.action_net.parameters()]
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}

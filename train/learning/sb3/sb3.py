@@ -132,8 +132,8 @@ class SB3Training:
         self.model.policy.load_state_dict(state["policy"])
         for name, each in self._optimisers().items():
             each.load_state_dict(state["optimisers"][name])
-        for name, each in self._loose().items():
-            each.data.copy_(state["loose"][name])
+        for name, tensor in self._loose().items():
+            tensor.data.copy_(state["loose"][name])
         counters = state["counters"]
         self.steps, self.updates, self.cost = counters["steps"], counters["updates"], counters["cost"]
         self.model.num_timesteps = counters["timesteps"]

@@ -25,9 +25,10 @@ class SideBySide(VecEnv):
         self.batches = list(batches)
         first = self.batches[0]
         self.seen, self.held = first.seen, first.held
-        self._half = max((batch.observation_space.shape[0] - batch.seen) // 2 for batch in self.batches)
+        self._half = max((int(np.prod(batch.observation_space.shape or ())) - batch.seen) // 2 for batch in self.batches)
         width = self.seen + 2 * self._half + len(self.batches)
         count = sum(batch.num_envs for batch in self.batches)
+        self._width = width
         super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), first.action_space)
         self._bounds = np.cumsum([batch.num_envs for batch in self.batches])[:-1]
         self._unfinished: list[dict[str, Any]] = [{} for _ in range(count)]
@@ -44,7 +45,7 @@ class SideBySide(VecEnv):
     def _widened(self, index: int, observations: Array) -> Array:
         """Observations (…, seen + n) of one batch as all have them."""
         order = (observations.shape[-1] - self.seen) // 2
-        wide = np.zeros((*observations.shape[:-1], *self.observation_space.shape), np.float32)
+        wide = np.zeros((*observations.shape[:-1], self._width), np.float32)
         wide[..., : self.seen] = observations[..., : self.seen]
         wide[..., self.seen : self.seen + order] = observations[..., self.seen : self.seen + order]
         wide[..., self.seen + self._half : self.seen + self._half + order] = observations[..., self.seen + order :]

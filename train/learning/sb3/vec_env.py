@@ -58,7 +58,7 @@ class BladeVecEnv(VecEnv):
         self.blades: Any = batch.unwrapped
         self.envs = beamenv.VectorSensorHistory(batch, length=history)
         actions = self.blades.single_action_space
-        self.seen = int(np.prod(self.envs.single_observation_space.shape))
+        self.seen = int(np.prod(self.envs.single_observation_space.shape or ()))
         """How many numbers of an observation sensors show; what follows is the state."""
         self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
         width = self.seen + (0 if self._state_gain is None else len(self._state_gain))
@@ -74,7 +74,7 @@ class BladeVecEnv(VecEnv):
         self._energy = np.zeros(count)
         self.last_cost = 0.0
         """J s: mean increment of J over the batch in the last step, unshaped."""
-        self._actions: Array = np.zeros((count, *self.action_space.shape))
+        self._actions: Array = np.zeros((count, *actions.shape))
         self._unfinished: list[dict[str, Any]] = [{} for _ in range(count)]
 
     @property

@@ -35,6 +35,9 @@ class Actor(nn.Module):
     episodes and gradients of its own. (Networks are so small that five runs cost little more than one.)
     """
 
+    limits: Tensor
+    """(2, m): what the drive lets through, in units of the larger limit."""
+
     def __init__(self, plant: Plant, settings: ActorSettings, runs: int) -> None:
         super().__init__()
         limits = normalised(plant).voltage_limits
@@ -135,6 +138,10 @@ class ResidualActor(Actor):
 
     1 + g starts at one and may go to zero: where the controller's own loop is unstable it must be held back.
     """
+
+    fused: Tensor
+    feedback: Tensor
+    readout: Tensor
 
     def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase) -> None:
         super().__init__(plant, settings, runs)

@@ -94,7 +94,8 @@ class GradientTraining:
         cost, left = windows.unroll(self.actor)
         scale = windows.count / reference
         self._optimiser.zero_grad()
-        ((cost + self.settings.energy_horizon * left).view(self.settings.runs, -1).mean(dim=1).sum() * scale).backward()
+        loss = (cost + self.settings.energy_horizon * left).view(self.settings.runs, -1).mean(dim=1).sum() * scale
+        torch.autograd.backward(loss)
         self._clip_gradients()
         self._optimiser.step()
         self.updates += 1

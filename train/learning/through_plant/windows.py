@@ -13,6 +13,7 @@ from torch import Tensor
 from beamenv.plant.plant import normalised
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.kernel import advance
+from beamenv.simulation.signals.disturbances import SharedDisturbances
 from beamenv.simulation.signals.electronics import Electronics
 from beamenv.simulation.signals.faults import SignalMemory, acquire, drive
 from beamenv.task import Task
@@ -103,11 +104,12 @@ class Windows:
 
     def _disturbances(self) -> Iterator[tuple[Tensor, Tensor]]:
         """Line loads (B, 2) and what disturbs the readings (B, c), step by step through this window."""
-        batch = len(self._phase)
+        batch, disturbances = len(self._phase), self._blades.disturbances
+        assert isinstance(disturbances, SharedDisturbances)  # one generator serves the batch
         for _ in range(self.length):
-            self._blades.disturbances.loads(self._loads)
+            disturbances.loads(self._loads)
             loads = _float(self._loads.reshape(batch, 2))
-            yield loads, _float(self._blades.disturbances.next(self._generator).reshape(batch, -1))
+            yield loads, _float(disturbances.next(self._generator).reshape(batch, -1))
 
     def unroll(self, actor: Acting) -> tuple[Tensor, Tensor]:
         """Cost (B,) of a window in J s and energy (B,) left at its end in J; differentiable in the actor's weights."""

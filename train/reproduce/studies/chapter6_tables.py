@@ -152,7 +152,7 @@ def depends_on(config: BladeConfig) -> list[bool]:
     """Whether an actuator or a sensor moves by more than 1 % of the span with speed, pretwist, presetting and number."""
     shifts = []
     for side in ("actuators", "sensors"):
-        found = dependence(side, blade=config)  # type: ignore[arg-type]
+        found = dependence(side, blade=config)
         before = np.array(found.pop("as it is"))
         shifts.append([float(np.abs(np.array(after[: len(before)]) - before).max()) for after in found.values()])
     return [bool(shift > MOVED * config.beam.length) for shift in np.max(shifts, axis=0)]

@@ -113,4 +113,4 @@ class ForcedBlade:
 def settling_time(times: Array, displacement: Array, final: float, band: float = 0.05) -> float:
     """When the response stays within ``band`` of its largest excursion from ``final`` for good, in s; or its duration."""
     excursion = np.abs(displacement - final)
-    return float(times[min(settled_from(excursion, band * excursion.max()), len(times) - 1)])
+    return float(times[min(int(settled_from(excursion, band * excursion.max())), len(times) - 1)])
