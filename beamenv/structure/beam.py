@@ -98,7 +98,7 @@ class RotatingBeam:
 
     @cached_property
     def critical_speed(self) -> float:
-        """Speed (rad/s) at which spin softening has eaten the stiffness of the extension: unstable from there on."""
+        """Speed (rad/s) at which spin softening has used up the stiffness of the extension: unstable from there on."""
         return critical_speed(self.matrices.elastic_stiffness, self.matrices.spin_stiffness)
 
     def natural_frequencies(
