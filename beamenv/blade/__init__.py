@@ -2,6 +2,7 @@
 
 from beamenv.blade.build import Blade, build_beam, build_plant, plant_of
 from beamenv.blade.config import MATERIALS, BeamConfig, BladeConfig
+from beamenv.blade.design import Design
 from beamenv.blade.files import from_dict, load_config, to_dict
 from beamenv.blade.presets import PRESETS, blade_config
 
@@ -11,6 +12,7 @@ __all__ = [
     "BeamConfig",
     "Blade",
     "BladeConfig",
+    "Design",
     "blade_config",
     "build_beam",
     "build_plant",

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import EpisodeMetrics, Episodes, no_control, roll_out
+from baselines.design.controller import name_of
 from baselines.evaluation.metrics import finite, measure, settling_band
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.sources import Source
@@ -118,7 +119,7 @@ def _measured(job: Job) -> Cell:
         job.setting.name,
         job.controller,
         job.run,
-        title=getattr(controller, "name", type(controller).__name__),
+        title=name_of(controller),
         sentence=f"the solver gave up at {gave_up} instants; the law's substitute was applied there." if gave_up else "",
         uncontrolled=uncontrolled,
         metrics={name: getattr(metrics, name) for name in SERIES},

@@ -22,6 +22,7 @@ from train.cli.options import (
     print_json,
 )
 from train.cli.place import place
+from train.cli.schema import schema
 from train.cli.speed import speed
 from train.cli.train import train
 
@@ -33,6 +34,7 @@ app = typer.Typer(
 app.command()(place)
 app.command()(train)
 app.command()(benchmark)
+app.command()(schema)
 app.command()(speed)
 
 
