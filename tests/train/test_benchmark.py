@@ -74,7 +74,9 @@ class Narrow(Still):
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("benchmark") / "small"
-    return folder, benchmark({"still": Still(), "function": np.zeros_like, "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL)
+    return folder, benchmark(
+        {"still": Still(), "function": np.zeros_like, "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL
+    )
 
 
 def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
