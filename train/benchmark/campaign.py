@@ -51,8 +51,8 @@ def benchmark(
     - ``environment``: further keyword arguments of the environment, such as a "blade".
     - ``progress``: called with cells done, their number, and the cell.
 
-    A folder that holds cells of an earlier run is gone on from: a cell is kept unless something it depends on has changed.
-    What fails fails in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
+    A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
+    A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
     no scenario is left.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())

@@ -128,7 +128,7 @@ def compare(
 ) -> None:
     """Train two agents and compare every controller on the same held-out episodes: tables, figures, models.
 
-    An interrupted run goes on from what its folder holds.
+    An interrupted run resumes from what its folder holds.
     """
     with one_sentence():
         from train.cli.evaluations import screen_table
@@ -172,7 +172,7 @@ def reproduce(
 ) -> None:
     """Regenerate the thesis' tables and figures and judge its statements. About two minutes.
 
-    An interrupted run goes on from what its folder holds.
+    An interrupted run resumes from what its folder holds.
     """
     with one_sentence():
         from train.cli.reproduce import reproduce as run

@@ -29,7 +29,7 @@ def train(
     speed: SpeedOption = None,
     blade: BladeOption = None,
 ) -> None:
-    """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then tells how good it is.
+    """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
     The folder gets the policy, its learning curve, checkpoints and TensorBoard's files.
     """

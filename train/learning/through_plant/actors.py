@@ -159,8 +159,8 @@ class ResidualActor(Actor):
         """Voltages and memory."""
         hidden, linear, voltages = memory
         predicted = linear @ self.readout
-        told = readings + predicted - torch.clamp(predicted, -1.0, 1.0)
-        product = torch.cat([linear, told], dim=1) @ self.fused
+        given = readings + predicted - torch.clamp(predicted, -1.0, 1.0)
+        product = torch.cat([linear, given], dim=1) @ self.fused
         order = linear.shape[1]
         asked = self._within(product[:, order:])
         hidden, output = self.unit(torch.cat([self.settings.input_gain * readings, voltages, asked], dim=1), hidden)

@@ -58,7 +58,7 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
 
 
 class GradientTraining:
-    """A ``train.learning.training.Training`` on one task or several, in turns. Resumed, it goes on bit for bit.
+    """A ``train.learning.training.Training`` on one task or several, in turns. It resumes bit for bit.
 
     Its plants come from a bank of their own, not from that of the evaluation. ValueError for a ``teacher``: it learns from
     scratch.
