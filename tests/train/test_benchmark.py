@@ -74,7 +74,9 @@ class Narrow(Still):
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("benchmark") / "small"
-    return folder, benchmark({"still": Still(), "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL)
+    return folder, benchmark(
+        {"still": Still(), "function": np.zeros_like, "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL
+    )
 
 
 def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
@@ -88,7 +90,7 @@ def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
 
 def test_no_control_and_doing_nothing_cost_one_and_lqg_ties_with_itself(finished):
     _, table = finished
-    for name in ("none", "still"):
+    for name in ("none", "still", "function"):
         relative = table.row("nominal", name).estimates["relative_cost"]
         assert (relative.value, relative.low, relative.high) == (1.0, 1.0, 1.0)
     itself = table.row("nominal", "lqg").estimates
