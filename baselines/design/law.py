@@ -68,7 +68,7 @@ class Law(ABC):
         return replace(self, instruments=self.instruments.in_physical_units())
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.name!r}: order {self.order}, {self.instruments!r})"
+        return f"{type(self).__name__}({self.name!r}: order {self.order}; {self.instruments.sizes})"
 
 
 def remembered(state: Array | None, episode_start: ArrayLike | None, batch: tuple[int, ...], order: int) -> Array:

@@ -18,7 +18,7 @@ from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_pos
 METHOD, SEED = "multistart", 0
 """It met the best layout known with every seed tried; the thesis' GA and SQP miss it by 1 to 2 % now and then."""
 VERSION = 1
-"""Of the way in which layouts are worked out: another number forgets what was kept."""
+"""Of the way in which layouts are worked out: a new number discards what was kept."""
 
 
 def optimal_positions(config: BladeConfig, side: Side) -> Positions:
@@ -58,7 +58,7 @@ def _kept_in(config: BladeConfig) -> Path:
 
 
 def _keep(path: Path, text: str) -> None:
-    """Write the whole file or none; a cache that cannot be written is done without."""
+    """Write the whole file or none; a cache that cannot be written to is ignored."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:

@@ -91,6 +91,13 @@ def build_plant(config: BladeConfig) -> Plant:
     return Blade(config).plant
 
 
+def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
+    """The plant of a beam that ``config.beam`` does not describe, of any section, say; it carries the inlays of passive patches."""
+    blade = Blade(config)
+    vars(blade)["beam"] = beam
+    return blade.plant
+
+
 def changed_blade(
     config: BladeConfig, speed: float, ply_angle: float, modulus: float, mass: float, damping_ratio: float
 ) -> BladeConfig:

@@ -1,4 +1,4 @@
-"""Frequencies of many blades at many speeds: matrices assembled once a blade, eigenproblems solved in stacks."""
+"""Frequencies of many blades at many speeds: matrices assembled once per blade, eigenproblems solved in stacks."""
 
 from __future__ import annotations
 

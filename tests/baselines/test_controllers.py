@@ -196,8 +196,10 @@ def test_a_law_is_told_in_one_line(law):
     assert len(line) < 160
     assert repr(law.name) in line
     assert f"order {law.order}" in line
-    assert f"of {law.observes} -> 2 voltages in -500 .. 1500 V, every 0.5 ms, normalised" in line
-    assert "physical" in repr(law.in_physical_units())
+    assert (
+        f"; {law.observes} ({law.instruments.measurement_scale.size}), 2 voltages; 0.5 ms; -500 … 1500 V; normalised units" in line
+    )
+    assert "physical units" in repr(law.in_physical_units())
 
 
 @pytest.mark.parametrize("analysis", [closed_loop_poles, stationary_cost, stability_margins, h_infinity_norm])

@@ -113,6 +113,18 @@ def test_every_test_that_a_page_names_is_there(page):
         assert [name for name in sorted(named) if f"def {name}(" not in written] == []
 
 
+def test_every_module_that_a_docstring_names_is_there():
+    named = {
+        (str(file.relative_to(ROOT)), span)
+        for wing in WINGS
+        for file in (ROOT / wing).rglob("*.py")
+        for span in re.findall(r"``([\w.]+)``", file.read_text(encoding="utf-8"))
+        if DOTTED.fullmatch(span)
+    }
+    assert len(named) > 10
+    assert [(file, name) for file, name in sorted(named) if not name_is_there(name)] == []
+
+
 def test_the_pages_name_enough_for_this_to_mean_something():
     assert sum(len(paths(page)) for page in PAGES) > 20
     assert sum(len(names(page)) for page in PAGES) > 60

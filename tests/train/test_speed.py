@@ -4,7 +4,8 @@ import gymnasium
 import pytest
 
 import beamenv
-from train.tools.speed import ROWS, TARGETS, batch_run, met, picture_run, show, single_run, speed
+from train.cli.speed import show
+from train.tools.speed import ROWS, TARGETS, batch_run, met, picture_run, single_run, speed
 
 
 def test_steps_are_counted_over_the_time_they_take():

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import EpisodeMetrics, Episodes, no_control, roll_out
+from baselines.design.controller import name_of
 from baselines.evaluation.metrics import finite, measure, settling_band
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.sources import Source
@@ -25,7 +26,7 @@ from train.shared.versions import installed_version
 
 Array = NDArray[np.float64]
 
-DEPENDS_ON = (*CONTROLLERS, __name__, "train.controllers.models", "train.shared.held_out")
+DEPENDS_ON = (*CONTROLLERS, __name__, "train.controllers.models", "train.controllers.sources", "train.shared.held_out")
 """Modules that decide the numbers of a cell, besides the controller's own file."""
 
 SERIES = tuple(each.name for each in fields(EpisodeMetrics))
@@ -59,7 +60,7 @@ class Job:
         return Path("cells", self.setting.name, f"{self.controller}{self.run and '-'}{self.run}.json")
 
     def digest(self) -> str:
-        """Changes with whatever the cell depends on; empty if that cannot be told."""
+        """Changes with whatever the cell depends on; empty if that cannot be known."""
         own = self.source.fingerprint()
         return own and digest(own.encode(), repr(self.setting).encode(), sources_digest().encode())
 
@@ -118,7 +119,7 @@ def _measured(job: Job) -> Cell:
         job.setting.name,
         job.controller,
         job.run,
-        title=getattr(controller, "name", type(controller).__name__),
+        title=name_of(controller),
         sentence=f"the solver gave up at {gave_up} instants; the law's substitute was applied there." if gave_up else "",
         uncontrolled=uncontrolled,
         metrics={name: getattr(metrics, name) for name in SERIES},

@@ -22,6 +22,8 @@ from train.cli.options import (
     print_json,
 )
 from train.cli.place import place
+from train.cli.schema import schema
+from train.cli.speed import speed
 from train.cli.train import train
 
 app = typer.Typer(
@@ -32,6 +34,8 @@ app = typer.Typer(
 app.command()(place)
 app.command()(train)
 app.command()(benchmark)
+app.command()(schema)
+app.command()(speed)
 
 
 @app.command()
@@ -106,7 +110,7 @@ def evaluate(
     if as_json:
         print_json(evaluation.to_dict())
     else:
-        from train.comparison.table import screen_table
+        from train.cli.evaluations import screen_table
 
         Console().print(screen_table([evaluation]))
 
@@ -124,13 +128,13 @@ def compare(
 ) -> None:
     """Train two agents and compare every controller on the same held-out episodes: tables, figures, models.
 
-    An interrupted run goes on from what its folder holds.
+    An interrupted run resumes from what its folder holds.
     """
     with one_sentence():
+        from train.cli.evaluations import screen_table
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison
         from train.comparison.compare import compare as run
-        from train.comparison.table import screen_table
 
         default = Comparison().budget
         share = 60.0 * minutes / sum(default.values())
@@ -143,19 +147,6 @@ def compare(
     else:
         Console().print(screen_table(evaluations))
         Console().print(f"written to {folder}")
-
-
-@app.command()
-def speed(as_json: JsonOption = False) -> None:
-    """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
-    from train.tools.speed import show
-    from train.tools.speed import speed as run
-
-    results = run()
-    if as_json:
-        print_json(results)
-    else:
-        show(results)
 
 
 @app.command()
@@ -181,7 +172,7 @@ def reproduce(
 ) -> None:
     """Regenerate the thesis' tables and figures and judge its statements. About two minutes.
 
-    An interrupted run goes on from what its folder holds.
+    An interrupted run resumes from what its folder holds.
     """
     with one_sentence():
         from train.cli.reproduce import reproduce as run

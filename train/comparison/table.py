@@ -1,11 +1,9 @@
-"""The comparison as a table: CSV and Markdown for files, rich for the screen."""
+"""The comparison as a table, in CSV and Markdown."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-
-from rich.table import Table
 
 from baselines import Evaluation
 from train.shared import markdown
@@ -41,7 +39,7 @@ def caption(evaluations: Sequence[Evaluation]) -> str:
     return (
         f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]}), the same for every controller; "
         f"brackets: {100 * first.confidence:.0f} % bootstrap intervals over seeds. "
-        "Laws marked (true state) see what no sensor shows: bounds, not rivals."
+        "Controllers marked (true state) see what no sensor shows: bounds, not rivals."
     )
 
 
@@ -49,16 +47,6 @@ def markdown_table(evaluations: Sequence[Evaluation]) -> str:
     """The table in Markdown, best first, with its caption."""
     rows = [cells(evaluation) for evaluation in ranked(evaluations)]
     return f"{markdown.table(HEADINGS, rows, words=1)}\n\n{caption(evaluations)}\n"
-
-
-def screen_table(evaluations: Sequence[Evaluation]) -> Table:
-    """The table for a terminal."""
-    table = Table(title="Controllers compared", caption=caption(evaluations))
-    for heading in HEADINGS:
-        table.add_column(heading, justify="left" if heading == HEADINGS[0] else "right")
-    for evaluation in ranked(evaluations):
-        table.add_row(*cells(evaluation))
-    return table
 
 
 def write_tables(folder: Path, evaluations: Sequence[Evaluation]) -> None:

@@ -1,6 +1,6 @@
 """How fast it is: environments beside Gymnasium's CartPole in the same process, imports, the beam's assembly.
 
-``python -m train.tools.speed`` prints the table, with ``--json`` the numbers alone.
+The module starts itself in a process of its own, which hands its measurements over as JSON.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ ROWS = (
 def speed() -> dict[str, float]:
     """All measurements by name: the best of several rounds, on one BLAS thread, in a process of its own. About 20 s."""
     environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    command = [sys.executable, "-m", "train.tools.speed", "--measure"]
+    command = [sys.executable, "-m", "train.tools.speed"]
     output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
     results: dict[str, float] = json.loads(output)
     results["import_s"] = min(_import_seconds(environment) for _ in range(3))
@@ -173,36 +173,5 @@ def met(name: str, value: float) -> bool | None:
     return value <= TARGETS[name] if name.endswith(("_s", "_ms")) else value >= TARGETS[name]
 
 
-def show(results: dict[str, float]) -> None:
-    """Print the measurements as a table, with the targets."""
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"best of {ROUNDS} rounds, one BLAS thread")
-    for heading, justify in (("", "left"), ("measured", "right"), ("target", "right"), ("", "left")):
-        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
-    for name, label, unit in ROWS:
-        verdict = {None: "", True: "met", False: "[bold]missed[/bold]"}[met(name, results[name])]
-        target = _number(TARGETS[name], unit) if name in TARGETS else ""
-        table.add_row(label, _number(results[name], unit), target, verdict)
-    Console().print(table)
-
-
-def _number(value: float, unit: str) -> str:
-    if unit == "steps/s":
-        return f"{value / 1e6:.2f} M steps/s" if value >= 1e6 else f"{value / 1e3:.1f} k steps/s"
-    return f"{value:.2f} {unit}".strip()
-
-
-def main() -> None:
-    """Measure, and print the table or, with ``--json``, the numbers."""
-    if "--measure" in sys.argv:
-        sys.stdout.write(json.dumps(measure()))
-    elif "--json" in sys.argv:
-        sys.stdout.write(json.dumps(speed(), indent=2) + "\n")
-    else:
-        show(speed())
-
-
 if __name__ == "__main__":
-    main()
+    sys.stdout.write(json.dumps(measure()))

@@ -48,7 +48,7 @@ class Placement:
 
 @dataclass(slots=True, eq=False)
 class Recorder:
-    """A placement problem that remembers its best feasible layout, what it took, and tells of the progress."""
+    """A placement problem that remembers its best feasible layout and what it took, and reports progress."""
 
     problem: PlacementProblem
     progress: Progress | None = None

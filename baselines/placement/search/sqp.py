@@ -23,11 +23,11 @@ class SequentialQuadratic:
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
         """Descend from the start to the nearest minimum; the generator does not matter."""
-        self.descend(recorder, start, tell=True)
+        self.descend(recorder, start, report=True)
         recorder.note(1.0)
 
-    def descend(self, recorder: Recorder, start: Array, tell: bool = False) -> None:
-        """Descend from a layout (count,), m; ``tell`` of every iteration."""
+    def descend(self, recorder: Recorder, start: Array, report: bool = False) -> None:
+        """Descend from a layout (count,), m; ``report`` every iteration."""
         bounds = recorder.problem.bounds
         start_cost = float(recorder.costs(start[None])[0])
         length, count = bounds.length, bounds.count
@@ -52,7 +52,7 @@ class SequentialQuadratic:
             bounds=[(bounds.low / length, bounds.high / length)] * count,
             constraints=[spacing] if count > 1 else [],
             options={"maxiter": self.iterations, "ftol": self.tolerance},
-            callback=after_iteration if tell else None,
+            callback=after_iteration if report else None,
         )
         recorder.costs(bounds.repaired(result.x * length)[None])
 

@@ -130,8 +130,8 @@ class BoxSection(Section):
 class PolygonSection(Section):
     """Any closed polygon: corners (x, y) of the mid-line in m, counter-clockwise, the wall name of each edge, the wall thickness.
 
-    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, names that are not one an edge,
-    or a wall too thick.
+    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, a number of wall
+    names other than that of the edges, or a wall too thick.
     """
 
     corners: Annotated[tuple[tuple[float, float], ...], BeforeValidator(plain)]

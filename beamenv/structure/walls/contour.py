@@ -15,7 +15,7 @@ from beamenv.structure.walls.laminate import Ply
 Array = NDArray[np.float64]
 
 GAUSS_POSITIONS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
-"""Two points an edge: exact, since every section integrand is at most quadratic along a straight edge."""
+"""Two points per edge: exact, since every section integrand is at most quadratic along a straight edge."""
 
 
 @configuration("inlay")

@@ -36,7 +36,7 @@ class Ply:
 
 @dataclass(frozen=True, slots=True)
 class Layup:
-    """Plies of each wall, inner to outer face, all of one wall equally thick."""
+    """Plies of each wall, from the inner to the outer face; those of one wall are equally thick."""
 
     default: tuple[Ply, ...] | None
     walls: Mapping[str, tuple[Ply, ...]] = field(default_factory=dict, hash=False)
@@ -115,7 +115,7 @@ class Laminate:
         return Laminate((*starts, level, self.interfaces[-1]), (*(self.plies[k] for k in kept), ply))
 
     def moments(self, values: Array, highest: int = HIGHEST_MOMENT) -> Array:
-        """∫ value(n) nʲ dn for j = 0 … highest, from one value (any shape) a ply: (highest + 1, …)."""
+        """∫ value(n) nʲ dn for j = 0 … highest, from one value (any shape) per ply: (highest + 1, …)."""
         return np.tensordot(power_integrals(np.array(self.interfaces), highest), values, axes=1)
 
 

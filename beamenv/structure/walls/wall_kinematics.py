@@ -1,4 +1,4 @@
-"""What the walls of a section strain and how their points move, row by row (strain measures of thesis §2.2–2.3, corrected)."""
+"""How the walls of a section strain and how their points move, row by row (strain measures of thesis §2.2–2.3, corrected)."""
 
 from __future__ import annotations
 

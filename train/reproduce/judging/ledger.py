@@ -145,7 +145,7 @@ ROWS = (
         "6.6",
         "GA then SQP is far superior to GA or SQP",
         of("table-6.3", "superior") + of("table-6.4", "superior"),
-        "SQP alone ends at the same layout in most cases; GA alone is dearer by little.",
+        "SQP alone ends at the same layout in most cases; GA alone costs a little more.",
     ),
     Row(
         "7.1",

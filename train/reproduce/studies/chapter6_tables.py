@@ -67,10 +67,10 @@ def four_patches(side: Side, model: Model) -> Outcome:
         "speed": speed_orders(side, rows, config),
         "printed": [[printed_cost(side, config, speed, kind) for kind in ("sqp", "ga")] for speed in SPEEDS],
     }
-    shares = " and ".join(f"{100.0 * share:.0f} %" for share in (*two, *four))
+    *most, last = (f"{100.0 * share:.0f} %" for share in (*two, *four))
     notes = [
-        f"Of {STARTS} random starts SQP misses the best layout from {shares} (two patches at rest and at 200 rad/s, then four). "
-        f"The best that equally spaced, GA, SQP and GA then SQP have in {TRACE[side]}: {costs_of(rows, side)}."
+        f"SQP misses the best layout from {', '.join(most)} and {last} of {STARTS} random starts (two patches at rest and at "
+        f"200 rad/s, then four). {TRACE[side]} of equally spaced patches, by GA, by SQP and by GA then SQP: {costs_of(rows, side)}."
     ]
     return Outcome(evidence, four_panels(side, rows), header=four_header(side), rows=four_rows(side, rows), notes=notes)
 
