@@ -85,9 +85,9 @@ class Blades:
     """A batch of ``count`` blades, advanced together; ``count=None`` is a blade alone, without a batch axis.
 
     ``plant`` is the one plant of them all, or a bank of plants, of which each episode has one. ``generators`` is one generator
-    for all blades or a sequence of one for each, whichever ``begin`` was first given. Where the bank has groups, so have the blades:
-    equally large, one after the other, and rows that begin are to be in ascending order. With ``physical_units`` actions are volts
-    and readings amperes, else both are normalised.
+    for all blades or a sequence of one for each, whichever ``begin`` was first given. Where the bank has groups, so have the
+    blades: equally large, one after the other, and rows that begin are to be in ascending order. With
+    ``physical_units`` actions are volts and readings amperes, else both are normalised.
     """
 
     def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:

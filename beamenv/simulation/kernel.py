@@ -16,8 +16,8 @@ from beamenv.plant.plant import Plant, sample
 class Operators:
     """What one step needs, fused into one product; arrays of NumPy or of torch.
 
-    One plant for all blades, for each block of them, or for each: ``fused`` then has their leading axes. With z = [state, voltages, loads] (row
-    vectors, size s = n + m + 2) ``z @ fused`` is
+    One plant for all blades, for each block of them, or for each: ``fused`` then has their leading axes. With
+    z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
     [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost (s)].
     """
 

@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 class MixedBlades:
     """N blades, blade k of ``banks[kind[k]]``, with the interface of ``Blades``; all have equally many states and patches.
 
-    Blades of one kind lie together, and neighbouring kinds of equally many blades are advanced together, by one product. One generator for all
-    serves kind after kind, in their order.
+    Blades of one kind lie together, and neighbouring kinds of equally many blades are advanced together, by one product.
+    One generator for all serves kind after kind, in their order.
     """
 
     def __init__(self, banks: Sequence[Bank], kind: Rows, scenario: Scenario, physical_units: bool = False) -> None:
