@@ -1,4 +1,4 @@
-"""The comparison in small: what it writes, what it goes on from, what it refuses."""
+"""The comparison in small: what it writes, what it resumes from, what it refuses."""
 
 import csv
 import json
