@@ -71,7 +71,8 @@ def settings(lines: list[str]) -> list[str]:
 
 def recipe_table() -> str:
     """The recipes that come with the package."""
-    from train.learning.recipe import NAMES, named_recipe
+    from train.learning.recipe import named_recipe
+    from train.learning.recipes import NAMES
     from train.shared.markdown import markup_table
 
     found = [(name, named_recipe(name)) for name in NAMES]

@@ -42,7 +42,7 @@ class Instruments:
 
     def limit(self, voltage: Array) -> Array:
         """The voltage (…, m), V, as the drive lets it through."""
-        return np.clip(voltage, *self.voltage_limits)
+        return np.minimum(np.maximum(voltage, self.voltage_limits[0]), self.voltage_limits[1])  # np.clip starts slower
 
     def drive(self, voltage: Array) -> Array:
         """The action (…, m) that asks for a voltage in V."""

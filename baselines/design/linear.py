@@ -111,7 +111,7 @@ class LinearController(Law):
         """Two products, with the scales within the matrices."""
         order = memory.shape[-1]
         product = np.concatenate([memory, observation], axis=-1) @ self._fused
-        action = np.minimum(np.maximum(product[..., order:], self._limits[0]), self._limits[1])  # np.clip starts slower
+        action = np.minimum(np.maximum(product[..., order:], self._limits[0]), self._limits[1])
         return action, product[..., :order] + action @ self._feedback
 
     @property

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beamenv.configuration import Count, Number, Numbers, Refused, checked
 from beamenv.patches.layout import OUTERMOST, PatchLayout
 
 Array = NDArray[np.float64]
@@ -33,17 +34,14 @@ class Bounds:
 
         Raises ``ValueError`` for bounds outside of that or without room, and for more patches than fit.
         """
-        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
-            raise ValueError(f"{name} = {count!r} must be a number of patches, at least one.")
+        count = checked(name, count, Count())
         last = OUTERMOST * beam_length - layout.length
         low, high = checked_bounds(bounds, last)
         fitting = int(np.floor((high - low + TOLERANCE) / layout.length)) + 1
         if count > fitting:
-            raise ValueError(
-                f"{name} = {count} patches of {layout.length:g} m do not fit with root-side edges from {low:g} to {high:.6g} m, "
-                f"where there is room for {fitting}."
-            )
-        return cls(name, low, high, layout.length, int(count))
+            room = f"patches of {layout.length:g} m with root-side edges from {low:g} to {high:.6g} m"
+            raise Refused(name, count, f"at most {fitting}, for {room}")
+        return cls(name, low, high, layout.length, count)
 
     @property
     def slack(self) -> float:
@@ -79,12 +77,12 @@ class Bounds:
         """Positions (count,) in ascending order; ``ValueError`` unless they are finite, within the bounds and apart."""
         given = np.asarray(positions, dtype=float)
         if given.shape != (self.count,) or not np.all(np.isfinite(given)):
-            raise ValueError(f"{self.name} = {given.tolist()!r} must be {self.count} finite positions in metres.")
+            raise Refused(self.name, given.tolist(), f"{self.count} finite positions (m)")
         ordered = np.sort(given)
         if ordered[0] < self.low - TOLERANCE or ordered[-1] > self.high + TOLERANCE:
-            raise ValueError(f"{self.name} = {given.tolist()!r} must lie between {self.low:g} and {self.high:.6g} m.")
+            raise Refused(self.name, given.tolist(), f"between {self.low:g} and {self.high:.6g} m")
         if self.count > 1 and np.diff(ordered).min() < self.length - TOLERANCE:
-            raise ValueError(f"{self.name} = {given.tolist()!r} must be at least a patch, {self.length:g} m, apart.")
+            raise Refused(self.name, given.tolist(), f"at least a patch, {self.length:g} m, apart")
         return ordered
 
 
@@ -94,10 +92,7 @@ def checked_bounds(bounds: Sequence[float] | None, last: float) -> tuple[float, 
         raise ValueError(f"a patch is too long: it must fit within 0 and {OUTERMOST} of the span, by {-last:.6g} m more.")
     if bounds is None:
         return 0.0, last
-    try:
-        low, high = (float(bound) for bound in bounds)
-    except (TypeError, ValueError):
-        raise ValueError(f"bounds = {bounds!r} must be two numbers of metres.") from None
-    if not (np.isfinite(low) and np.isfinite(high) and -TOLERANCE <= low <= high <= last + TOLERANCE):
-        raise ValueError(f"bounds = {bounds!r} must be ascending root-side edges between 0 and {last:.6g} m.")
+    low, high = checked("bounds", bounds, Numbers(Number(unit="m"), least=2, most=2))
+    if not -TOLERANCE <= low <= high <= last + TOLERANCE:
+        raise Refused("bounds", bounds, f"ascending root-side edges between 0 and {last:.6g} m")
     return max(low, 0.0), min(high, last)

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.configuration import Choice, Count, Flag, Number, Range, configuration
+from beamenv.configuration import Choice, Flag, Number, Positive, Range, Whole, configuration
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.patches import PatchLayout
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
@@ -71,7 +71,7 @@ class BeamConfig:
     """Degrees from the contour tangent, inner to outer face, for ("all", angles) or wall by wall; a list or a mapping will do."""
     pretwist_deg: Annotated[float, Number(unit="degrees")] = 30.0
     presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
-    taper: Annotated[float, Number(gt=0.0)] = 1.0
+    taper: Positive = 1.0
     shear: Annotated[str, THEORY] = "higher_order"
     shear_flow: Annotated[str, FLOW] = "consistent"
     terms: Annotated[int, TERMS] = 10
@@ -109,12 +109,12 @@ class BladeConfig:
     patches: PatchLayout = field(default_factory=PatchLayout)
     speed: Annotated[float, Number(ge=0.0, unit="rad/s")] = 200.0
     """rad/s."""
-    modes: Annotated[int, Count()] = 11
+    modes: Whole = 11
     """Retained modes: what a pretwisted blade's tip displacement and voltages need (thesis Fig. 5.2)."""
     gyroscopic: Annotated[bool, Flag()] = True
     damping_ratio: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.01
     """Of every mode."""
-    effort_weight: Annotated[float, Number(gt=0.0)] = 0.5
+    effort_weight: Positive = 0.5
     """ρ in R = ρ FᵀK⁻¹F: with ½, uᵀRu is the energy (J) that the actuators store in the blade at rest."""
     white_load: Annotated[float, Number(ge=0.0, unit="N/m")] = 3.0
     """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""

@@ -30,3 +30,10 @@ def load_config(path: str | Path) -> BladeConfig:
     content = read_table(path)
     with of_file(path):
         return from_dict(content)
+
+
+def blade_schema() -> dict[str, Any]:
+    """The JSON schema of a blade's files."""
+    from beamenv.configuration.schema import json_schema
+
+    return json_schema(BladeConfig)

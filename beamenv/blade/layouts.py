@@ -13,6 +13,7 @@ import numpy as np
 
 from beamenv.blade.bounds import Bounds
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Refused, checked_table
 
 Side = Literal["actuators", "sensors"]
 SIDES: tuple[Side, ...] = ("actuators", "sensors")
@@ -79,7 +80,7 @@ def named(config: BladeConfig, side: Side, name: str) -> Positions:
     if THESIS_TABLES.get(name) == side:
         return thesis_positions(config, side, name, count)
     known = ", ".join(each for each in NAMES if THESIS_TABLES.get(each, side) == side)
-    raise ValueError(f"{side} = {name!r} must be one of {known}, a number of patches, positions in metres, or a range.")
+    raise Refused(side, name, f"one of {known}, a number of patches, positions (m), or a range")
 
 
 def thesis_positions(config: BladeConfig, side: Side, name: str, count: int) -> Positions:
@@ -97,8 +98,7 @@ def thesis_positions(config: BladeConfig, side: Side, name: str, count: int) -> 
 
 
 def _range(config: BladeConfig, side: Side, given: Mapping[str, Any], own: int) -> Drawn:
-    if unknown := sorted(set(given) - {"low", "high", "count"}):
-        raise ValueError(f"{side} has the key {unknown[0]!r}, but a range may hold only 'low', 'high' and 'count'.")
+    given = checked_table(side, given, ("low", "high", "count"))
     count = given.get("count", own)
     whole = Bounds.of(config.patches, config.beam.length, 1, None, side)
     limits = (given.get("low", whole.low), given.get("high", whole.high))

@@ -14,7 +14,23 @@ The rules, the same for every argument, dictionary and file:
 - What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
 """
 
-from beamenv.configuration.kinds import Choice, Count, Flag, Number, Numbers, Patches, Range, Table, Text
+from beamenv.configuration.kinds import (
+    Choice,
+    Count,
+    Flag,
+    Natural,
+    Number,
+    Numbers,
+    Patches,
+    Positive,
+    Range,
+    Real,
+    Share,
+    Table,
+    Text,
+    Texts,
+    Whole,
+)
 from beamenv.configuration.reading import checked, checked_table, configuration, read
 from beamenv.configuration.sentence import Refused, shown
 
@@ -22,13 +38,19 @@ __all__ = [
     "Choice",
     "Count",
     "Flag",
+    "Natural",
     "Number",
     "Numbers",
     "Patches",
+    "Positive",
     "Range",
+    "Real",
     "Refused",
+    "Share",
     "Table",
     "Text",
+    "Texts",
+    "Whole",
     "checked",
     "checked_table",
     "configuration",

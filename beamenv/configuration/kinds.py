@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Annotated, Any, get_args
 
 import numpy as np
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -239,12 +240,13 @@ class Numbers(Kind):
     each: Number = Number()
     least: int = 0
     """How many."""
+    most: int | None = None
     of: str = "numbers"
 
     @property
     def allowed(self) -> str:
         """Say, a list of one or more finite numbers."""
-        count = {0: "", 1: " one or more"}.get(self.least, f" at least {self.least}")
+        count = {0: "", 1: " one or more"}.get(self.least, f" {'' if self.least == self.most else 'at least '}{self.least}")
         return f"a list of{count} {self.of}, each {self.each.allowed}"
 
     def core(self) -> CoreSchema:
@@ -253,11 +255,31 @@ class Numbers(Kind):
 
     def inner(self) -> CoreSchema:
         """Of a tuple of Python's numbers."""
-        return core_schema.tuple_variable_schema(self.each.inner(), min_length=self.least, strict=True)
+        return core_schema.tuple_variable_schema(self.each.inner(), min_length=self.least, max_length=self.most, strict=True)
 
     def json(self) -> JsonSchema:
         """An array."""
-        return {"type": "array", "items": self.each.json(), "minItems": self.least}
+        most = {} if self.most is None else {"maxItems": self.most}
+        return {"type": "array", "items": self.each.json(), "minItems": self.least, **most}
+
+
+@dataclass(frozen=True, slots=True)
+class Texts(Kind):
+    """A sequence of strings; paths are taken for their names."""
+
+    @property
+    def allowed(self) -> str:
+        """A list of them."""
+        return "a list of strings"
+
+    def core(self) -> CoreSchema:
+        """A tuple of strings."""
+        texts = core_schema.tuple_variable_schema(core_schema.str_schema(strict=True), strict=True)
+        return core_schema.no_info_before_validator_function(_as_texts, texts)
+
+    def json(self) -> JsonSchema:
+        """An array."""
+        return {"type": "array", "items": {"type": "string"}}
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +319,13 @@ class Table(Kind):
         return {"type": "object"}
 
 
+def _as_texts(value: Any) -> Any:
+    value = plain(value)
+    return (
+        tuple(os.fspath(each) if isinstance(each, os.PathLike) else each for each in value) if isinstance(value, tuple) else value
+    )
+
+
 def _as_dict(value: Any) -> Any:
     return dict(value) if isinstance(value, Mapping) else value
 
@@ -328,3 +357,10 @@ def _bounded(noun: str, gt: float | None, ge: float | None, lt: float | None, le
     lower = f"above {gt:g}" if gt is not None else f"of at least {ge:g}" if ge is not None else ""
     bounds = " and ".join(part for part in (lower, upper) if part)
     return f"a {noun} {bounds}" if bounds else f"a finite {noun}"
+
+
+Real = Annotated[float, Number()]
+Positive = Annotated[float, Number(gt=0.0)]
+Share = Annotated[float, Number(ge=0.0, le=1.0)]
+Whole = Annotated[int, Count()]
+Natural = Annotated[int, Count(0)]

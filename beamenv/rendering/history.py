@@ -88,6 +88,6 @@ class History:
 
 
 def _copied(instant: Instant) -> Instant:
-    """An instant that lives on whatever becomes of the arrays it was told in."""
+    """An instant that stays as it is whatever becomes of the arrays it came in."""
     state, tip, volts, reading = (each.copy() for each in (instant.state, instant.tip_displacement, instant.volts, instant.reading))
     return instant._replace(state=state, tip_displacement=tip, volts=volts, reading=reading)

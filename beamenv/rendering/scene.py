@@ -35,6 +35,8 @@ RIB = 0.90
 BODY = np.array([92.0, 104.0, 118.0]), np.array([205.0, 212.0, 220.0])
 HUB = np.array([40.0, 49.0, 59.0]), np.array([92.0, 104.0, 117.0])
 """Colours in the shade and in the light."""
+HUB_LENGTH = 0.1
+"""Share of the span that the hub is long, at most."""
 DARK = 0.7
 """Values of the colour scales beyond which white letters are read better."""
 NARROW = 8.0
@@ -64,7 +66,7 @@ class Scene:
         self._rest = self.solid.pose(np.zeros((3, len(self.solid.stations))))
         section = blade.beam.section
         self._edges = edges(section)
-        hub = _hub(self._rest.walls[0], float(np.ptp(section.vertices[:, 1])))
+        hub = _hub(self._rest.walls[0], min(2.5 * float(np.ptp(section.vertices[:, 1])), HUB_LENGTH * length))
         self._corners = len(section.vertices)
         self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
         middle = np.radians(beam.presetting_deg + 0.5 * beam.pretwist_deg)
@@ -146,9 +148,9 @@ def _draw_faces(canvas: Canvas, faces: Sequence[Face]) -> None:
             canvas.line(face.corners[1:3], [round(RIB * part) for part in face.colour])
 
 
-def _hub(root: Array, depth: float) -> list[Array]:
-    """Sides, outer and inner end of the block that holds the root (K, 3)."""
+def _hub(root: Array, length: float) -> list[Array]:
+    """Sides, outer and inner end of the block, ``length`` (m) long, that holds the root (K, 3)."""
     middle = root.mean(axis=0)
     block = np.stack([middle + 1.25 * (root - middle)] * 2)
-    block[0, :, 2] = -2.5 * depth
+    block[0, :, 2] = -length
     return [sides(block), block[-1:], block[:1, ::-1]]

@@ -11,14 +11,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any
 
-from beamenv.configuration import Choice, Flag, Number, Range, Refused, checked, checked_table, configuration, read
+from beamenv.configuration import Choice, Flag, Range, Refused, Share, checked, checked_table, configuration, read
 from beamenv.configuration.files import ENDINGS, of_file, parsed_table, read_table
 from beamenv.scenarios import named
 from beamenv.scenarios.load_cases import CASES
 from beamenv.scenarios.named import NAMES
 from beamenv.scenarios.tables import Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
 
-Share = Annotated[float, Number(ge=0.0, le=1.0)]
 Loads = Annotated[Pair, Range(0.0, unit="N/m")]
 Seconds = Annotated[Pair, Range(0.0, unit="s")]
 Degrees = Annotated[Pair, Range(unit="degrees")]
@@ -128,6 +127,13 @@ def load_scenario(path: str | Path) -> Scenario:
     content = read_table(path)
     with of_file(path):
         return scenario(content)
+
+
+def scenario_schema() -> dict[str, Any]:
+    """The JSON schema of a scenario's files."""
+    from beamenv.configuration.schema import json_schema
+
+    return json_schema(Scenario, {PRESET: {"enum": list(SCENARIOS), "description": "The scenario this one departs from."}})
 
 
 def _named(name: Any) -> Scenario:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from beamenv.configuration import Count, Number, Numbers, Range, Refused, configuration
+from beamenv.configuration import Count, Natural, Number, Numbers, Range, Refused, Share, Whole, configuration
 
 Pair = tuple[float, float]
 
@@ -37,9 +37,9 @@ class PlantVariation:
     """Modes of the plant that controllers are designed for; None: the configured number."""
     spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s")] = None
     """rad/s: Ω(t) runs from the first to the second over the episode (``spin_up`` of the simulation); nothing else varies then."""
-    bank: Annotated[int, Count()] = 128
+    bank: Whole = 128
     """Plants in the bank: a Latin hypercube of what varies."""
-    seed: Annotated[int, Count(0)] = 0
+    seed: Natural = 0
     """Of the bank. Agents train on a bank of another seed than the one they are judged on."""
 
     def __post_init__(self) -> None:
@@ -77,11 +77,11 @@ class Acquisition:
 class Failures:
     """What is broken from the start of an episode; which one is drawn, every one equally likely."""
 
-    dead_actuators: Annotated[int, Count(0)] = 0
+    dead_actuators: Natural = 0
     """Actuators that do nothing and store nothing."""
-    faulty_sensors: Annotated[int, Count(0)] = 0
+    faulty_sensors: Natural = 0
     """Sensors that are dead (noise alone) or biased."""
-    biased_share: Annotated[float, Number(ge=0.0, le=1.0)] = 0.5
+    biased_share: Share = 0.5
     """Share of faulty sensors that are biased instead of dead."""
     bias: Annotated[Pair, Range(0.0, 1.0)] = (0.05, 0.2)
     """Of full scale, of either sign."""

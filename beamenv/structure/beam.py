@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import InstanceOf
 
-from beamenv.configuration import Count, Number, Refused, checked, configuration
+from beamenv.configuration import Count, Number, Positive, Refused, checked, configuration
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
 from beamenv.structure.section.section import FLOW, THEORY, Metres, Section, SpanWalls
@@ -47,7 +47,7 @@ class RotatingBeam:
     """Linear pretwist between root and tip."""
     presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
     """Angle of the root section's chord from the plane of rotation."""
-    taper: Annotated[float, Number(gt=0.0)] = 1.0
+    taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
     shear: Annotated[str, THEORY] = "higher_order"
     """"higher_order", "first_order" or "rigid"."""

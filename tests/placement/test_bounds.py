@@ -61,14 +61,14 @@ def test_random_layouts_are_feasible_and_reach_all_of_the_span():
 @pytest.mark.parametrize(
     ("count", "limits", "sentence"),
     [
-        (17, None, r"actuators = 17 patches of 0.085 m do not fit .* room for 16"),
-        (0, None, r"actuators = 0 must be a number of patches"),
-        (True, None, r"actuators = True must be a number"),
-        (2, (0.1, 0.15), r"actuators = 2 patches of 0.085 m do not fit .* room for 1"),
-        (1, (0.5, 0.4), r"bounds = \(0.5, 0.4\) must be ascending"),
-        (1, (0.0, 1.5), r"bounds = \(0.0, 1.5\) must be .* between 0 and 1.3311 m"),
-        (1, (0.0, float("nan")), r"bounds = \(0.0, nan\) must be"),
-        (1, "ab", r"bounds = 'ab' must be two numbers"),
+        (17, None, r"actuators is 17, but must be at most 16, for patches of 0.085 m"),
+        (0, None, r"actuators is 0, but must be a whole number not below 1"),
+        (True, None, r"actuators is True, but must be a whole number"),
+        (2, (0.1, 0.15), r"actuators is 2, but must be at most 1, for patches of 0.085 m"),
+        (1, (0.5, 0.4), r"bounds is \(0.5, 0.4\), but must be ascending"),
+        (1, (0.0, 1.5), r"bounds is \(0.0, 1.5\), but must be .* between 0 and 1.3311 m"),
+        (1, (0.0, float("nan")), r"bounds is \(0.0, nan\), but must be a list of 2 numbers, each a finite"),
+        (1, "ab", r"bounds is 'ab', but must be a list of 2 numbers"),
     ],
 )
 def test_what_does_not_fit_is_refused_in_one_sentence(count, limits, sentence):
@@ -84,10 +84,10 @@ def test_a_patch_longer_than_its_room_is_refused():
 @pytest.mark.parametrize(
     ("layout", "sentence"),
     [
-        ([0.0, np.nan], r"actuators = \[0.0, nan\] must be 2 finite positions"),
+        ([0.0, np.nan], r"actuators is \[0.0, nan\], but must be 2 finite positions"),
         ([0.0], "must be 2 finite positions"),
         ([0.0, 0.05], "at least a patch, 0.085 m, apart"),
-        ([-0.1, 0.5], "must lie between 0 and 1.3311 m"),
+        ([-0.1, 0.5], "must be between 0 and 1.3311 m"),
     ],
 )
 def test_a_layout_that_is_not_feasible_is_refused(layout, sentence):

@@ -144,14 +144,17 @@ def test_controllers_are_made_from_the_plant_of_the_layout():
 @pytest.mark.parametrize(
     ("layout", "sentence"),
     [
-        ("nowhere", "actuators = 'nowhere' must be one of uniform, thesis-table-6.3, optimal"),
-        ({"actuators": "thesis-table-6.4"}, "actuators = 'thesis-table-6.4' must be one of uniform, thesis-table-6.3, optimal"),
+        ("nowhere", "actuators is 'nowhere', but must be one of uniform, thesis-table-6.3, optimal"),
+        (
+            {"actuators": "thesis-table-6.4"},
+            "actuators is 'thesis-table-6.4', but must be one of uniform, thesis-table-6.3, optimal",
+        ),
         ({"actuators": [0.0, 0.01, 0.3, 0.6]}, "must be at least one patch length, 0.085 m, apart"),
         ({"actuators": [0.0, 0.2, 0.3, 2.0]}, "between 0 and 1.3311 m"),
         ({"sensors": [0.0, 0.2, 0.3, float("nan")]}, "must be .* one or more finite positions"),
         ({"sensors": [0.0, 0.2]}, r"options\['layout'\] has 2 sensors, but the spaces are made for 4"),
-        ({"sensors": {"low": 1.3}}, "sensors = 4 patches of 0.085 m do not fit"),
-        ({"sensors": {"from": 1.3}}, "sensors has the key 'from', but a range may hold only"),
+        ({"sensors": {"low": 1.3}}, "sensors is 4, but must be at most 1, for patches of 0.085 m"),
+        ({"sensors": {"from": 1.3}}, "sensors has no field 'from': its fields are low, high, count"),
         ({"top": [0.0]}, "layout is a mapping with the key 'top'"),
         (4, "layout is 4, but must be a name or a mapping"),
     ],

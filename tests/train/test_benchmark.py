@@ -74,7 +74,9 @@ class Narrow(Still):
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("benchmark") / "small"
-    return folder, benchmark({"still": Still(), "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL)
+    return folder, benchmark(
+        {"still": Still(), "function": np.zeros_like, "broken": Broken(), "narrow": Narrow()}, folder=folder, **SMALL
+    )
 
 
 def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
@@ -88,7 +90,7 @@ def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
 
 def test_no_control_and_doing_nothing_cost_one_and_lqg_ties_with_itself(finished):
     _, table = finished
-    for name in ("none", "still"):
+    for name in ("none", "still", "function"):
         relative = table.row("nominal", name).estimates["relative_cost"]
         assert (relative.value, relative.low, relative.high) == (1.0, 1.0, 1.0)
     itself = table.row("nominal", "lqg").estimates
@@ -187,7 +189,8 @@ def test_a_file_in_the_folder_is_a_controller(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("content", "sentence"), [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "KIND = 'fuzzy'")]
+    ("content", "sentence"),
+    [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "wrong.KIND is 'fuzzy', but must be one of fixed")],
 )
 def test_a_controller_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
     (tmp_path / "wrong.py").write_text(content)
@@ -279,8 +282,8 @@ def test_where_nothing_moves_no_cost_is_relative_to_it():
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"seeds": 1}, "seeds = 1 must be a whole number, at least 2"),
-        ({"controllers": ["pid"]}, "controller = 'pid' must be one of .*lqg, lqg-load"),
+        ({"seeds": 1}, "seeds is 1, but must be a whole number not below 2"),
+        ({"controllers": ["pid"]}, "controller is 'pid', but must be one of .*lqg, lqg-load"),
         ({"own": {"mine": 3}}, "controller 'mine' is of type int"),
         ({"own": {"lqg": Still()}}, "'lqg' is there twice"),
         ({"scenarios": []}, "scenarios is empty"),

@@ -165,9 +165,9 @@ def test_another_comparison_does_not_overwrite_a_folder(finished):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"budget": {"dreamer": 1.0}}, "agent 'dreamer', but must name only gradient, ppo"),
-        ({"budget": {"ppo": -1.0}}, "budget of ppo = -1.0 must be a positive number"),
-        ({"seeds": 1}, "seeds = 1 must be at least 2"),
+        ({"budget": {"dreamer": 1.0}}, "comparison.budget has no field 'dreamer': its fields are gradient, ppo"),
+        ({"budget": {"ppo": -1.0}}, "comparison.budget.ppo is -1.0, but must be a positive number"),
+        ({"seeds": 1}, "comparison.seeds is 1, but must be a whole number not below 2"),
     ],
 )
 def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
@@ -176,5 +176,5 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 
 
 def test_unknown_names_are_refused():
-    with pytest.raises(ValueError, match="controller = 'pid' must be one of .*lqg, lqg-load"):
+    with pytest.raises(ValueError, match="controller is 'pid', but must be one of .*lqg, lqg-load"):
         named("pid")

@@ -94,7 +94,7 @@ def test_what_makes_no_blade_is_told_and_leaves_the_sliders_usable(show):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_text_has_the_theme_s_ink(show, scheme):
-    from train.page.themes import THEMES
+    from train.figures.themes import THEMES
 
     browser = show(scheme=scheme)
     expected = "rgb({}, {}, {})".format(*bytes.fromhex(THEMES[scheme].ink[1:]))

@@ -106,7 +106,8 @@ def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, troubles):
 
 
 @pytest.mark.parametrize(
-    ("kind", "base"), [("recurrent", ""), ("residual", "lqg"), ("residual", "lqg-load"), ("residual", "lqg-rotor"), ("linear", "")]
+    ("kind", "base"),
+    [("recurrent", "lqg"), ("residual", "lqg"), ("residual", "lqg-load"), ("residual", "lqg-rotor"), ("linear", "lqg")],
 )
 def test_an_actor_and_its_policy_ask_for_the_same_voltages(kind, base):
     torch.manual_seed(1)

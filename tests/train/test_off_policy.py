@@ -80,5 +80,5 @@ def test_the_same_seed_trains_the_same_agent(kind):
 
 
 def test_an_unknown_activation_is_refused():
-    with pytest.raises(ValueError, match="activation = 'step' must be one of tanh, relu"):
+    with pytest.raises(ValueError, match="settings.activation is 'step', but must be one of tanh, relu"):
         OffPolicySettings(activation="step")

@@ -21,11 +21,11 @@ from beamenv.plant.plant import sample
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
 from train.figures.screen_heat_map import heat_map
+from train.figures.themes import THEMES
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record, write_page
 from train.page.blade import blade_figures, frame_times, magnification, motions
 from train.page.page import plots, render
 from train.page.plots import amplitude_density
-from train.page.themes import THEMES
 from train.shared.versions import versions
 
 SECTIONS = ("table", "blade", "heat-map", "time-series", "spectra", "poles", "learning", "provenance")

@@ -117,7 +117,7 @@ def test_numbers_are_sorted_as_numbers_and_infinity_last(show):
 
 @pytest.mark.parametrize(("scheme", "other"), [("light", "dark"), ("dark", "light")])
 def test_the_theme_is_the_systems_until_the_button_is_pressed(show, scheme, other):
-    from train.page.themes import THEMES
+    from train.figures.themes import THEMES
 
     def colours():
         panel = browser.execute_script("return getComputedStyle(document.querySelector('section')).backgroundColor")

@@ -42,7 +42,7 @@ def test_it_is_refused_for_another_plant(folder):
 def test_a_policy_that_does_not_tell_its_plant_is_refused_for_any(tmp_path):
     save_policy(POLICY, tmp_path)
     assert load_policy(tmp_path).name == "idle"
-    with pytest.raises(ValueError, match="does not tell what plant"):
+    with pytest.raises(ValueError, match="does not say what plant"):
         load_policy(tmp_path, plant())
 
 

@@ -5,7 +5,8 @@ from dataclasses import fields, is_dataclass
 import pytest
 
 from train.learning.agents import AGENTS
-from train.learning.recipe import NAMES, load_recipe, named_recipe, parsed
+from train.learning.recipe import load_recipe, named_recipe, parsed
+from train.learning.recipes import NAMES
 
 WHOLE = 'agent = "ppo"\ntitle = "Brief"\nupdates = 3\n[settings]\nunits = 32\nlearning_rate = 1\n'
 
@@ -43,17 +44,17 @@ def test_a_table_within_the_settings_is_changed_field_by_field():
 @pytest.mark.parametrize(
     ("before", "after", "sentence"),
     [
-        ('"ppo"', '"dreamer"', "agent = 'dreamer' must be one of gradient, ppo"),
-        ('"ppo"', "[1]", "agent = .1. must be one of"),
-        ("updates = 3", "updates = 0", "updates = 0 must be a positive whole number"),
-        ("updates = 3", "updates = true", "updates = True must be a positive whole number"),
-        ('title = "Brief"\n', "", "has, or lacks, 'title'"),
-        ("updates", "upgrades", "has, or lacks, 'updates'"),
-        ("units = 32", "unit = 32", "has the unknown field 'unit'"),
-        ("units = 32", 'units = "many"', "settings.units = 'many' must be a int"),
-        ("units = 32", "units = 32.5", "settings.units = 32.5 must be a int"),
-        ("[settings]\n", "settings = 3\n#", "settings is not a table"),
-        ("units = 32", "units =", "cannot be read"),
+        ('"ppo"', '"dreamer"', "recipe.agent is 'dreamer', but must be one of gradient, ppo"),
+        ('"ppo"', "[1]", "recipe.agent is .1., but must be one of"),
+        ("updates = 3", "updates = 0", "recipe.updates is 0, but must be a whole number not below 1"),
+        ("updates = 3", "updates = true", "recipe.updates is True, but must be a whole number"),
+        ('title = "Brief"\n', "", "recipe.title is missing"),
+        ("updates", "upgrades", "recipe has no field 'upgrades': its fields are agent, title, updates"),
+        ("units = 32", "unit = 32", "recipe.settings has no field 'unit': its fields are blades"),
+        ("units = 32", 'units = "many"', "recipe.settings.units is 'many', but must be a whole number"),
+        ("units = 32", "units = 32.5", "recipe.settings.units is 32.5, but must be a whole number"),
+        ("[settings]\n", "settings = 3\n#", "recipe.settings is 3, but must be a table of fields"),
+        ("units = 32", "units =", "file .own.toml. cannot be read: .*line 5"),
     ],
 )
 def test_what_is_wrong_is_told_in_a_sentence(before, after, sentence):
@@ -64,7 +65,7 @@ def test_what_is_wrong_is_told_in_a_sentence(before, after, sentence):
 
 
 def test_unknown_names_and_files_are_told(tmp_path):
-    with pytest.raises(ValueError, match="agent = 'dreamer' must be one of gradient"):
+    with pytest.raises(ValueError, match="agent is 'dreamer', but must be one of gradient"):
         named_recipe("dreamer")
     with pytest.raises(ValueError, match="absent.toml"):
         load_recipe(tmp_path / "absent.toml")

@@ -175,6 +175,8 @@ def test_runs_side_by_side_are_saved_apart(tmp_path):
     recipe = replace(GRADIENT, settings=replace(GRADIENT.settings, runs=2))
     places = run(job(recipe, updates=2), tmp_path, ignore)
     assert [place.name for place in places] == ["0", "1"]
+    with pytest.raises(ValueError, match="it holds those of 2 runs, so name one of .*0, .*1"):
+        load_policy(tmp_path)
     curves = [(place / "learning.csv").read_text() for place in places]
     assert curves[0] != curves[1]
 

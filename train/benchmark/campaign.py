@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import beamenv
+from beamenv.configuration import Count, Flag, Table, Texts, checked
+from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.scenario import Scenario, scenario
 from train.benchmark.cells import Cell, Job, Setting, read_cell, write_cell
 from train.benchmark.listed import ListedController, listed_controllers
@@ -16,7 +18,7 @@ from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import check_folder
-from train.shared.held_out import held_out
+from train.shared.held_out import SEEDS, held_out
 from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
@@ -40,7 +42,7 @@ def benchmark(
 
     - ``own``: objects with Stable-Baselines3's ``predict``, or plain functions, by the names they are to have. They are given the
       readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
-    - ``scenarios``: names or TOML files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
+    - ``scenarios``: names or files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
       the others go on.
     - ``controllers``: names of controllers and shipped agents, all of them if None. No control and LQG are always among them.
     - ``seeds``: held-out episodes, equal for every controller.
@@ -49,17 +51,20 @@ def benchmark(
     - ``environment``: further keyword arguments of the environment, such as a "blade".
     - ``progress``: called with cells done, their number, and the cell.
 
-    A folder that holds cells of an earlier run is gone on from: a cell is kept unless something it depends on has changed.
-    What fails fails in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
+    A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
+    A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
     no scenario is left.
     """
-    if isinstance(seeds, bool) or not isinstance(seeds, int) or seeds < 2:
-        raise ValueError(f"seeds = {seeds!r} must be a whole number, at least 2: intervals need more than one episode.")
+    seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
+    environment = checked("environment", environment or {}, Table())
+    own = checked("own", own or {}, Table())
+    controllers = None if controllers is None else checked("controllers", controllers, Texts())
+    scenarios = None if scenarios is None else checked("scenarios", scenarios, Texts())
     if folder is not None:
         check_folder(folder)
-    listed = listed_controllers(controllers, own or {}, models, trusted, trained)
+    listed = listed_controllers(controllers, own, models, trusted, trained)
     known, refused = read_scenarios(scenarios)
-    settings = [Setting(name, each, seeds, json.dumps(dict(environment or {}), sort_keys=True)) for name, each in known.items()]
+    settings = [Setting(name, each, seeds, json.dumps(environment, sort_keys=True)) for name, each in known.items()]
     queue = [
         Job(setting, each.name, name, source)
         for setting in settings
@@ -76,7 +81,7 @@ def benchmark(
 def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
     """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
     read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
-    titles = {name: Path(name).stem if name.endswith(".toml") else name for name in read}
+    titles = {name: Path(name).stem if name.endswith(ENDINGS) else name for name in read}
     known = {titles[name]: each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}
     if doubled := [name for name in read if list(titles.values()).count(titles[name]) > 1]:

@@ -60,7 +60,7 @@ class Job:
         return Path("cells", self.setting.name, f"{self.controller}{self.run and '-'}{self.run}.json")
 
     def digest(self) -> str:
-        """Changes with whatever the cell depends on; empty if that cannot be told."""
+        """Changes with whatever the cell depends on; empty if that cannot be known."""
         own = self.source.fingerprint()
         return own and digest(own.encode(), repr(self.setting).encode(), sources_digest().encode())
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from baselines.design.controller import as_controller
+from beamenv.configuration import Refused
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, discover
 from train.controllers.shipped import FOLDER, shipped
@@ -53,7 +54,7 @@ def listed_controllers(
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     if unknown := [name for name in names if name not in known]:
-        raise ValueError(f"controller = {unknown[0]!r} must be one of {', '.join(known)}.")
+        raise Refused("controller", unknown[0], f"one of {', '.join(known)}")
     brought = [ListedController(name, "own", {"": _given(name, each)}) for name, each in own.items()]
     brought += [ListedController(path.stem, "own", {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]

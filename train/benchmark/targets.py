@@ -31,7 +31,7 @@ def findings(table: BenchmarkTable) -> list[Finding]:
         ahead = [agent.scenario for agent, _, gap in contests if gap.high < 0.0]
         where = f"{len(ahead)} of {len(contests)} scenarios besides nominal{': ' if ahead else ''}{', '.join(ahead)}"
         found.append(Finding(f"The best agent is ahead of the best fixed controller in {where}."))
-        found += [Finding(_told(*contest)) for contest in contests]
+        found += [Finding(_sentence(*contest)) for contest in contests]
     return found + [Finding(sentence) for name in table.scenarios if (sentence := winner(table.within(name)))]
 
 
@@ -79,7 +79,7 @@ def _contest(rows: Sequence[Row]) -> tuple[Row, Row, Estimate] | None:
     return agent, fixed, statistics.difference(agent.cost, fixed.cost, fixed.uncontrolled)
 
 
-def _told(agent: Row, fixed: Row, gap: Estimate) -> str:
+def _sentence(agent: Row, fixed: Row, gap: Estimate) -> str:
     verdict = "ahead" if gap.high < 0.0 else "behind" if gap.low > 0.0 else "no clear difference"
     return f"{agent.scenario}: best agent {agent.controller}, best fixed controller {fixed.controller}: {_gap(gap)}, {verdict}."
 

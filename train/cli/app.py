@@ -22,6 +22,7 @@ from train.cli.options import (
     print_json,
 )
 from train.cli.place import place
+from train.cli.schema import schema
 from train.cli.speed import speed
 from train.cli.train import train
 
@@ -33,6 +34,7 @@ app = typer.Typer(
 app.command()(place)
 app.command()(train)
 app.command()(benchmark)
+app.command()(schema)
 app.command()(speed)
 
 
@@ -126,7 +128,7 @@ def compare(
 ) -> None:
     """Train two agents and compare every controller on the same held-out episodes: tables, figures, models.
 
-    An interrupted run goes on from what its folder holds.
+    An interrupted run resumes from what its folder holds.
     """
     with one_sentence():
         from train.cli.evaluations import screen_table
@@ -170,7 +172,7 @@ def reproduce(
 ) -> None:
     """Regenerate the thesis' tables and figures and judge its statements. About two minutes.
 
-    An interrupted run goes on from what its folder holds.
+    An interrupted run resumes from what its folder holds.
     """
     with one_sentence():
         from train.cli.reproduce import reproduce as run

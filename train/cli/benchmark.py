@@ -36,8 +36,8 @@ def benchmark(
 ) -> None:
     """Every controller in every scenario on the same held-out episodes. At most ten minutes on two cores.
 
-    An interrupted run goes on from what its folder holds. What cannot be served is told in one sentence each, and the rest goes
-    on; the status is then 1.
+    An interrupted run resumes from what its folder holds. What cannot be measured is reported in one sentence each, the rest is
+    measured, and the status is then 1.
     """
     with one_sentence():
         from train.benchmark.campaign import benchmark as run
@@ -85,7 +85,7 @@ class _Bar:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._bars.stop()
         if kind is not None and issubclass(kind, KeyboardInterrupt):
-            self._bars.console.print("interrupted: what was finished is kept, and the same command goes on.")
+            self._bars.console.print("interrupted: what was finished is kept, and the same command resumes.")
             raise typer.Exit(130)
 
     def show(self, done: int, total: int, cell: object) -> None:

@@ -11,12 +11,13 @@ from typing import Annotated, Any
 
 import typer
 
-PresetOption = Annotated[
-    str, typer.Option(help="Configuration to begin with: thesis, thesis-untwisted, thesis-pretwisted, chandra-chopra.")
-]
+from beamenv.blade.presets import PRESETS
+from beamenv.scenarios.scenario import SCENARIOS
+
+PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
 SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
 BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
-ScenarioOption = Annotated[str, typer.Option(help="Load cases: default, step, pulse, deflection, harmonic, white, quiet.")]
+ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 

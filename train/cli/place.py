@@ -44,8 +44,8 @@ def place(
         config = config if passive else replace(config, patches=replace(config.patches, passive=False))
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
-        with bars(counts) as told:
-            sides = place_sides(config, counts, method, seed, told)
+        with bars(counts) as report:
+            sides = place_sides(config, counts, method, seed, report)
         if picture is not None or not as_json:
             from train.placement.picture import draw_placement
 
@@ -65,11 +65,11 @@ def bars(sides: Any) -> Iterator[Callable[[str, float, float], None]]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         tasks = {side: progress.add_task(side, total=1.0, cost="") for side in sides}
 
-        def told(side: str, done: float, cost: float) -> None:
+        def report(side: str, done: float, cost: float) -> None:
             name, unit = UNITS[side]
             progress.update(tasks[side], completed=done, cost=f"{name} {cost:.4g} {unit}")
 
-        yield told
+        yield report
 
 
 def show(sides: list[PlacedSide], console: Console) -> None:

@@ -18,7 +18,7 @@ from train.shared.files import write_whole
 def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:
     """Run the named studies (all for none), write the page, and return the exit status.
 
-    0: done; 1: a study failed; 130: interrupted, and the same call goes on from there. ``ValueError`` for an unknown name.
+    0: done; 1: a study failed; 130: interrupted, and the same call resumes from there. ``ValueError`` for an unknown name.
     """
     studies = chosen(names)
     records: list[Record] = []
@@ -30,7 +30,7 @@ def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | 
     write_pages(output, records, docs)
     report(records, output)
     if interrupted:
-        typer.echo("Interrupted: the same command goes on from here.", err=True)
+        typer.echo("Interrupted: the same command resumes from here.", err=True)
         return 130
     return int(any(record.error for record in records))
 

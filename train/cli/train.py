@@ -10,10 +10,11 @@ import typer
 from rich.console import Console
 
 from train.cli.options import BladeOption, PresetOption, SpeedOption, environment_arguments, one_sentence
+from train.learning.recipes import NAMES
 
 
 def train(
-    agent: Annotated[str, typer.Argument(help="A recipe: gradient, ppo, sac, tqc, recurrent-ppo, …; or the agent of --recipe.")],
+    agent: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe.")],
     scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all named ones at once.")] = "nominal",
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
     updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
@@ -28,7 +29,7 @@ def train(
     speed: SpeedOption = None,
     blade: BladeOption = None,
 ) -> None:
-    """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then tells how good it is.
+    """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
     The folder gets the policy, its learning curve, checkpoints and TensorBoard's files.
     """

@@ -5,9 +5,9 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import gymnasium as gym
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from beamenv.blade.files import to_dict
+from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
 from beamenv.plant.plant import Plant
 from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
@@ -28,7 +29,7 @@ from train.learning.recipe import Recipe
 from train.learning.session import Budget
 from train.learning.training import Progress
 from train.shared.files import check_folder, write_json
-from train.shared.held_out import HELD_OUT, held_out
+from train.shared.held_out import HELD_OUT, SEEDS, held_out
 
 Array = NDArray[np.float64]
 
@@ -36,27 +37,21 @@ CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-lo
 """The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("comparison")
 class Comparison:
     """What is compared, and for how long agents are trained."""
 
-    environment: Mapping[str, Any] = field(default_factory=dict)
+    environment: Annotated[Mapping[str, Any], Table()] = field(default_factory=dict)
     """Keyword arguments of the environment, as JSON can hold them."""
-    budget: Mapping[str, float] = field(default_factory=lambda: {"gradient": 75.0, "ppo": 255.0})
+    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"gradient": 75.0, "ppo": 255.0})
     """Seconds of training of each agent; none are trained where it is empty."""
-    seeds: int = 64
+    seeds: Annotated[int, SEEDS] = 64
     """Held-out episodes."""
-    training_seed: int = 0
+    training_seed: Natural = 0
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.budget if name not in AGENTS]
-        if unknown:
-            raise ValueError(f"budget has the agent {unknown[0]!r}, but must name only {', '.join(AGENTS)}.")
-        for name, seconds in self.budget.items():
-            if not (np.isfinite(seconds) and seconds > 0.0):
-                raise ValueError(f"budget of {name} = {seconds!r} must be a positive number of seconds.")
-        if not (isinstance(self.seeds, int) and self.seeds >= 2):
-            raise ValueError(f"seeds = {self.seeds!r} must be at least 2: intervals need more than one episode.")
+        for name, seconds in checked_table("comparison.budget", self.budget, tuple(AGENTS)).items():
+            checked(f"budget.{name}", seconds, Number(gt=0.0, unit="s"))
 
     def job(self, agent: str) -> Job:
         """The training of an agent, with its trainer's own settings."""

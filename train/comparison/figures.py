@@ -101,12 +101,12 @@ def write_figures(
     curves: Mapping[str, Array],
     levels: Mapping[str, float],
 ) -> None:
-    """``episode.png``, ``poles.png`` and, when training has told of its progress, ``learning.png``."""
+    """``episode.png``, ``poles.png`` and, when training reported any progress, ``learning.png``."""
     save(episode_figure(evaluations, clearest_episode(evaluations[0])), folder / "episode.png")
     save(pole_figure(plant, controllers), folder / "poles.png")
-    told = {name: curve for name, curve in curves.items() if len(curve)}
-    if told:
-        save(learning_figure(told, levels), folder / "learning.png")
+    reported = {name: curve for name, curve in curves.items() if len(curve)}
+    if reported:
+        save(learning_figure(reported, levels), folder / "learning.png")
 
 
 def clearest_episode(evaluation: Evaluation) -> int:

@@ -39,7 +39,7 @@ def caption(evaluations: Sequence[Evaluation]) -> str:
     return (
         f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]}), the same for every controller; "
         f"brackets: {100 * first.confidence:.0f} % bootstrap intervals over seeds. "
-        "Laws marked (true state) see what no sensor shows: bounds, not rivals."
+        "Controllers marked (true state) see what no sensor shows: bounds, not rivals."
     )
 
 

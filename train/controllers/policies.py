@@ -124,7 +124,7 @@ class RecurrentPolicy(Policy):
 class ResidualPolicy(Policy):
     """Adds to a linear controller and weighs it: u = clip((1 + g) ∘ u_lin + r), [g, r] the tanh output of a gated recurrent unit.
 
-    The controller is told readings as ``train.learning.through_plant.linear_base`` has it: its filter knows that they clip.
+    The controller is given readings as ``train.learning.through_plant.linear_base`` has it: its filter knows that they clip.
     Its memory is [hidden units | the controller's | voltages].
     """
 
@@ -141,8 +141,8 @@ class ResidualPolicy(Policy):
         units, order = self.weights["weight_hh"].shape[1], self.weights["feedback"].shape[1]
         hidden, linear, voltages = memory[:, :units], memory[:, units : units + order], memory[:, units + order :]
         predicted = linear @ self.weights["readout"]
-        told = readings + predicted - np.clip(predicted, -1.0, 1.0)
-        product = np.hstack([linear, told]) @ self.weights["fused"]
+        given = readings + predicted - np.clip(predicted, -1.0, 1.0)
+        product = np.hstack([linear, given]) @ self.weights["fused"]
         asked = np.clip(product[:, order:], self.lowest, self.highest)
         inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked])
         hidden, output = gated_unit(self.weights, inputs, hidden)

@@ -37,10 +37,12 @@ def save_policy(policy: Policy, folder: Path, about: Mapping[str, Any] | None = 
 
 
 def read_about(folder: Path) -> dict[str, Any]:
-    """What ``agent.json`` tells; ``ValueError`` if it is not there, or no such file."""
+    """What ``agent.json`` says; ``ValueError`` if it is not there, or is no such file."""
     path = folder / "agent.json"
     if not path.is_file():
-        raise ValueError(f"folder = {str(folder)!r} must hold a trained agent: agent.json is not there.")
+        runs = sorted(str(each.parent) for each in folder.glob("*/agent.json"))
+        found = f"it holds those of {len(runs)} runs, so name one of {', '.join(runs)}" if runs else "agent.json is not there"
+        raise ValueError(f"folder = {str(folder)!r} must hold a trained agent: {found}.")
     try:
         about = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -85,7 +87,7 @@ def within_limits(policy: Policy, plant: Plant) -> Policy:
 def _check_plant(about: Mapping[str, Any], folder: Path, plant: Plant) -> None:
     known, own = about.get("plants"), fingerprint(plant)
     if not isinstance(known, Mapping) or not known:
-        raise ValueError(f"the agent in {str(folder)!r} does not tell what plant it was trained on: train it again.")
+        raise ValueError(f"the agent in {str(folder)!r} does not say what plant it was trained on: train it again.")
     if own not in known.values():
         raise ValueError(
             f"plant with the fingerprint {own[:12]}… is none of those the agent in {str(folder)!r} was trained on: "

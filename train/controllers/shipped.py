@@ -31,7 +31,7 @@ def shipped(folder: Path = FOLDER) -> list[Shipped]:
 
 
 def find_shipped(agent: str, scenario: str, seed: int | None = None, folder: Path = FOLDER) -> Shipped:
-    """That of an agent, a scenario and a training seed, the first if None; ``ValueError`` tells what there is."""
+    """That of an agent, a scenario and a training seed, the first if None; ``ValueError`` lists what there is."""
     every = shipped(folder)
     if agent not in {each.agent for each in every}:
         names = ", ".join(sorted({each.agent for each in every})) or "none at all"

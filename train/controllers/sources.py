@@ -23,7 +23,7 @@ class Source(Protocol):
         ...
 
     def fingerprint(self) -> str:
-        """Changes with what the controller is made from; empty if that cannot be told."""
+        """Changes with what the controller is made from; empty if that cannot be known."""
         ...
 
 

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
 from train.explore.layout import CONTROLS, RANGES, layout
-from train.page.themes import THEMES
+from train.figures.themes import THEMES
 
 SIDES = ("actuators", "sensors")
 SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
@@ -91,15 +91,15 @@ def redraw(**values: Any) -> dict[str, Any]:
 
 def drawn(values: Mapping[str, Any]) -> dict[str, Any]:
     """What ``redraw`` gives, on as many threads as there are."""
-    told = [entry.told(values[name]) for name, entry in RANGES.items()]
+    texts = [entry.text(values[name]) for name, entry in RANGES.items()]
     try:
         seen = view(settings(**values))
     except ValueError as error:
         kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
         rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
-        return {"values": told, "message": str(error), "results": True, **kept, **rows}
+        return {"values": texts, "message": str(error), "results": True, **kept, **rows}
     return {
-        "values": told,
+        "values": texts,
         "message": "",
         "results": False,
         "campbell": campbell_diagram(seen),

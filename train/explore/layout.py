@@ -31,14 +31,13 @@ class Range:
 
     def control(self, name: str) -> html.Div:
         """The slider under its label and value."""
-        limits = {"min": self.low, "max": self.high, "step": self.step, "value": self.value, "marks": None, "updatemode": "drag"}
-        if isinstance(self.value, list):
-            slider = dcc.RangeSlider(id=name, **limits, pushable=APART, allow_direct_input=False)
-        else:
-            slider = dcc.Slider(id=name, **limits, allow_direct_input=False)  # an emptied input would stop the handle
+        limits: dict[str, Any] = {"min": self.low, "max": self.high, "step": self.step, "value": self.value, "marks": None}
+        limits |= {"updatemode": "drag", "allow_direct_input": False}  # an emptied input would stop the handle
+        several = isinstance(self.value, list)
+        slider = dcc.RangeSlider(id=name, **limits, pushable=APART) if several else dcc.Slider(id=name, **limits)
         return _control(self.label, html.Output(id=f"{name}-value"), slider)
 
-    def told(self, value: float | list[float] | None) -> str:
+    def text(self, value: float | list[float] | None) -> str:
         """A value as the page writes it, with its unit."""
         if isinstance(value, list):
             return ", ".join(f"{edge:.1f}" for edge in value) + f" {self.unit}"
@@ -72,7 +71,7 @@ RANGES: Mapping[str, Range] = MappingProxyType(
 CONTROLS = (*RANGES, "load")
 """Ids: the fields of ``Settings``."""
 
-_QUIET = {"displayModeBar": False, "responsive": True}
+_QUIET: Any = {"displayModeBar": False, "responsive": True}
 
 
 def layout() -> html.Div:

@@ -62,11 +62,11 @@ def learning_panel(learned: LearningCurves) -> Panel:
     for index, (name, curve) in enumerate(learned.curves.items()):
         steps = f" ({curve[-1, 1] / 1e6:.1f} million steps)" if len(curve) else ""
         curves.append(Curve(curve[:, 0], curve[:, 2], name + steps, LINES[index % len(LINES)], Look(colour(index))))
-    told = [curve for curve in learned.curves.values() if len(curve)]
-    end = max([1.0, *(float(curve[-1, 0]) for curve in told)])
+    reported = [curve for curve in learned.curves.values() if len(curve)]
+    end = max([1.0, *(float(curve[-1, 0]) for curve in reported)])
     for index, (name, level) in enumerate(learned.levels.items()):
         look, line = Look(colour(len(learned.curves) + index)), LINES[1 + index % (len(LINES) - 1)]
         curves.append(Curve(np.array([0.0, end]), np.full(2, level), f"{name}: {level:.3f}", line, look))
-    highest = max([1.05, *(float(np.nanmedian(curve[:3, 2])) for curve in told)])
+    highest = max([1.05, *(float(np.nanmedian(curve[:3, 2])) for curve in reported)])
     limits = (0.0, min(highest, 2.0))
     return Panel("", "training time, s", "J / J without control", curves, x_limits=(0.0, end), y_limits=limits)

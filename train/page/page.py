@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
@@ -19,11 +18,11 @@ from train.figures.figure import Panel
 from train.figures.heat_map import HeatMap
 from train.figures.panels import LearningCurves, learning_panel, pole_panel
 from train.figures.screen_heat_map import heat_map
+from train.figures.themes import THEMES
 from train.page.blade import blade_figures, frame_times, motions
 from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
 from train.page.table import Table
-from train.page.themes import THEMES
 from train.shared.files import write_whole
 from train.shared.versions import versions
 
@@ -41,7 +40,7 @@ class PageContent:
     """The blade in motion, the course of the episode and its spectra."""
     episode_note: str = ""
     """Which episode that is."""
-    poles: Mapping[str, NDArray[np.complex128]] | None = None
+    poles: Mapping[str, NDArray[Any]] | None = None
     """rad/s, of each loop; the first one is drawn in grey: without control."""
     learning: LearningCurves | None = None
     configuration: Mapping[str, Any] | None = None
@@ -84,7 +83,7 @@ def write_page(path: Path, content: PageContent) -> None:
     A comparison gives table, episode, poles, learning curves and configuration. A benchmark over scenarios gives
     ``PageContent(title, table=Table(...), heat_map=HeatMap.of({scenario: evaluations}), learning=LearningCurves(curves, levels),
     configuration={...})``, and may add an episode of any scenario: ``record_episode(arguments, seed, pair)``. Versions are
-    always told.
+    always shown.
     """
     write_whole(path, render(content))
 

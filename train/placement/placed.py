@@ -61,8 +61,8 @@ def place_sides(
         if side not in counts:
             continue
         problem = PlacementProblem.of(config, side)
-        told = None if progress is None else lambda done, cost, side=side: progress(side, done, cost)
-        found = place(problem, method, seed, progress=told)
+        report = None if progress is None else lambda done, cost, side=side: progress(side, done, cost)
+        found = place(problem, method, seed, progress=report)
         config = with_positions(config, {side: found.positions})
         sides.append(placed_side(problem, found))
     return sides

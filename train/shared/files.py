@@ -13,7 +13,7 @@ from typing import Any
 
 
 def check_folder(folder: Path) -> None:
-    """``ValueError`` if files cannot go to a folder of this name, for a file has it: better told before a training than after."""
+    """``ValueError`` if a file has the name of the folder: better raised before a training than after it."""
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"folder = {str(folder)!r} must be a folder, or not be there yet, but is a file.")
 

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from beamenv.configuration import Count
+
 HELD_OUT = 1_000_000
 """The first of them: training draws from generators of its own."""
+
+SEEDS = Count(2)
+"""How many of them: intervals need more than one episode."""
 
 
 def held_out(seeds: int) -> range:

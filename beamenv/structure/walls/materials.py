@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, Refused, checked, configuration
+from beamenv.configuration import Number, Real, Refused, checked, configuration
 
 Modulus = Annotated[float, Number(gt=0.0, unit="Pa")]
 Density = Annotated[float, Number(gt=0.0, unit="kg/m³")]
@@ -31,7 +31,7 @@ class Lamina:
     """Pa."""
     G23: Modulus
     """Pa."""
-    nu12: Annotated[float, Number()]
+    nu12: Real
     """Contraction along 2 per extension along 1."""
     density: Density
     """kg/m³."""

@@ -29,10 +29,10 @@ def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
 
 def page(table: BenchmarkTable, command: str) -> str:
     """The page: how it was made, the picture, and the table."""
-    made = f"Made by\n\n```sh\n{command}\n```\n\nwith {told(table.configuration['versions'])}."
+    made = f"Made by\n\n```sh\n{command}\n```\n\nwith {in_a_line(table.configuration['versions'])}."
     return f"{INTRODUCTION}\n{made}\n\n![J over J without control](images/benchmark.png)\n\n{markdown(table)}"
 
 
-def told(versions: Mapping[str, str]) -> str:
+def in_a_line(versions: Mapping[str, str]) -> str:
     """Versions in a line."""
     return ", ".join(f"{name} {version}" for name, version in versions.items())

@@ -18,7 +18,7 @@ from train.page import Cell, LearningCurves, PageContent, Table, write_page
 
 def write_report(path: Path, table: BenchmarkTable) -> None:
     """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration."""
-    episode, told = shown_episode(table)
+    episode, note = shown_episode(table)
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
         title="Controllers of a rotating blade across scenarios",
@@ -26,7 +26,7 @@ def write_report(path: Path, table: BenchmarkTable) -> None:
         table=page_table(table),
         heat_map=heat_map(table),
         episode=episode,
-        episode_note=told,
+        episode_note=note,
         learning=learning_curves(table),
         configuration=table.configuration,
     )

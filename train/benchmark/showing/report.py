@@ -58,8 +58,8 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
             for name, each in row.estimates.items()
         }
         rows.append({**about, "estimates": found, "sentences": list(row.sentences)})
-    told = [{"sentence": each.sentence, "met": each.met} for each in findings(table)]
-    return {"configuration": dict(table.configuration), "findings": told, "refused": dict(table.refused), "rows": rows}
+    judged = [{"sentence": each.sentence, "met": each.met} for each in findings(table)]
+    return {"configuration": dict(table.configuration), "findings": judged, "refused": dict(table.refused), "rows": rows}
 
 
 def markdown(table: BenchmarkTable) -> str:

@@ -14,6 +14,7 @@ from types import MappingProxyType
 
 from baselines import Controller
 from beamenv import Design
+from beamenv.configuration import Refused
 
 KINDS = ("fixed", "scheduled", "predictive", "bound")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
@@ -30,7 +31,7 @@ class NamedController:
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
-            raise ValueError(f"KIND = {self.kind!r} of the controller {self.name!r} must be one of {', '.join(KINDS)}.")
+            raise Refused(f"{self.name}.KIND", self.kind, f"one of {', '.join(KINDS)}")
 
 
 def discover() -> Mapping[str, NamedController]:
@@ -49,5 +50,5 @@ def named(name: str) -> NamedController:
     """A controller by its short name; ``ValueError`` lists the known ones."""
     known = discover()
     if name not in known:
-        raise ValueError(f"controller = {name!r} must be one of {', '.join(known)}, or the folder of a trained agent.")
+        raise Refused("controller", name, f"one of {', '.join(known)}, or the folder of a trained agent")
     return known[name]

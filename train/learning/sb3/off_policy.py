@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, ClassVar
+from dataclasses import asdict
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import torch
@@ -16,6 +16,7 @@ from stable_baselines3 import SAC
 from stable_baselines3.common.type_aliases import TrainFreq, TrainFrequencyUnit
 from torch import nn
 
+from beamenv.configuration import Choice, Natural, Number, Positive, Real, Share, Whole, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.policies import HistoryPolicy, Policy
@@ -23,62 +24,57 @@ from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPoli
 from train.learning.sb3.cloning import Cloning, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
+_ACTIVATIONS: dict[str, type[nn.Module]] = {"tanh": nn.Tanh, "relu": nn.ReLU}
 
-@dataclass(frozen=True, slots=True)
+
+@configuration("settings")
 class OffPolicySettings:
     """One experiment."""
 
-    blades: int = 256
+    blades: Whole = 256
     """Environments stepped together."""
-    history: int = 12
+    history: Whole = 12
     """Instants the agent sees, 6 ms."""
-    held: int = 4
+    held: Whole = 4
     """Control intervals for which an action is held, 2 ms."""
-    rollout: int = 4
+    rollout: Whole = 4
     """Actions of every blade between updates."""
-    critic_steps: int = 12
+    critic_steps: Whole = 12
     """Gradient steps of the critics alone, in an update."""
-    gradient_steps: int = 4
+    gradient_steps: Whole = 4
     """Gradient steps of critics and actor after them: an actor that is quicker than its critics saturates."""
-    batch: int = 256
+    batch: Whole = 256
     """Samples in a gradient step."""
-    buffer: int = 200_000
+    buffer: Whole = 200_000
     """Actions remembered."""
-    first: int = 10_000
+    first: Natural = 10_000
     """Actions remembered before learning begins."""
-    learning_rate: float = 1e-3
+    learning_rate: Positive = 1e-3
     """Adam's, falling linearly to zero over the training."""
-    discount: float = 0.95
+    discount: Share = 0.95
     """γ: 20 actions, 40 ms."""
-    energy_horizon: float = 0.03
+    energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
-    reward_unit: float = 0.04
+    reward_unit: Positive = 0.04
     """Reward of a control interval without control, about, with its sign changed: values must outgrow untrained critics' noise."""
-    exploration: float = -1.4
+    exploration: Real = -1.4
     """Logarithm of a standard deviation of the actions: its entropy is what the temperature is steered to."""
-    temperature: float = 0.003
+    temperature: Positive = 0.003
     """Weight of the entropy to begin with, in rewards."""
-    target_rate: float = 0.01
+    target_rate: Share = 0.01
     """At which target critics follow."""
-    units: int = 64
+    units: Whole = 64
     """Of each of two layers of the actor."""
-    critic_units: int = 128
+    critic_units: Whole = 128
     """Of each of two layers of the critics."""
-    activation: str = "relu"
+    activation: Annotated[str, Choice(tuple(_ACTIVATIONS))] = "relu"
     """Of all layers: tanh or relu."""
-    input_gain: float = 1.0
+    input_gain: Real = 1.0
     """Readings are a few per cent of full scale most of the time."""
-    critic_first: int = 50
+    critic_first: Natural = 50
     """Updates that train the critics alone: an actor must not follow critics that know nothing."""
-    smoothing: float = 0.02
+    smoothing: Share = 0.02
     """Weight of the latest rollout in the running cost."""
-
-    def __post_init__(self) -> None:
-        if self.activation not in _ACTIVATIONS:
-            raise ValueError(f"activation = {self.activation!r} must be one of {', '.join(_ACTIVATIONS)}.")
-
-
-_ACTIVATIONS: dict[str, type[nn.Module]] = {"tanh": nn.Tanh, "relu": nn.ReLU}
 
 
 class OffPolicyTraining(SB3Training):

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict
+from typing import Annotated, Any
 
 import numpy as np
 import torch
 from stable_baselines3 import PPO
 from torch import nn
 
+from beamenv.configuration import Natural, Number, Positive, Real, Share, Whole, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.policies import HistoryPolicy, Policy
@@ -19,44 +20,44 @@ from train.learning.sb3.cloning import Cloning, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("settings")
 class PPOSettings:
     """One experiment."""
 
-    blades: int = 1024
+    blades: Whole = 1024
     """Environments stepped together."""
-    history: int = 12
+    history: Whole = 12
     """Instants the agent sees, 6 ms."""
-    held: int = 4
+    held: Whole = 4
     """Control intervals for which an action is held, 2 ms: exploration that lasts tells more of the slow modes than white noise
     does, against the white load."""
-    rollout: int = 16
+    rollout: Whole = 16
     """Actions of every blade between updates."""
-    batch: int = 8192
+    batch: Whole = 8192
     """Samples in a gradient step."""
-    epochs: int = 4
+    epochs: Whole = 4
     """Passes over a rollout."""
-    learning_rate: float = 1e-3
+    learning_rate: Positive = 1e-3
     """Adam's, falling linearly to zero over the training."""
-    discount: float = 0.95
+    discount: Share = 0.95
     """γ: 20 actions, 40 ms."""
-    trace: float = 0.8
+    trace: Share = 0.8
     """λ of the advantage estimate."""
-    energy_horizon: float = 0.03
+    energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
-    exploration: float = -1.4
+    exploration: Real = -1.4
     """Logarithm of the standard deviation of the actions, constant."""
-    units: int = 64
+    units: Whole = 64
     """Of each of two tanh layers, actor and critic alike."""
-    clip: float = 0.2
+    clip: Positive = 0.2
     """Of the probability ratio."""
-    gradient_norm: float = 1e3
+    gradient_norm: Positive = 1e3
     """Gradients are clipped to it: hardly ever."""
-    input_gain: float = 1.0
+    input_gain: Real = 1.0
     """Readings are a few per cent of full scale most of the time."""
-    critic_first: int = 0
+    critic_first: Natural = 0
     """Updates that train the critic alone, for an actor that is good already."""
-    smoothing: float = 0.2
+    smoothing: Share = 0.2
     """Weight of the latest rollout in the running cost."""
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict
+from typing import Annotated, Any
 
 import numpy as np
 import torch
 from sb3_contrib import RecurrentPPO
 from torch import nn
 
+from beamenv.configuration import Natural, Number, Positive, Real, Share, Whole, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.lstm_policy import LSTMPolicy
@@ -19,43 +20,43 @@ from train.learning.sb3.asymmetric import AsymmetricRecurrentPolicy
 from train.learning.sb3.sb3 import SB3Training, training_envs
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("settings")
 class RecurrentPPOSettings:
     """One experiment."""
 
-    blades: int = 256
+    blades: Whole = 256
     """Environments stepped together."""
-    history: int = 4
+    history: Whole = 4
     """Instants the cells read at a time: all since the last action."""
-    held: int = 4
+    held: Whole = 4
     """Control intervals for which an action is held, 2 ms."""
-    rollout: int = 32
+    rollout: Whole = 32
     """Actions of every blade between updates, and back-propagated through: 64 ms."""
-    batch: int = 4096
+    batch: Whole = 4096
     """Samples in a gradient step."""
-    epochs: int = 4
+    epochs: Whole = 4
     """Passes over a rollout."""
-    learning_rate: float = 1e-3
+    learning_rate: Positive = 1e-3
     """Adam's, falling linearly to zero over the training."""
-    discount: float = 0.95
+    discount: Share = 0.95
     """γ: 20 actions, 40 ms."""
-    trace: float = 0.8
+    trace: Share = 0.8
     """λ of the advantage estimate."""
-    energy_horizon: float = 0.03
+    energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
-    exploration: float = -1.4
+    exploration: Real = -1.4
     """Logarithm of the standard deviation of the actions, constant."""
-    units: int = 48
+    units: Whole = 48
     """Cells of the LSTM, and units of the critic's two tanh layers."""
-    clip: float = 0.2
+    clip: Positive = 0.2
     """Of the probability ratio."""
-    gradient_norm: float = 1e3
+    gradient_norm: Positive = 1e3
     """Gradients are clipped to it: hardly ever."""
-    input_gain: float = 4.0
+    input_gain: Real = 4.0
     """Readings are a few per cent of full scale most of the time."""
-    critic_first: int = 0
+    critic_first: Natural = 0
     """Updates that train the critic alone."""
-    smoothing: float = 0.2
+    smoothing: Share = 0.2
     """Weight of the latest rollout in the running cost."""
 
 

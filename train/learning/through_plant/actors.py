@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import torch
 from torch import Tensor, nn
 
+from beamenv.configuration import Real, Whole, configuration
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
 from train.learning.through_plant.linear_base import LinearBase
 from train.learning.through_plant.windows import Memory
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("settings.actor_settings")
 class ActorSettings:
     """What an actor is made of."""
 
-    units: int = 48
+    units: Whole = 48
     """Hidden units of a GRU: twice the plant's states, about."""
-    history: int = 24
+    history: Whole = 24
     """Instants that a linear policy sees, 12 ms."""
-    input_gain: float = 4.0
+    input_gain: Real = 4.0
     """Readings are a few per cent of full scale most of the time."""
-    output_gain: float = 0.1
+    output_gain: Real = 0.1
     """Of the initial output layer: the untrained policy does next to nothing."""
 
 
@@ -158,8 +159,8 @@ class ResidualActor(Actor):
         """Voltages and memory."""
         hidden, linear, voltages = memory
         predicted = linear @ self.readout
-        told = readings + predicted - torch.clamp(predicted, -1.0, 1.0)
-        product = torch.cat([linear, told], dim=1) @ self.fused
+        given = readings + predicted - torch.clamp(predicted, -1.0, 1.0)
+        product = torch.cat([linear, given], dim=1) @ self.fused
         order = linear.shape[1]
         asked = self._within(product[:, order:])
         hidden, output = self.unit(torch.cat([self.settings.input_gain * readings, voltages, asked], dim=1), hidden)

@@ -8,58 +8,57 @@ unrolled; the energy left at a window's end, times the time it would take to dec
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import field
+from typing import Annotated, Any
 
 import numpy as np
 import torch
 
+from beamenv.configuration import Choice, Number, Positive, Whole, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.session import Budget, follow
 from train.learning.through_plant.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
-from train.learning.through_plant.linear_base import linear_base
+from train.learning.through_plant.linear_base import BASES, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import Report, on_training_bank, uncontrolled_cost
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("settings")
 class GradientSettings:
     """One experiment."""
 
-    actor: str = "recurrent"
+    actor: Annotated[str, Choice(("recurrent", "residual", "linear"))] = "recurrent"
     """"recurrent", "residual" or "linear"."""
-    base: str = "lqg"
+    base: Annotated[str, Choice(BASES)] = "lqg"
     """What a residual actor adds to: see ``train.learning.through_plant.linear_base``."""
     actor_settings: ActorSettings = field(default_factory=ActorSettings)
-    runs: int = 1
+    runs: Whole = 1
     """Independent trainings side by side."""
-    episodes: int = 128
+    episodes: Whole = 128
     """Blades of each run unrolled together."""
-    window: int = 125
+    window: Whole = 125
     """Steps back-propagated through, 62 ms: two periods of the slowest mode."""
-    learning_rate: float = 5e-3
+    learning_rate: Positive = 5e-3
     """Adam's, falling linearly to zero over the training."""
-    energy_horizon: float = 0.05
+    energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.05
     """s: the cost of a joule left at a window's end."""
-    gradient_norm: float = 1.0
+    gradient_norm: Positive = 1.0
     """Gradients are clipped to it."""
 
 
 def new_actor(task: Task, settings: GradientSettings) -> Actor:
-    """An untrained actor for the design plant of a task; ``ValueError`` for an unknown kind."""
+    """An untrained actor for the design plant of a task."""
     plant, own, runs = task.design_plant, settings.actor_settings, settings.runs
     if settings.actor == "recurrent":
         return RecurrentActor(plant, own, runs)
     if settings.actor == "linear":
         return LinearActor(plant, own, runs)
-    if settings.actor == "residual":
-        return ResidualActor(plant, own, runs, linear_base(settings.base, task))
-    raise ValueError(f"actor = {settings.actor!r} must be one of recurrent, residual, linear.")
+    return ResidualActor(plant, own, runs, linear_base(settings.base, task))
 
 
 class GradientTraining:
-    """A ``train.learning.training.Training`` on one task or several, in turns. Resumed, it goes on bit for bit.
+    """A ``train.learning.training.Training`` on one task or several, in turns. It resumes bit for bit.
 
     Its plants come from a bank of their own, not from that of the evaluation. ValueError for a ``teacher``: it learns from
     scratch.

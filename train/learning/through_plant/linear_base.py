@@ -7,7 +7,10 @@ from typing import NamedTuple
 from baselines import LinearController, PersistentLoad, RotorHarmonics, lqg, rotor_lqg
 from baselines.design.controller import Array
 from baselines.laws.lqg import sampled_design
+from beamenv.configuration import Refused
 from beamenv.task import Task
+
+BASES = ("lqg", "lqg-load", "lqg-rotor")
 
 
 class LinearBase(NamedTuple):
@@ -34,7 +37,7 @@ def linear_base(kind: str, task: Task) -> LinearBase:
         return _based(lqg(plant, persistent_load=load), sampled_design(plant, load)[0].C, plant.sensor_full_scale)
     if kind == "lqg-rotor" and harmonics is not None:
         return _based(rotor_lqg(plant, harmonics), sampled_design(plant, harmonics)[0].C, plant.sensor_full_scale)
-    raise ValueError(f"base = {kind!r} must be one of lqg, lqg-load and, on a rotor that turns, lqg-rotor.")
+    raise Refused("base", kind, "one of lqg, lqg-load and, on a rotor that turns, lqg-rotor")
 
 
 def _based(law: LinearController, output: Array, full_scale: Array) -> LinearBase:

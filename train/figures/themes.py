@@ -1,4 +1,4 @@
-"""The two themes of the page."""
+"""The two themes of pages, light and dark."""
 
 from __future__ import annotations
 

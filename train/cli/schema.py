@@ -1,0 +1,35 @@
+"""The command ``beamenv schema``."""
+
+from __future__ import annotations
+
+import json
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from train.cli.options import one_sentence, print_json
+
+
+class Kind(str, Enum):
+    """What files there are schemas of."""
+
+    blade = "blade"
+    scenario = "scenario"
+
+
+def schema(
+    kind: Annotated[Kind, typer.Argument(help="What the files describe.")],
+    output: Annotated[Path | None, typer.Option(help="File to write; standard output if left out.")] = None,
+) -> None:
+    """The JSON schema of blade or scenario files: with it an editor completes names, explains them and marks wrong values."""
+    with one_sentence():
+        from beamenv.blade.files import blade_schema
+        from beamenv.scenarios.scenario import scenario_schema
+
+        content = blade_schema() if kind is Kind.blade else scenario_schema()
+        if output is None:
+            print_json(content)
+        else:
+            output.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
