@@ -1,0 +1,109 @@
+"""What an editor is told of blade and scenario files."""
+
+import json
+from importlib.resources import files
+
+import pytest
+from typer.testing import CliRunner
+
+from beamenv.blade import PRESETS, to_dict
+from beamenv.blade.files import blade_schema
+from beamenv.configuration.files import parsed_table
+from beamenv.scenarios import named
+from beamenv.scenarios.scenario import SCENARIOS, scenario_schema
+from train.cli.app import app
+
+KNOWN = {
+    "$schema", "$defs", "$ref", "title", "description", "default", "type", "enum", "anyOf", "properties", "additionalProperties",
+    "items", "prefixItems", "minItems", "maxItems", "minProperties", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum",
+}  # fmt: skip
+TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None), "number": (int, float), "integer": int}
+
+
+def holds(value, schema, root):
+    """Whether a value keeps to a schema of the keywords in ``KNOWN``."""
+    assert set(schema) <= KNOWN, set(schema) - KNOWN
+    if "$ref" in schema:
+        return holds(value, root["$defs"][schema["$ref"].rpartition("/")[2]], root)
+    if "anyOf" in schema and not any(holds(value, each, root) for each in schema["anyOf"]):
+        return False
+    if "enum" in schema and value not in schema["enum"]:
+        return False
+    kind = schema.get("type")
+    if kind and (not isinstance(value, TYPES[kind]) or (isinstance(value, bool) and kind != "boolean")):
+        return False
+    if isinstance(value, dict):
+        rest = schema.get("additionalProperties", True)
+        parts = [(each, schema.get("properties", {}).get(name, rest)) for name, each in value.items()]
+        return all(part if isinstance(part, bool) else holds(each, part, root) for each, part in parts)
+    if isinstance(value, list):
+        first = schema.get("prefixItems", [])
+        parts = [*first, *[schema.get("items", {})] * (len(value) - len(first))]
+        fits = schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value))
+        return fits and all(holds(each, part, root) for each, part in zip(value, parts, strict=False))
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        low, high = schema.get("minimum", value), schema.get("maximum", value)
+        return low <= value <= high and not value <= schema.get("exclusiveMinimum", value - 1)
+    return True
+
+
+@pytest.mark.parametrize("name", named.NAMES)
+def test_every_scenario_that_ships_keeps_to_the_schema(name):
+    content = parsed_table(files(named).joinpath(f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml")
+    assert holds(content, scenario_schema(), scenario_schema())
+    assert holds(SCENARIOS[name].to_dict(), scenario_schema(), scenario_schema())
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_keeps_to_the_schema(name):
+    assert holds(to_dict(PRESETS[name]), blade_schema(), blade_schema())
+
+
+@pytest.mark.parametrize(
+    ("content", "schema"),
+    [
+        ({"beam": {"length": -1.0}}, blade_schema),
+        ({"beam": {"lenght": 1.0}}, blade_schema),
+        ({"beam": {"material": "steel"}}, blade_schema),
+        ({"beam": {"material": {"E1": 0.0}}}, blade_schema),
+        ({"beam": {"ply_angles_deg": []}}, blade_schema),
+        ({"patches": {"passive": "no"}}, blade_schema),
+        ({"modes": 1.5}, blade_schema),
+        ({"preset": "storm"}, scenario_schema),
+        ({"plants": {"speed_ratio": [0.9, 1.0, 1.1]}}, scenario_schema),
+        ({"rotor": {"harmonics": 3.0}}, scenario_schema),
+    ],
+)
+def test_what_is_refused_is_marked(content, schema):
+    assert not holds(content, schema(), schema())
+
+
+@pytest.mark.parametrize(
+    ("content", "schema"),
+    [
+        ({"$schema": "blade.json", "beam": {"material": {"E1": 1e11}, "ply_angles_deg": [30, 30]}}, blade_schema),
+        ({"beam": {"ply_angles_deg": {"top": [0], "bottom": [0], "left": [0], "right": [0]}}}, blade_schema),
+        ({"patches": {"actuators": [0.1, 0.5], "sensors": 3}}, blade_schema),
+        ({"preset": "rotor", "plants": {"speed_ratio": 1.1}}, scenario_schema),
+    ],
+)
+def test_partial_tables_and_every_form_of_a_value_keep_to_the_schema(content, schema):
+    assert holds(content, schema(), schema())
+
+
+@pytest.mark.parametrize("schema", [blade_schema, scenario_schema])
+def test_fields_are_described_by_the_lines_under_them(schema):
+    text = json.dumps(schema())
+    assert "description" in text
+    assert "required" not in text
+
+
+def test_the_command_writes_what_the_functions_say(tmp_path):
+    for kind, schema in (("blade", blade_schema), ("scenario", scenario_schema)):
+        printed = CliRunner().invoke(app, ["schema", kind])
+        assert json.loads(printed.stdout) == schema()
+        assert CliRunner().invoke(app, ["schema", kind, "--output", str(tmp_path / kind)]).exit_code == 0
+        assert json.loads((tmp_path / kind).read_text(encoding="utf-8")) == schema()
+    refused = CliRunner().invoke(app, ["schema", "blade", "--output", str(tmp_path / "none" / "here.json")])
+    assert refused.exit_code == 2
+    assert "Traceback" not in refused.stderr
