@@ -1,6 +1,7 @@
 """The trained policies that ship with the package, and how they are found."""
 
 import json
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -48,12 +49,17 @@ def test_together_they_stay_below_5_mb():
     assert sum(path.stat().st_size for path in FOLDER.rglob("*") if path.is_file()) <= 5e6
 
 
+@lru_cache
+def design_plant(scenario):
+    return task_of({"scenario": scenario}).design_plant
+
+
 @pytest.mark.parametrize("each", shipped(), ids=lambda each: f"{each.agent}-{each.scenario}-{each.seed}")
 def test_each_tells_what_it_depends_on_and_acts_on_the_plants_it_was_trained_on(each):
     about = json.loads((each.folder / "agent.json").read_text())
     assert {"recipe", "seed", "scenario", "updates", "versions", "plants"} <= set(about)
     assert len((each.folder / "learning.csv").read_text().splitlines()) > 2
     for scenario in about["plants"]:
-        policy = load_shipped(each.agent, each.scenario, each.seed, task_of({"scenario": scenario}).design_plant)
+        policy = load_shipped(each.agent, each.scenario, each.seed, design_plant(scenario))
         action, _ = policy.predict(np.full((2, 4), 0.05, np.float32))
         assert np.isfinite(action).all()
