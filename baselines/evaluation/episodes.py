@@ -33,7 +33,7 @@ class Episodes:
     """(T, N, 2), m: the part of it that the load case caused, without the tremor under white load and sensor noise: the tip
     displacement less that of a second run on the same seed, in which the load case is absent."""
     voltages: Array
-    """(T, N, m), V: as asked for, within the drive limits; what delay, hysteresis or failure make of them is not told."""
+    """(T, N, m), V: as asked for, within the drive limits; what delay, hysteresis or failure make of them is not recorded."""
     failed: NDArray[np.bool_]
     """(N,): the episode was terminated before its time limit."""
     voltage_limits: Array

@@ -25,7 +25,7 @@ class Instant:
     info: Mapping[str, Array]
     """(N, …) each of ``INFO``: at the end of the interval itself, not at the start of a new episode. Not all of it at a reset."""
     running: NDArray[np.bool_]
-    """(N,): the episode had not ended before the interval; what is told of the others belongs to no episode."""
+    """(N,): the episode had not ended before the interval; what is given of the others belongs to no episode."""
     failed: Array
     """(N,): 1 where the episode was terminated by the interval."""
 

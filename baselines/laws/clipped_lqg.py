@@ -57,7 +57,7 @@ class ClippedLQG(Law):
 def clipped_lqg(
     plant: Plant, persistent_load: PersistentLoad | None = None, *, Q: ArrayLike | None = None, R: ArrayLike | None = None
 ) -> ClippedLQG:
-    """The sampled LQG of a design plant, its filter told that readings end at full scale; equal to ``lqg`` while none does.
+    """The sampled LQG of a design plant, with a filter that knows that readings end at full scale; ``lqg`` while none does.
 
     ``persistent_load`` adds a load that lasts to the state, and ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``.
     """

@@ -16,12 +16,13 @@ from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, blade_config, build_
 from beamenv.blade.build import Blade, displacement_operator
 from beamenv.blade.shape import sides
 from beamenv.scenarios.load_cases import static_deflection
+from beamenv.structure import GRAPHITE_EPOXY, Layup, PolygonSection, RotatingBeam
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("pygame")
 
 from beamenv.rendering.camera import Camera, faces_camera
-from beamenv.rendering.canvas import Frame
+from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.charts import Chart, round_above
 from beamenv.rendering.history import History, Instant
 from beamenv.rendering.palette import OUTPUT_SCALE, VOLTAGE_SCALE, colour_table, colours_of
@@ -171,6 +172,26 @@ def test_every_actuator_and_sensor_of_every_preset_is_in_the_scene(preset):
         assert faces_camera(corners).all()
         assert (corners >= [PLACE.left, PLACE.top]).all()
         assert (corners <= [PLACE.left + PLACE.width, PLACE.top + PLACE.height]).all()
+
+
+def test_a_blade_of_any_closed_section_is_drawn_with_its_patches():
+    corners = ((0.127, 0.0), (0.09, 0.028), (-0.03, 0.028), (-0.127, 0.0), (-0.03, -0.018), (0.09, -0.018))
+    section = PolygonSection(corners, ("nose", "top", "back", "tail", "bottom", "chin"), 0.006)
+    blade = Blade(blade_config())
+    vars(blade)["beam"] = RotatingBeam(section, Layup.uniform(GRAPHITE_EPOXY, [30.0] * 6), 2.023, 0.2, pretwist_deg=30.0)
+    scene, canvas = Scene(blade), Canvas()
+    canvas.clear()
+    scene.draw_rest(canvas)
+    canvas.keep()
+    still = np.zeros((3, len(scene.solid.stations)))
+    scene.draw(canvas, still, np.array([1.0, -1.0, 1.0, -1.0]), np.zeros(4))
+    picture = canvas.pixels().astype(int)
+    corners, _ = scene._camera.project(scene.solid.pose(still).actuators)
+    assert faces_camera(corners).all()
+    for patch, sign in zip(corners, (1.0, -1.0, 1.0, -1.0), strict=True):
+        (wanted,) = colours_of(colour_table(VOLTAGE_SCALE), np.array([sign]))
+        x, y = np.rint(patch.mean(axis=0)).astype(int)
+        assert (np.abs(picture[y - 4 : y + 5, x - 10 : x + 11] - wanted).max(axis=-1) <= 2).sum() > 40
 
 
 def test_history_keeps_the_last_fifth_of_a_second_and_the_whole_cost():

@@ -71,12 +71,12 @@ def test_no_patch_can_be_moved_alone_to_anything_better(sides):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["--actuators", "40"], "actuators = 40"),
-        (["--actuators", "0"], "actuators = 0"),
+        (["--actuators", "40"], "actuators is 40, but must be at most 16"),
+        (["--actuators", "0"], "blade.patches.actuators is 0, but must be a number of patches, at least one"),
         (["--method", "magic"], "method = 'magic' must be one of " + ", ".join(METHODS)),
         (["--method", "grid"], "method = 'grid' serves one or two patches, not 4"),
         (["--speed", "nan"], "speed"),
-        (["--preset", "rotor"], "preset = 'rotor' must be one of"),
+        (["--preset", "rotor"], "preset is 'rotor', but must be one of thesis"),
     ],
 )
 def test_bad_input_is_one_sentence(arguments, sentence):

@@ -8,8 +8,8 @@ import pytest
 from train.figures import paper, paper_heat_map, screen
 from train.figures.figure import Curve, Look, Marker, Note, Panel
 from train.figures.heat_map import HeatMap
-from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS, actuator
-from train.figures.panels import LearningCurves, learning_panel, pole_panel, voltage_curves
+from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS
+from train.figures.panels import LearningCurves, actuator, learning_panel, pole_panel, voltage_curves
 
 pyplot = pytest.importorskip("matplotlib.pyplot", reason="matplotlib is not installed")
 go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from baselines import Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.figures.figure import Curve, Look, Panel
-from train.figures.palette import BEHIND, BLACK
+from train.figures.palette import BEHIND, INK
 from train.figures.panels import LearningCurves, learning_panel, pole_panel, voltage_curves
 from train.figures.paper import STYLE, draw_panel, handles, save
 
@@ -52,7 +52,7 @@ def _tip_panel(evaluation: Evaluation, episode: int, largest: float) -> Panel:
     for direction, line in (("lag", "dashed"), ("flap", "solid")):
         for episodes, look, label in (
             (evaluation.reference, Look(BEHIND), "tip without control" if direction == "flap" else ""),
-            (evaluation.episodes, Look(BLACK), f"tip, {direction}"),
+            (evaluation.episodes, Look(INK), f"tip, {direction}"),
         ):
             tip = 1e6 * episodes.tip_displacement[:, episode, int(direction == "flap")]
             curves.append(Curve(1e3 * evaluation.episodes.time, tip, label, line, look))

@@ -9,12 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from train.figures.palette import INK
+
 Array = NDArray[np.float64]
 Line = Literal["solid", "dashed", "dotted", "dashdot", "points"]
 Limits = tuple[float | None, float | None]
 """Low and high; None where the data decide."""
-
-INK = "#1a1a1a"
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from train.figures.figure import Look
-
 PALETTE = ("#2f7fc2", "#d9601a", "#23945a", "#9a63c9", "#b8860b", "#d6428f")
 """Contrast of at least 3 on both panels, as WCAG 2.1 (1.4.11) asks of lines."""
-BLACK = "#000000"
+INK = "#1a1a1a"
 """What is shown, on paper."""
 NEUTRAL = "#7d8793"
 """What is without control, and what is only for orientation."""
@@ -25,11 +23,6 @@ DARK_IS_BAD = "cividis_r"
 def colour(index: int) -> str:
     """Of one curve among many."""
     return PALETTE[index % len(PALETTE)]
-
-
-def actuator(index: int) -> tuple[Look, str]:
-    """Look and line of an actuator's voltage, or of a patch, told apart in greyscale too."""
-    return Look(colour(index + 2)), LINES[index % len(LINES)]
 
 
 def contrast(one: str, other: str) -> float:

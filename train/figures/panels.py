@@ -10,12 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from train.figures.figure import Curve, Look, Marker, Panel
-from train.figures.palette import LINES, NEUTRAL, SIGNS, actuator, colour
+from train.figures.palette import LINES, NEUTRAL, SIGNS, colour
 
 Array = NDArray[np.float64]
 
 LINEAR_POLES = 10.0
 """rad/s: real parts below this are drawn to scale, larger ones in the logarithm."""
+
+
+def actuator(index: int) -> tuple[Look, str]:
+    """Look and line of an actuator's voltage, or of a patch, told apart in greyscale too."""
+    return Look(colour(index + 2)), LINES[index % len(LINES)]
 
 
 def voltage_curves(time: Array, volts: Array) -> list[Curve]:

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from beamenv.blade.build import build_beam
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
 from train.figures.figure import Curve, Look, Marker, Panel
-from train.figures.palette import BLACK, actuator
+from train.figures.palette import INK
+from train.figures.panels import actuator
 from train.figures.paper import STYLE, draw_panel, handles, save
 from train.placement.placed import PlacedSide
 
@@ -91,7 +92,7 @@ def _cost_panel(side: PlacedSide) -> Panel:
         dot = replace(look, marker=Marker("circle", size=4))
         curves.append(Curve(np.array([start]), np.array([side.placement.cost]), line="points", look=dot))
     ends = np.array([-0.02, 1.02]) * side.problem.config.beam.length
-    level = Look(BLACK, width=0.7)
+    level = Look(INK, width=0.7)
     curves.append(Curve(ends, np.full(2, side.uniform_cost), "equally spaced", "dashdot", level))
     return Panel("", "root-side edge, m from the root", NAMES[side.placement.side], curves, x_limits=tuple(ends.tolist()))
 
