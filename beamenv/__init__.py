@@ -15,21 +15,31 @@ from beamenv.scenarios.named import NAMES as BENCHMARK_SCENARIOS
 
 if TYPE_CHECKING:
     from beamenv.blade.build import build_plant
-    from beamenv.blade.config import BladeConfig
+    from beamenv.blade.config import BeamConfig, BladeConfig
     from beamenv.blade.design import Design
     from beamenv.blade.presets import PRESETS, blade_config
     from beamenv.envs.batch import RotatingBeamVectorEnv
     from beamenv.envs.history import SensorHistory, VectorSensorHistory
     from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
     from beamenv.envs.single import RotatingBeamEnv
+    from beamenv.envs.stable_baselines import BladeVecEnv
+    from beamenv.patches import PatchLayout
     from beamenv.plant.plant import Plant, SampledPlant, sample
     from beamenv.scenarios.scenario import SCENARIOS, Scenario, scenario
+    from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 
 __version__ = "0.1.0"
 
 ENV_ID = "beamenv/RotatingBeam-v0"
 
 _HOMES = {
+    "BeamConfig": "blade.config",
+    "PatchLayout": "patches",
+    "RotatingBeam": "structure",
+    "Lamina": "structure",
+    "Layup": "structure",
+    "BoxSection": "structure",
+    "BladeVecEnv": "envs.stable_baselines",
     "PRESETS": "blade.presets",
     "BladeConfig": "blade.config",
     "Design": "blade.design",
@@ -54,10 +64,17 @@ __all__ = [
     "ENV_ID",
     "PRESETS",
     "SCENARIOS",
+    "BeamConfig",
     "BladeConfig",
+    "BladeVecEnv",
+    "BoxSection",
     "Design",
+    "Lamina",
+    "Layup",
+    "PatchLayout",
     "PlacementWrapper",
     "Plant",
+    "RotatingBeam",
     "RotatingBeamEnv",
     "RotatingBeamVectorEnv",
     "SampledPlant",

@@ -204,3 +204,15 @@ def test_attributes_are_the_batch_s_and_cannot_be_set():
     assert envs.env_is_wrapped(gymnasium.Wrapper) == [False] * COUNT
     with pytest.raises(NotImplementedError, match="one environment"):
         envs.set_attr("duration", 1.0)
+
+
+def test_the_plain_vec_env_steps_as_the_batch_it_wraps():
+    plain, batch = beamenv.BladeVecEnv(3, seed=5, duration=0.002), gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, duration=0.002)
+    np.testing.assert_array_equal(plain.reset(), batch.reset(seed=5)[0])
+    for step in range(4):
+        observations, rewards, ends, infos = plain.step(np.full((3, 4), 0.1))
+        expected = batch.step(np.full((3, 4), 0.1))
+        assert ends.all() == (step == 3)
+    np.testing.assert_allclose(rewards, expected[1], rtol=1e-6)
+    np.testing.assert_array_equal(infos[1]["terminal_observation"], expected[0][1])
+    assert infos[0]["TimeLimit.truncated"]

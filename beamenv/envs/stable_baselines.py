@@ -1,0 +1,77 @@
+"""Stable-Baselines3's ``VecEnv`` straight over the batched environment: all blades step in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+
+try:
+    from stable_baselines3.common.vec_env import VecEnv
+except ImportError as error:
+    raise ImportError('beamenv.BladeVecEnv needs Stable-Baselines3: pip install "stable-baselines3".') from error
+
+Array = NDArray[Any]
+
+
+class BladeVecEnv(VecEnv):
+    """``num_envs`` blades for an agent of Stable-Baselines3; ``arguments`` are those of ``RotatingBeamVectorEnv``.
+
+    Observations and rewards are the environment's; an agent without memory wants ``VecFrameStack`` around it.
+    """
+
+    def __init__(self, num_envs: int = 64, seed: int | None = None, **arguments: Any) -> None:
+        self.envs: Any = gymnasium.make_vec(
+            "beamenv/RotatingBeam-v0", num_envs=num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **arguments
+        )
+        super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
+        self._seed = seed
+        self._actions: Array = np.zeros((num_envs, *self.envs.single_action_space.shape))
+
+    def reset(self) -> Array:
+        """Begin an episode of every blade; observations (N, p)."""
+        observations, _ = self.envs.reset(seed=self._seed)
+        self._seed = None
+        return np.asarray(observations)
+
+    def step_async(self, actions: Array) -> None:
+        """Keep the actions for ``step_wait``."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
+        """Observations, rewards, ends and infos; where an episode ended the observation is the next one's first."""
+        observations, rewards, terminated, truncated, info = self.envs.step(self._actions)
+        ends = terminated | truncated
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for row in np.flatnonzero(ends).tolist():
+            infos[row] = {"terminal_observation": info["final_obs"][row], "TimeLimit.truncated": not terminated[row]}
+        return observations, rewards.astype(np.float32), ends, infos
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """The seed of the next ``reset``, one for the whole batch."""
+        self._seed = seed
+        return [seed] * self.num_envs
+
+    def close(self) -> None:
+        """Close the batch."""
+        self.envs.close()
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """The batch's one attribute, for each of the indices."""
+        return [getattr(self.envs.unwrapped, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Not offered: the blades of a batch are one environment."""
+        raise NotImplementedError(f"attr_name = {attr_name!r} cannot be set: the blades of a batch are one environment.")
+
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+        """Not offered: the blades of a batch are one environment."""
+        raise NotImplementedError(f"method_name = {method_name!r} cannot be called: the blades of a batch are one environment.")
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """No blade has wrappers of its own."""
+        return [False] * len(list(self._get_indices(indices)))
