@@ -30,7 +30,7 @@ class BladeVecEnv(VecEnv):
         )
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
         self._seed = seed
-        self._actions: Array = np.zeros((num_envs, *self.envs.single_action_space.shape))
+        self._actions: Array = np.zeros(())
 
     def reset(self) -> Array:
         """Begin an episode of every blade; observations (N, p)."""
