@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+from weakref import WeakValueDictionary
 
 import numpy as np
 from gymnasium.spaces import Box
@@ -18,7 +19,8 @@ from beamenv.blade.design import Design
 from beamenv.blade.presets import blade_config
 from beamenv.configuration import Flag, Number, Refused, checked, checked_table, read
 from beamenv.plant.plant import Plant
-from beamenv.scenarios.scenario import Scenario, scenario, with_load
+from beamenv.scenarios.scenario import Scenario, with_load
+from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.simulation.blades import Motion
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.banks import build_bank
@@ -94,32 +96,46 @@ class Task:
 
 
 def resolve_task(
-    preset: str,
-    speed: float | None,
-    blade: BladeArgument,
-    design: DesignArgument,
-    scenario_argument: ScenarioArgument,
-    duration: float,
-    physical_units: bool,
+    preset: str = "thesis",
+    speed: float | None = None,
+    blade: BladeArgument = None,
+    design: DesignArgument = None,
+    scenario: ScenarioArgument = None,
+    duration: float = 0.5,
+    physical_units: bool = False,
 ) -> Task:
-    """The task meant by the arguments of an environment; ValueError names the one that is wrong."""
+    """The task meant by the arguments of an environment; ValueError names the one that is wrong.
+
+    A task that some environment has already is shared with it, and so is a blade.
+    """
     config = blade_config(preset, blade, speed)
     interval = config.control_interval
     duration = checked("duration", duration, Number(gt=interval / 2, unit="s"))
     physical_units = checked("physical_units", physical_units, Flag())
-    chosen = scenario(scenario_argument)
+    chosen = as_scenario(scenario)
     config = _in_scenario(config, chosen, chosen.plants.modes)
     own = config if design is None else _design_config(preset, speed, design)
     designed = _in_scenario(own, chosen, chosen.plants.design_modes)
-    true = Blade(config)
+    true = _alive(_BLADES, Blade(config))
     _check_failures(chosen, true.plant)
-    return Task(
+    task = Task(
         blade=true,
-        design_blade=true if designed == config else _same_electronics(designed, true),
+        design_blade=true if designed == config else _alive(_BLADES, _same_electronics(designed, true)),
         scenario=chosen,
         steps=round(duration / interval),
         physical_units=physical_units,
     )
+    return _alive(_TASKS, task)
+
+
+_Made = TypeVar("_Made")
+_BLADES: WeakValueDictionary[Blade, Blade] = WeakValueDictionary()
+_TASKS: WeakValueDictionary[Task, Task] = WeakValueDictionary()
+"""Those that some environment has: an equal one shares what it has built, for none of it can be changed."""
+
+
+def _alive(those: WeakValueDictionary[_Made, _Made], made: _Made) -> _Made:
+    return those.setdefault(made, made)
 
 
 def _check_failures(chosen: Scenario, plant: Plant) -> None:

@@ -18,7 +18,7 @@ from baselines import evaluate, lqg
 from beamenv.task import resolve_task
 from train.learning.through_plant.gradient import GradientSettings, train_gradient
 
-task = resolve_task("thesis", None, None, None, "deflection", 0.5, False)
+task = resolve_task(scenario="deflection")
 learning = []
 policy = train_gradient(task, 0, learning.append, GradientSettings(episodes=64), updates=40)[0]
 print(f"J / J without control while training: {learning[0].cost:.2f} at first, {learning[-1].cost:.2f} at last")

@@ -1,23 +1,25 @@
-"""Plants as python-control has systems, and back. Wants ``pip install control``, which is imported here alone."""
+"""Plants as python-control has systems, and back; ``control`` takes a second to import, so plants import this where it is used.
+
+``Plant`` and ``SampledPlant`` hand themselves over; nothing of them is imported here.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import control
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.plant.plant import Plant, SampledPlant
-
 Array = NDArray[np.float64]
+Plant = TypeVar("Plant", bound=Any)
 
 LOADS = ["load_lag", "load_flap"]
 TIP = ["tip_lag", "tip_flap"]
 
 
-def plant_to_control(plant: Plant) -> control.StateSpace:
+def plant_to_control(plant: Any) -> control.StateSpace:
     """The plant from [voltages, line loads] to [currents, tip displacements]."""
     inputs, outputs = np.hstack([plant.B, plant.disturbance_input]), np.vstack([plant.C, plant.tip_displacement])
     feedthrough = np.zeros((len(outputs), inputs.shape[1]))
@@ -26,7 +28,7 @@ def plant_to_control(plant: Plant) -> control.StateSpace:
     return control.ss(plant.A, inputs, outputs, feedthrough, **names)
 
 
-def sampled_to_control(held: SampledPlant) -> control.StateSpace:
+def sampled_to_control(held: Any) -> control.StateSpace:
     """The sampled plant from [voltages, line loads], held over each interval, to currents."""
     feedthrough = np.hstack([held.D, np.zeros((len(held.C), held.disturbance_input.shape[1]))])
     names = {"inputs": _numbered("voltage", held.B.shape[1]) + LOADS, "outputs": _numbered("current", len(held.C))}

@@ -21,7 +21,7 @@ IDS = [*SCENARIOS[:5], "dropout and turbulence", "run-up", "drawn plants"]
 
 
 def batch_of(scenario, count):
-    task = resolve_task("thesis", None, None, None, scenario, 0.06, False)
+    task = resolve_task(scenario=scenario, duration=0.06)
     return Blades(task.bank, task.scenario, count)
 
 
@@ -77,7 +77,7 @@ def test_a_state_does_not_move_with_its_blades():
 
 
 def test_a_batch_of_several_plants_goes_on_too():
-    tasks = [resolve_task(preset, None, None, None, "default", 0.06, False) for preset in ("thesis", "thesis-untwisted")]
+    tasks = [resolve_task(preset, duration=0.06) for preset in ("thesis", "thesis-untwisted")]
     batches = [MixedBlades([task.bank for task in tasks], np.array([0, 1, 0]), tasks[0].scenario) for _ in range(2)]
     generators = [np.random.default_rng(seed) for seed in (1, 2)]
     for batch, generator in zip(batches, generators, strict=True):

@@ -20,7 +20,7 @@ CONFIG = blade_config()
 
 
 def bank_of(scenario):
-    return resolve_task("thesis", None, None, None, scenario, 0.01, False).bank
+    return resolve_task(scenario=scenario, duration=0.01).bank
 
 
 SHARED = {

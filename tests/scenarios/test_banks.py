@@ -102,7 +102,7 @@ def test_the_design_sees_the_displacements_of_the_true_blade(name):
 
 
 def spillover():
-    task = resolve_task("thesis", None, None, None, "spillover", 0.5, False)
+    task = resolve_task(scenario="spillover")
     return task.plant, task.design_plant
 
 

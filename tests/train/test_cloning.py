@@ -7,12 +7,12 @@ import pytest
 import torch
 from torch import nn
 
+from beamenv.task import resolve_task
 from train.learning.sb3.cloning import Cloning, Follower, clone
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.vec_env import BladeVecEnv
 from train.learning.through_plant.actors import ActorSettings, RecurrentActor
-from train.shared.task import task_of
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 BRIEF = Cloning(actions=60, samples=500, batch=64, gradient_steps=2)
@@ -21,7 +21,7 @@ BRIEF = Cloning(actions=60, samples=500, batch=64, gradient_steps=2)
 @pytest.fixture(scope="module")
 def teacher():
     torch.manual_seed(1)
-    return RecurrentActor(task_of(SHORT).design_plant, ActorSettings(units=6, output_gain=2.0), 1).policy(0)
+    return RecurrentActor(resolve_task(**SHORT).design_plant, ActorSettings(units=6, output_gain=2.0), 1).policy(0)
 
 
 def test_a_teacher_follows_windows_as_if_it_drove(teacher):
@@ -74,7 +74,7 @@ def test_a_teacher_must_be_shown_every_instant(teacher):
 )
 def test_fine_tuning_begins_from_the_clone(kind, settings, teacher, monkeypatch):
     monkeypatch.setattr(f"{kind.__module__}.Cloning", lambda: replace(BRIEF, actions=120, gradient_steps=4))
-    scratch, cloned = (kind([task_of(SHORT)], settings, 0, each) for each in (None, teacher))
+    scratch, cloned = (kind([resolve_task(**SHORT)], settings, 0, each) for each in (None, teacher))
     rows = np.random.default_rng(0).uniform(-0.1, 0.1, (50, 4)).astype(np.float32)
     wanted = teacher.predict(rows)[0]
     errors = [np.mean((training.policy().predict(rows)[0] - wanted) ** 2) for training in (scratch, cloned)]

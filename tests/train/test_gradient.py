@@ -50,7 +50,7 @@ def test_gradients_through_the_kernel_are_those_of_finite_differences(plant):
 
 
 def task_of(scenario="default", duration=0.5):
-    return resolve_task("thesis", None, None, None, scenario, duration, False)
+    return resolve_task(scenario=scenario, duration=duration)
 
 
 def test_windows_follow_one_another_through_an_episode(plant):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 
+from beamenv.task import resolve_task
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining, TQCTraining
-from train.shared.task import task_of
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = OffPolicySettings(
@@ -18,7 +18,7 @@ KINDS = pytest.mark.parametrize("kind", [SACTraining, TQCTraining])
 
 
 def trained(kind, settings=TINY, updates=4, seed=0):
-    training = kind([task_of(SHORT)], settings, seed)
+    training = kind([resolve_task(**SHORT)], settings, seed)
     for update in range(updates):
         training.update(1.0 - update / updates)
     return training
@@ -35,7 +35,7 @@ def test_a_few_updates_change_the_actor_and_tell_their_losses(kind):
 
 @KINDS
 def test_learning_begins_when_enough_is_remembered(kind):
-    training = kind([task_of(SHORT)], replace(TINY, first=96), 0)
+    training = kind([resolve_task(**SHORT)], replace(TINY, first=96), 0)
     learnt = []
     for _ in range(4):  # 32 actions each
         training.update(1.0)

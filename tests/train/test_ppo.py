@@ -9,10 +9,10 @@ import torch
 from gymnasium.vector import AutoresetMode
 
 import beamenv
+from beamenv.task import resolve_task
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings, RecurrentPPOTraining
 from train.learning.sb3.vec_env import BladeVecEnv
-from train.shared.task import task_of
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = PPOSettings(blades=8, history=3, rollout=4, batch=32, epochs=1, units=16)
@@ -20,7 +20,7 @@ TINY_RECURRENT = RecurrentPPOSettings(blades=8, history=3, held=3, rollout=4, ba
 
 
 def trained(kind, settings, updates=3, seed=0, environment=SHORT):
-    training = kind([task_of(environment)], settings, seed)
+    training = kind([resolve_task(**environment)], settings, seed)
     for update in range(updates):
         training.update(1.0 - update / updates)
     return training
@@ -75,7 +75,7 @@ def test_the_same_seed_trains_the_same_agent_and_another_another(kind, settings)
 
 
 def test_a_critic_that_learns_first_leaves_the_actor_alone():
-    training = PPOTraining([task_of(SHORT)], replace(TINY, critic_first=2), 0)
+    training = PPOTraining([resolve_task(**SHORT)], replace(TINY, critic_first=2), 0)
     before = training.policy().weights
     value = [parameter.detach().clone() for parameter in training.model.policy.value_net.parameters()]
     for _ in range(2):

@@ -12,12 +12,12 @@ import torch
 
 import train.learning.job
 from beamenv.plant.fingerprint import fingerprint
+from beamenv.task import resolve_task
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.job import Job, run
 from train.learning.recipe import parsed
 from train.learning.session import Budget, follow
-from train.shared.task import task_of
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"
@@ -161,7 +161,7 @@ def test_a_training_begun_again_is_the_same(recipe, tmp_path):
 def test_what_is_saved_tells_what_it_depends_on(tmp_path):
     (place,) = run(job(GRADIENT), tmp_path / "agent", ignore)
     about = json.loads((place / "agent.json").read_text())
-    plant = task_of(SHORT).design_plant
+    plant = resolve_task(**SHORT).design_plant
     assert about["recipe"] == GRADIENT.to_dict()
     assert (about["agent"], about["scenario"], about["seed"], about["updates"]) == ("gradient", "nominal", 0, 6)
     assert {"Python", "numpy", "torch", "stable-baselines3", "sb3-contrib", "gymnasium"} <= set(about["versions"])
@@ -184,7 +184,7 @@ def test_runs_side_by_side_are_saved_apart(tmp_path):
 def test_a_generalist_knows_the_plant_of_every_scenario(tmp_path, monkeypatch):
     monkeypatch.setattr(train.learning.job, "NAMES", ("nominal", "hysteresis"))
     (place,) = run(job(PPO, "generalist", updates=1), tmp_path, ignore)
-    tasks = [task_of({**SHORT, "scenario": name}) for name in ("nominal", "hysteresis")]
+    tasks = [resolve_task(**{**SHORT, "scenario": name}) for name in ("nominal", "hysteresis")]
     assert load_policy(place, tasks[0].design_plant).lowest == pytest.approx(-1.0)
     assert load_policy(place, tasks[1].design_plant).lowest == pytest.approx(-1.0 / 3.0)
 

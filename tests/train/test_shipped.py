@@ -6,10 +6,10 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from beamenv.task import resolve_task
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 from train.controllers.shipped import FOLDER, find_shipped, load_shipped, shipped
-from train.shared.task import task_of
 
 ONE = np.ones(4, np.float32)
 POLICY = HistoryPolicy(
@@ -51,7 +51,7 @@ def test_together_they_stay_below_5_mb():
 
 @lru_cache
 def design_plant(scenario):
-    return task_of({"scenario": scenario}).design_plant
+    return resolve_task(**{"scenario": scenario}).design_plant
 
 
 @pytest.mark.parametrize("each", shipped(), ids=lambda each: f"{each.agent}-{each.scenario}-{each.seed}")

@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 from beamenv.simulation.blades import reward_scale
+from beamenv.task import resolve_task
 from train.learning.sb3.sb3 import training_envs
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import REWARD_UNIT, BladeVecEnv
 from train.learning.training import uncontrolled_cost
-from train.shared.task import task_of
 
 SCENARIOS = ("nominal", "overload", "spillover")
 
 
 def tasks():
-    return [task_of({"duration": 0.01, "scenario": name}) for name in SCENARIOS]
+    return [resolve_task(**{"duration": 0.01, "scenario": name}) for name in SCENARIOS]
 
 
 def batch(index, count=2, **kwargs):
@@ -81,7 +81,7 @@ def test_rewards_are_in_units_of_no_control_s_cost():
 
 
 def test_training_never_meets_a_plant_of_the_evaluation():
-    task = task_of({"duration": 0.005, "scenario": {"plants": {"damping_ratio": (0.003, 0.02), "bank": 3}}})
+    task = resolve_task(**{"duration": 0.005, "scenario": {"plants": {"damping_ratio": (0.003, 0.02), "bank": 3}}})
     envs = training_envs([task], 4, 0, history=3)
     decays = {float(np.trace(fused[: len(fused), : len(fused)])) for fused in envs.blades.task.bank.operators.fused}
     others = {float(np.trace(fused[: len(fused), : len(fused)])) for fused in task.bank.operators.fused}

@@ -11,7 +11,7 @@ from typing import Any
 
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.named import NAMES
-from beamenv.task import Task
+from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
 from train.learning.agents import AGENTS
@@ -21,7 +21,6 @@ from train.learning.scalars import Scalars
 from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
 from train.shared.files import check_folder, write_csv
-from train.shared.task import task_of
 from train.shared.threads import one_torch_thread
 from train.shared.versions import versions
 
@@ -51,7 +50,7 @@ class Job:
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario."""
         scenarios = NAMES if self.scenario == GENERALIST else (self.scenario,)
-        return {str(each): task_of({**self.environment, "scenario": each}) for each in scenarios}
+        return {str(each): resolve_task(**{**self.environment, "scenario": each}) for each in scenarios}
 
     def identity(self) -> dict[str, Any]:
         """What two runs must share for one to resume the other."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from baselines import lqg
 from beamenv.scenarios.scenario import scenario
+from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
 from train.controllers.shipped import load_shipped, shipped
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
-from train.shared.task import task_of
 
 
 def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
@@ -24,7 +24,7 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
         return None, ""
     best = min(candidates, key=lambda row: row.estimates["difference_to_lqg"].value)
     arguments = {**environment, "scenario": best.scenario}
-    plant = task_of(arguments).design_plant
+    plant = resolve_task(**arguments).design_plant
     try:
         agent = load_shipped(ships[best.controller], _home(best), plant=plant)
     except ValueError:  # the table's blade is another one than that which agents ship for
