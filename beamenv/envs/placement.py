@@ -159,11 +159,13 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         tasks = [self._tasks[tuple(each[side] for side in SIDES)] for each in positions]
         self.env.unwrapped.set_task([replace(task) for task in tasks])  # type: ignore[attr-defined] # they share blades, not banks
         self._positions = positions
+        which = np.arange(self.num_envs) % len(positions)
+        self._whole = {side: np.array([each[side] for each in positions])[which] for side in SIDES}
+        """(N, patches), m: each blade's positions."""
 
     def _told(self, info: dict[str, Any]) -> dict[str, Any]:
-        which = np.arange(self.num_envs) % len(self._positions)
         everywhere = np.ones(self.num_envs, dtype=np.bool_)
-        layout: dict[str, Any] = {side: np.array([each[side] for each in self._positions])[which] for side in SIDES}
+        layout: dict[str, Any] = {side: whole.copy() for side, whole in self._whole.items()}
         layout.update({f"_{side}": everywhere.copy() for side in SIDES})
         return {**info, "layout": layout, "_layout": everywhere}
 

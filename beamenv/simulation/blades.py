@@ -15,7 +15,7 @@ from beamenv.scenarios.drawing import draw_uniforms, load_cases
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.kernel import advance, row_dot, row_product
-from beamenv.simulation.memory import batch_shape, columns_first, place
+from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.plants.allotment import Allotment
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
@@ -86,22 +86,27 @@ class Blades:
 
     ``plant`` is the one plant of them all, or a bank of plants, of which each episode has one. ``generators`` is one generator
     for all blades or a sequence of one for each, whichever ``begin`` was first given. Where the bank has groups, so have the
-    blades: equally large, one after the other, and rows that begin are to be in ascending order. With
+    blades, one after the other: ``count`` is then how many in each, and rows that begin are to be in ascending order. With
     ``physical_units`` actions are volts and readings amperes, else both are normalised.
     """
 
-    def __init__(self, plant: Plant | Bank, scenario: Scenario, count: int | None, physical_units: bool = False) -> None:
+    def __init__(
+        self, plant: Plant | Bank, scenario: Scenario, count: int | Sequence[int] | None, physical_units: bool = False
+    ) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
-        self.plant, self.scenario, self.count = self.bank.plant, scenario, count
-        self.shape = self._shape = batch_shape(count, self.bank.groups)
+        self.plant, self.scenario = self.bank.plant, scenario
+        self._sizes = (count,) if isinstance(count, int) else None if count is None else tuple(count)
+        self.count = None if self._sizes is None else sum(self._sizes)
+        self._lie = Arrangement.of(self._sizes)
+        self.shape = self._shape = self._lie.shape
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
         self._safe_energy = safe_energy(self.bank.strain)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
-        self.electronics = Electronics(self.plant, scenario, count or 1) if scenario.imperfect else None
-        self.plants = Allotment(self.bank, self._shape)
+        self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
+        self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
         own = self.plant, *self.bank.others
         self._lowest_frequency = np.array([plant.natural_frequencies[0] for plant in own])
         per_cost = np.array([-1.0 / reward_scale(plant) for plant in own])
@@ -109,18 +114,18 @@ class Blades:
         self._lay_out()
 
     def _lay_out(self) -> None:
-        """Column by column where all blades of a block have one plant, blade by blade for several: each as BLAS likes it."""
+        """Column by column where blades of a group have one plant, blade by blade for a plant each: as BLAS likes it."""
         n, m = self.plant.B.shape
         widths = n + m + 2, self.bank.operators.fused.shape[-1], m
-        if len(self.bank) == self.bank.groups:
-            self._joined, self._product, self._weighted = (columns_first(self._shape, width)[1] for width in widths)
+        if len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups):
+            self._joined, self._product, self._weighted = (self._lie.columns_first(width)[1] for width in widths)
         else:
             self._joined, self._product, self._weighted = (np.zeros((*self._shape, width)) for width in widths)
         self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
 
     def __getstate__(self) -> tuple[Any, ...]:
         moving = self._joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
-        return self.bank, self.scenario, self.count, self._physical, *moving
+        return self.bank, self.scenario, self._sizes, self._physical, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
@@ -154,7 +159,8 @@ class Blades:
             raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
         state = self.state
         if len(self.bank) == self.bank.groups and self._shape:
-            return np.asarray(state.reshape(len(self.bank), -1, state.shape[-1]) @ self.bank.to_design).reshape(len(state), -1)
+            views = self.bank.to_design if self._lie.runs else self.bank.to_design[0]
+            return np.asarray(self._lie.product(state[None], views)[0])
         seen = row_product(np.atleast_2d(state), self.bank.to_design[self.plants.index])
         return np.asarray(seen if self._shape else seen[0])
 
@@ -180,7 +186,7 @@ class Blades:
             rows = np.arange(self.count or 1)
             kind = SharedDisturbances if isinstance(generators, np.random.Generator) else SeededDisturbances
             turbulence = Turbulence.of(self.plant, scenario)
-            self._disturbances = kind(noise_factor(self._normalised, scenario), self._shape, turbulence)
+            self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence)
         assert self._disturbances is not None
         numbers = self._draw(scenario, generators, rows)
         self._begin_plants_and_faults(rows, numbers.faults)
@@ -195,7 +201,7 @@ class Blades:
             state += self.bank.start[self.plants.group[rows]]
         if initial_state is not None:
             state[...] = initial_state
-        at = place(rows, self._shape)
+        at = self._lie.place(rows)
         self._joined[at] = 0.0
         self._state[at] = state
         motion = self._undriven(state, noise, rows)
@@ -260,11 +266,11 @@ class Blades:
         acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
         self._voltages[...] = acting.reshape(self._voltages.shape)
         self._disturbances.loads(self._loads)
-        following, reading, tip, increment = advance(self.plants.operators, self._joined, out=self._product)
+        following, reading, tip, increment = advance(self.plants.operators, self._joined, self._product, self._lie.product)
         self._state[...] = following
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = 0.5 * row_dot(self._state, self._state)
-        effort = row_dot(row_product(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
+        effort = row_dot(self._lie.product(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
         self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))

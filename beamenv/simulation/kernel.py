@@ -43,16 +43,18 @@ class Operators:
         return Operators(self.fused[index], self.states, self.outputs)
 
 
-def advance(operators: Operators, joined: Any, out: Any = None) -> tuple[Any, Any, Any, Any]:
+def advance(
+    operators: Operators, joined: Any, out: Any = None, multiply: Callable[[Any, Any, Any], Any] | None = None
+) -> tuple[Any, Any, Any, Any]:
     """One control interval, exactly.
 
     ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
     increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., n + m + 2 + n + p + 2) may be given to
-    hold the product, and the first three arrays are then views of it.
+    hold the product, and the first three arrays are then views of it. ``multiply`` stands in for ``row_product``.
     """
     n, p = operators.states, operators.outputs
-    product = row_product(joined, operators.fused, out)
+    product = (multiply or row_product)(joined, operators.fused, out)
     increment = row_dot(product[..., n + p + 2 :], joined)
     return product[..., :n], product[..., n : n + p], product[..., n + p : n + p + 2], increment
 

@@ -1,9 +1,16 @@
-"""How a batch of blades lies in memory: (blocks, size) blades, each block column by column."""
+"""How a batch of blades lies in memory, column by column: in (blocks, size) blades, or in groups of a plant each."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+from beamenv.simulation.kernel import row_product
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -11,27 +18,71 @@ Rows = NDArray[np.int64]
 _BLOCK = 256
 """Blades that lie together in memory: BLAS multiplies blocks of this size fastest."""
 
+_PAGE, _SHIFT = 64, 24
+"""Columns of groups begin this many numbers after a multiple of that: powers of two apart they would share the cache's lines."""
 
-def batch_shape(count: int | None, groups: int = 1) -> tuple[int, ...]:
-    """Shape of the batch: () for a blade alone, else (blocks, size) with size near ``_BLOCK`` where count has such a divisor.
 
-    Blades of several equal ``groups``, one after the other, share no block.
-    """
-    if count is None:
-        return ()
-    each = count // groups
-    size = next((size for size in range(min(each, _BLOCK), _BLOCK // 4, -1) if each % size == 0), each)
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Neighbouring groups of equally many blades, of which one product takes care."""
+
+    rows: slice
+    groups: slice
+    shape: tuple[int, int, int]
+    """(groups, blocks, size)"""
+
+    def of(self, array: NDArray[Any]) -> NDArray[Any]:
+        """Its rows of (1, N, columns), seen as (groups, blocks, size, columns)."""
+        return array[0, self.rows].reshape(*self.shape, -1)
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """Where in memory the blades of a batch are."""
+
+    shape: tuple[int, ...]
+    """() for a blade alone, (blocks, size), or (1, N) where there are groups."""
+    runs: tuple[Run, ...] = ()
+    """The groups; none where all blades are of one."""
+
+    @classmethod
+    def of(cls, sizes: Sequence[int] | None) -> Arrangement:
+        """That of so many blades in each group; None is a blade alone."""
+        if sizes is None or len(sizes) == 1:
+            return cls(() if sizes is None else batch_shape(sizes[0]))
+        runs, start = [], 0
+        for size, groups in groupby(range(len(sizes)), sizes.__getitem__):
+            first, *further = groups
+            count = 1 + len(further)
+            blocks, each = batch_shape(size)
+            runs.append(Run(slice(start, start + count * size), slice(first, first + count), (count, blocks, each)))
+            start += count * size
+        return cls((1, sum(sizes)), tuple(runs))
+
+    def columns_first(self, columns: int) -> tuple[Array, Array]:
+        """Zeros that lie in memory as (blocks, column, blade), and the same seen as (blocks, blade, column): fast for large
+        batches, since every column is contiguous. Both (column,) for a blade alone.
+        """
+        *blocks, size = self.shape or (0,)
+        spread = -size % _PAGE + _SHIFT if self.runs else 0
+        memory = np.zeros((*blocks, columns, size + spread))[..., :size] if self.shape else np.zeros(columns)
+        return memory, memory.swapaxes(-2, -1) if self.shape else memory
+
+    def place(self, rows: Rows) -> tuple[Rows, ...]:
+        """Index of ``rows`` in arrays of the batch's shape."""
+        return np.divmod(rows, self.shape[-1]) if self.shape else ()
+
+    def product(self, rows: Any, matrix: Any, out: Any = None) -> Any:
+        """As ``row_product``; but matrices (groups, k, l) are one for each group's rows."""
+        if not self.runs or matrix.ndim != 3:
+            return row_product(rows, matrix, out)
+        out = np.empty((*self.shape, matrix.shape[-1])) if out is None else out
+        for run in self.runs:
+            row_product(run.of(rows), matrix[run.groups, None], run.of(out))
+        return out
+
+
+def batch_shape(count: int) -> tuple[int, int]:
+    """(blocks, size) with size near ``_BLOCK`` where count has such a divisor."""
+    size = next((size for size in range(min(count, _BLOCK), _BLOCK // 4, -1) if count % size == 0), count)
     return count // size, size
-
-
-def columns_first(shape: tuple[int, ...], columns: int) -> tuple[Array, Array]:
-    """Zeros that lie in memory as (blocks, column, blade), and the same seen as (blocks, blade, column): fast for large
-    batches, since every column is contiguous. Both (column,) for the shape () of a single blade.
-    """
-    memory = np.zeros((*shape[:-1], columns, *shape[-1:]))
-    return memory, memory.swapaxes(-2, -1) if shape else memory
-
-
-def place(rows: Rows, shape: tuple[int, ...]) -> tuple[Rows, ...]:
-    """Index of ``rows`` in arrays of the batch's shape."""
-    return np.divmod(rows, shape[-1]) if shape else ()

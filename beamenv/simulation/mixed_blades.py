@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 class MixedBlades:
     """N blades, blade k of ``banks[kind[k]]``, with the interface of ``Blades``; all have equally many states and patches.
 
-    Blades of one kind lie together, and neighbouring kinds of equally many blades are advanced together, by one product.
+    Blades of one kind lie together, and neighbouring kinds that are alike are one batch of as many groups.
     One generator for all serves kind after kind, in their order.
     """
 
@@ -28,33 +28,35 @@ class MixedBlades:
         present = [bank for k, bank in enumerate(banks) if np.any(kind == k)]
         self._parts: list[Blades] = []
         self._rows: list[Rows] = []
-        for together in _alike(members, present):
+        for together in _alike([len(rows) for rows in members], present):
             rows = np.concatenate([members[k] for k in together])
-            self._parts.append(Blades(Bank.joined([present[k] for k in together]), scenario, len(rows), physical_units))
+            sizes = [len(members[k]) for k in together]
+            self._parts.append(Blades(Bank.joined([present[k] for k in together]), scenario, sizes, physical_units))
             self._rows.append(rows)
         self._part, self._own = np.empty(self.count, dtype=np.int64), np.empty(self.count, dtype=np.int64)
         for part, rows in enumerate(self._rows):
             self._part[rows], self._own[rows] = part, np.arange(len(rows))
+        self._order = np.argsort(np.concatenate(self._rows))
 
     @property
     def state(self) -> Array:
         """(N, n) true states in energy coordinates."""
-        return _together([blades.state for blades in self._parts], self._rows)
+        return _in_order([blades.state for blades in self._parts], self._order)
 
     @property
     def design_state(self) -> Array:
         """(N, d) true states in the design plants' coordinates."""
-        return _together([blades.design_state for blades in self._parts], self._rows)
+        return _in_order([blades.design_state for blades in self._parts], self._order)
 
     @property
     def index(self) -> Rows:
         """(N,) place of each blade's plant in its bank."""
-        return np.asarray(_together([blades.index for blades in self._parts], self._rows))
+        return _in_order([blades.index for blades in self._parts], self._order)
 
     @property
     def speed(self) -> Array:
         """(N,) rad/s."""
-        return _together([blades.speed for blades in self._parts], self._rows)
+        return _in_order([blades.speed for blades in self._parts], self._order)
 
     def begin(
         self,
@@ -73,7 +75,7 @@ class MixedBlades:
             state = initial_state[place] if initial_state is not None and initial_state.ndim == 2 else initial_state
             motions.append(blades.begin(_of(generators, members), own, scenario, state))
             places.append(place)
-        return _one_motion(motions, places)
+        return _one_motion(motions, np.argsort(np.concatenate(places)))
 
     def _of_part(self, part: int, rows: Rows) -> Rows:
         """Places in ``rows`` of those that a part has, in its own order."""
@@ -85,8 +87,10 @@ class MixedBlades:
         motions = []
         for part, (blades, members) in enumerate(zip(self._parts, self._rows, strict=True)):
             own = None if resting is None else self._own[resting[self._of_part(part, resting)]]
-            motions.append(blades.step(actions[members], _of(generators, members), own if own is not None and len(own) else None))
-        return _one_motion(motions, self._rows)
+            motions.append(
+                blades.step(actions.take(members, axis=0), _of(generators, members), own if own is not None and len(own) else None)
+            )
+        return _one_motion(motions, self._order)
 
     def state_dict(self) -> dict[str, Any]:
         """What moves, part by part: see ``Blades.state_dict``."""
@@ -98,12 +102,12 @@ class MixedBlades:
             blades.load_state_dict(own)
 
 
-def _alike(members: Sequence[Rows], banks: Sequence[Bank]) -> list[list[int]]:
-    """Kinds, in their order, of which neighbours have equally many blades and banks that are alike."""
+def _alike(sizes: Sequence[int], banks: Sequence[Bank]) -> list[list[int]]:
+    """Kinds, in their order, of which neighbours have banks that are alike; single blades, multiplied otherwise, keep apart."""
     together: list[list[int]] = []
-    for kind, (rows, bank) in enumerate(zip(members, banks, strict=True)):
+    for kind, (size, bank) in enumerate(zip(sizes, banks, strict=True)):
         first = together[-1][0] if together else kind
-        if together and len(rows) == len(members[first]) and bank.is_like(banks[first]):
+        if together and (size == 1) == (sizes[first] == 1) and bank.is_like(banks[first]):
             together[-1].append(kind)
         else:
             together.append([kind])
@@ -115,13 +119,10 @@ def _of(generators: Generators, members: Rows) -> Generators:
     return generators if isinstance(generators, np.random.Generator) else [generators[row] for row in members]
 
 
-def _one_motion(motions: Sequence[Motion], places: Sequence[Rows]) -> Motion:
-    return Motion(*(_together(parts, places) for parts in zip(*motions, strict=True)))
+def _one_motion(motions: Sequence[Motion], order: Rows) -> Motion:
+    return Motion(*(_in_order(parts, order) for parts in zip(*motions, strict=True)))
 
 
-def _together(parts: Sequence[NDArray[Any]], places: Sequence[Rows]) -> NDArray[Any]:
-    """Rows of several arrays, each at its places, in one."""
-    whole = np.empty((sum(map(len, places)), *parts[0].shape[1:]), dtype=parts[0].dtype)
-    for part, place in zip(parts, places, strict=True):
-        whole[place] = part
-    return whole
+def _in_order(parts: Sequence[NDArray[Any]], order: Rows) -> NDArray[Any]:
+    """Rows of several arrays, one after the other, in another order."""
+    return (parts[0] if len(parts) == 1 else np.concatenate(parts)).take(order, axis=0)

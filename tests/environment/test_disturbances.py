@@ -11,6 +11,7 @@ from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
 from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.signals.disturbances import BLOCK, SeededDisturbances, SharedDisturbances, noise_factor
 
 PLANT = build_plant(blade_config())
@@ -25,7 +26,7 @@ def correlated_plant():
 
 @pytest.mark.parametrize("plant", [PLANT, correlated_plant()])
 def test_white_loads_and_sensor_noise_have_the_plants_covariance(plant):
-    shared = SharedDisturbances(noise_factor(plant, SCENARIOS["white"]), (8, 250))
+    shared = SharedDisturbances(noise_factor(plant, SCENARIOS["white"]), Arrangement((8, 250)))
     rng = np.random.default_rng(0)
     cases = draw_load_cases(SCENARIOS["white"], plant, rng, 2000)
     shared.begin(np.arange(2000), cases, rng.standard_normal((2000, shared.columns)))
@@ -45,7 +46,7 @@ def test_white_loads_and_sensor_noise_have_the_plants_covariance(plant):
 
 def test_both_ways_of_drawing_have_the_same_covariance():
     factor = noise_factor(PLANT, SCENARIOS["white"])
-    seeded = SeededDisturbances(factor, (1, 100))
+    seeded = SeededDisturbances(factor, Arrangement((1, 100)))
     generators = [np.random.default_rng(seed) for seed in range(100)]
     seeded.begin(np.arange(100), draw_load_cases(SCENARIOS["white"], PLANT, generators, 100), generators)
     loads = np.empty((300, 1, 100, 2))
@@ -66,7 +67,7 @@ def tape(seeds, instants, shape=None):
     """(instants, blades, 2 + p) of what seeded disturbances give."""
     generators = [np.random.default_rng(seed) for seed in seeds]
     shape = (1, len(seeds)) if shape is None else shape
-    seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), shape)
+    seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), Arrangement(shape))
     cases = draw_load_cases(SCENARIOS["default"], PLANT, generators, len(seeds))
     noise = [seeded.begin(np.arange(len(seeds)), cases, generators)]
     loads = []
@@ -99,7 +100,7 @@ def test_a_blade_that_begins_again_meets_what_it_would_meet_alone(restart, rest)
     def second_episode(seeds, row):
         generators = [np.random.default_rng(seed) for seed in seeds]
         shape = (1, len(seeds))
-        seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), shape)
+        seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), Arrangement(shape))
         cases = draw_load_cases(SCENARIOS["default"], PLANT, generators, len(seeds))
         seeded.begin(np.arange(len(seeds)), cases, generators)
         for _ in range(restart):

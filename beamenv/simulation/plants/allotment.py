@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.simulation.kernel import Operators
-from beamenv.simulation.memory import place
+from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.plants.bank import Bank
 
 Array = NDArray[np.float64]
@@ -18,26 +17,23 @@ Rows = NDArray[np.int64]
 
 
 class Allotment:
-    """The plants of N blades, their operators gathered; ``shape`` is that of the batch, () for one blade.
+    """The plants of N blades, their operators gathered; ``sizes`` says how many blades each of the bank's groups has."""
 
-    Where a bank has groups, the blades have as many, equally large and one after the other.
-    """
-
-    def __init__(self, bank: Bank, shape: tuple[int, ...]) -> None:
-        self._bank, self._shape = bank, shape
+    def __init__(self, bank: Bank, lie: Arrangement, sizes: Sequence[int]) -> None:
+        self._bank, self._lie = bank, lie
         self._each = len(bank) // bank.groups
-        count = math.prod(shape)
-        self.group: Rows = np.repeat(np.arange(bank.groups), count // bank.groups)
+        self.group: Rows = np.repeat(np.arange(bank.groups), sizes)
         """(N,) which group each blade is of."""
         self._first = self._each * self.group
+        self._leads = np.searchsorted(self.group, np.arange(bank.groups))
         self.index: Rows = self._first.copy()
         """(N,) places in the bank."""
         self.drawn = self._each > 1 and not bank.runs
         """Whether each episode has a plant of its own, drawn from those of its group."""
         self.operators: Operators
-        """Of the one plant that all blades have now, of each block's (blocks, …), or of each blade's (*shape, …)."""
+        """Of the one plant that all blades have now, of each group's (groups, …), or of each blade's (*shape, …)."""
         self.effort_weight: Array
-        """(m, m), (blocks, m, m) or (*shape, m, m), J s."""
+        """(m, m), (groups, m, m) or (*shape, m, m), J s."""
         self._gather()
 
     @property
@@ -55,8 +51,8 @@ class Allotment:
 
     def _allot(self, rows: Rows, index: Rows) -> None:
         self.index[rows] = index
-        if self.drawn and self._shape and len(rows) < len(self.index):
-            at = place(rows, self._shape)  # in place: operators of many blades are many megabytes
+        if self.drawn and self._lie.shape and len(rows) < len(self.index):
+            at = self._lie.place(rows)  # in place: operators of many blades are many megabytes
             self.operators.fused[at] = self._bank.operators.fused[index]
             self.effort_weight[at] = self._bank.effort_weight[index]
         elif self._each > 1:
@@ -82,10 +78,10 @@ class Allotment:
         self.effort_weight = self._bank.effort_weight[places]
 
     def _places(self) -> Any:
-        """One place in the bank for all blades, one for each block or one for each blade: whichever is the least that will do."""
-        if not self._shape:
+        """One place in the bank for all blades, one for each group or one for each blade: whichever is the least that will do."""
+        if not self._lie.shape:
             return self.index[0]
-        groups = self.index.reshape(self._bank.groups, -1)
-        if self.drawn or not (groups == groups[:, :1]).all():
-            return self.index.reshape(self._shape)
-        return groups[0, 0] if len(groups) == 1 else np.repeat(groups[:, 0], self._shape[0] // len(groups))
+        first = self.index[self._leads]
+        if self.drawn or not np.array_equal(self.index, first[self.group]):
+            return self.index.reshape(self._lie.shape)
+        return first if self._lie.runs else first[0]

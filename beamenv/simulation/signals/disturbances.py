@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.load_cases import LoadCases
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.memory import columns_first, place
+from beamenv.simulation.memory import Arrangement, Run
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -77,25 +77,31 @@ def _square_root(covariance: Array) -> Array:
 class SharedDisturbances:
     """Disturbances of N blades from one generator, drawn anew at every instant.
 
-    ``shape`` is that of the batch: () for one blade, (blocks, size) for more. Memory is (blocks, column, blade).
+    Normals are drawn as (blocks, column, blade), group after group where the batch has groups.
     """
 
-    def __init__(self, factor: Array, shape: tuple[int, ...], turbulence: Turbulence | None = None) -> None:
+    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None) -> None:
+        shape, self._lie = lie.shape, lie
         self._turbulence, self._gusts = turbulence, np.zeros((*shape, 2))
         self._factor = factor if np.any(factor - np.diag(np.diagonal(factor))) else np.diagonal(factor).copy()
-        self._normals, self._rows = columns_first(shape, len(factor))
-        _, self._amplitude = columns_first(shape, 2)
+        self._normals, self._rows = lie.columns_first(len(factor))
+        self._drawn = [(self._rows, self._rows)]
+        """Normals (…, c), and where the disturbances made of them go."""
+        if lie.runs:
+            self._normals = np.zeros((math.prod(shape), len(factor)))
+            self._drawn = [(_drawn_by_column(run, self._normals), run.of(self._rows)) for run in lie.runs]
+        _, self._amplitude = lie.columns_first(2)
         self._steps = np.zeros(math.prod(shape), dtype=np.int64)
         self._cases: LoadCases | None = None
 
     def __getstate__(self) -> tuple[Any, ...]:
         carried = self._rows.copy(), self._amplitude.copy(), self._steps, self._cases, self._gusts
-        return self._factor, self._rows.shape[:-1], self._turbulence, *carried
+        return self._factor, self._lie, self._turbulence, *carried
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
-        factor, shape, turbulence, rows, amplitude, steps, cases, gusts = state
-        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, shape, turbulence)  # type: ignore[misc]
+        factor, lie, turbulence, rows, amplitude, steps, cases, gusts = state
+        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, lie, turbulence)  # type: ignore[misc]
         self._rows[...], self._amplitude[...] = rows, amplitude
         self._steps, self._cases, self._gusts = steps, cases, gusts
 
@@ -106,7 +112,7 @@ class SharedDisturbances:
         """
         self._cases = merged(self._cases, rows, cases)
         self._steps[rows] = 0
-        at = place(rows, self._rows.shape[:-1])
+        at = self._lie.place(rows)
         self._amplitude[at] = cases.amplitude
         disturbance = normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
         self._rows[at] = disturbance
@@ -133,10 +139,11 @@ class SharedDisturbances:
         """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − 2). ``resting`` makes no difference here."""
         self._steps += 1
         generator.standard_normal(out=self._normals)
-        if self._factor.ndim == 1:
-            np.multiply(self._rows, self._factor, out=self._rows)
-        else:
-            self._rows[...] = self._rows @ self._factor
+        for normals, rows in self._drawn:
+            if self._factor.ndim == 1:
+                np.multiply(normals, self._factor, out=rows)
+            else:
+                rows[...] = normals @ self._factor
         if self._turbulence is not None:
             self._gusts = self._turbulence.following(self._gusts, self._rows[..., -2:])
         return self._rows[..., 2:]
@@ -162,13 +169,13 @@ class SeededDisturbances:
     """Disturbances of N blades, each from its own generator.
 
     The rows of the next ``BLOCK`` instants lie in a ring that all blades read at the same place; each blade's part is
-    drawn again whenever its own episode has used up its block. ``shape`` is that of the batch: () or (blocks, size).
+    drawn again whenever its own episode has used up its block.
     """
 
-    def __init__(self, factor: Array, shape: tuple[int, ...], turbulence: Turbulence | None = None) -> None:
-        count = math.prod(shape)
+    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None) -> None:
+        count = math.prod(lie.shape)
         self._turbulence, self._gusts = turbulence, np.zeros((count, 2))
-        self._factor, self._shape = factor, shape
+        self._factor, self._shape = factor, lie.shape
         self._ring = np.zeros((BLOCK, count, len(factor)))
         self._see_ring()
         self._at = 0
@@ -263,6 +270,12 @@ class SeededDisturbances:
             gusts = np.where(begins, instant[:, -2:], following) if k == 0 else following
             instant[:, :2] += gusts
         self._gusts[rows] = gusts
+
+
+def _drawn_by_column(run: Run, normals: Array) -> Array:
+    """A run's share of normals drawn one after the other, seen as (groups, blocks, size, c)."""
+    groups, blocks, size = run.shape
+    return normals[run.rows].reshape(groups, blocks, -1, size).swapaxes(-2, -1)
 
 
 def merged(cases: LoadCases | None, rows: Rows, others: LoadCases) -> LoadCases:
