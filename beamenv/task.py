@@ -177,6 +177,13 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     return designed
 
 
+def checked_task(task: Any) -> Task:
+    """The task; ``ValueError`` for anything else."""
+    if isinstance(task, Task):
+        return task
+    raise Refused("task", task, "a Task, such as resolve_task makes")
+
+
 def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
     """The action as float64; ValueError unless it has the shape and all its numbers are finite."""
     action = _numbers("action", action)
