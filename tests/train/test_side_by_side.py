@@ -7,7 +7,7 @@ from beamenv.simulation.blades import reward_scale
 from beamenv.task import resolve_task
 from train.learning.sb3.sb3 import training_envs
 from train.learning.sb3.side_by_side import SideBySide
-from train.learning.sb3.vec_env import REWARD_UNIT, BladeVecEnv
+from train.learning.sb3.vec_env import REWARD_UNIT, TrainingVecEnv
 from train.learning.training import uncontrolled_cost
 
 SCENARIOS = ("nominal", "overload", "spillover")
@@ -18,7 +18,7 @@ def tasks():
 
 
 def batch(index, count=2, **kwargs):
-    return BladeVecEnv(count, tasks()[index], index, history=3, shows_state=True, **kwargs)
+    return TrainingVecEnv(count, tasks()[index], index, history=3, shows_state=True, **kwargs)
 
 
 def several():

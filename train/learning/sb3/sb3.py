@@ -13,16 +13,16 @@ from torch import nn
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
-from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.sb3.vec_env import TrainingVecEnv
 from train.learning.training import on_training_bank, uncontrolled_cost
 
-Envs = BladeVecEnv | SideBySide
+Envs = TrainingVecEnv | SideBySide
 
 
 def training_envs(tasks: Sequence[Task], blades: int, seed: int, **seen: Any) -> Envs:
     """The batch that an agent trains on, its plants from the training bank; with several tasks the blades are divided among them.
 
-    ``seen`` are keyword arguments of ``BladeVecEnv``.
+    ``seen`` are keyword arguments of ``TrainingVecEnv``.
     """
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
@@ -30,7 +30,7 @@ def training_envs(tasks: Sequence[Task], blades: int, seed: int, **seen: Any) ->
     for index, task in enumerate(map(on_training_bank, tasks)):
         count = blades // len(tasks) + (index < blades % len(tasks))
         reference = uncontrolled_cost(task)
-        batches.append(BladeVecEnv(count, task, seed + index, reference=reference, shows_state=True, **seen))
+        batches.append(TrainingVecEnv(count, task, seed + index, reference=reference, shows_state=True, **seen))
     return batches[0] if len(batches) == 1 else SideBySide(batches)
 
 
