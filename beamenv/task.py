@@ -177,6 +177,13 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     return designed
 
 
+def checked_task(task: Any) -> Task:
+    """The task; ``ValueError`` for anything else."""
+    if isinstance(task, Task):
+        return task
+    raise Refused("task", task, "a Task, such as resolve_task makes")
+
+
 def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
     """The action as float64; ValueError unless it has the shape and all its numbers are finite."""
     action = _numbers("action", action)
@@ -191,9 +198,12 @@ def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
 
 def _numbers(name: str, value: Any) -> Array:
     try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} is {value!r}, but must be an array of numbers.") from None
+        given = np.asarray(value)
+        if given.dtype.kind not in "fiub":  # complex numbers would lose a part, text would be read as numbers
+            raise TypeError
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError, RuntimeError):  # torch raises the last of a tensor that wants a gradient
+        raise Refused(name, value, "an array of numbers") from None
 
 
 def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> tuple[Scenario, Array | None]:

@@ -45,7 +45,11 @@ class FunctionController:
         self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = True
     ) -> tuple[Any, None]:
         """Action and no memory. Raises ValueError unless the function gives as many rows of voltages as it is given readings."""
-        action = np.asarray(self.function(observation))
+        given = self.function(observation)
+        try:
+            action = np.asarray(given)
+        except (TypeError, ValueError, RuntimeError) as error:  # torch raises the last of a tensor that wants a gradient
+            raise ValueError(f"controller = {self.name} gives what is no array: {error}") from None
         if action.ndim != np.ndim(observation) or action.shape[:-1] != np.shape(observation)[:-1]:
             raise ValueError(
                 f"controller = {self.name} gives actions of shape {action.shape} for observations of shape "

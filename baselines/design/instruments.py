@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any, get_args
 
 import numpy as np
 
 from baselines.design.controller import Array, Observes
+from baselines.design.matrix import real_matrix
+from beamenv.configuration import Choice, Number, Refused, checked
 from beamenv.plant.plant import Plant, drive_limit
+from beamenv.plant.read_only import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Instruments:
+class Instruments(ReadOnly):
     """Scales of the p measurements and the m voltages, the drive limits, and the interval between two decisions."""
 
     measurement_scale: Array
@@ -25,9 +29,20 @@ class Instruments:
     observes: Observes = "observation"
     """What is measured; the true state (n,) is what no real blade offers."""
 
+    def __post_init__(self) -> None:
+        """Arrays of one's own, which nobody writes to; ``ValueError`` for scales and limits that no law could stand behind."""
+        p, m = (np.size(each) for each in (self.measurement_scale, self.voltage_scale))
+        for name, shape in (("measurement_scale", (p,)), ("voltage_scale", (m,)), ("voltage_limits", (2, m))):
+            numbers = real_matrix(name, getattr(self, name), shape)
+            numbers.setflags(write=False)
+            object.__setattr__(self, name, numbers)
+        object.__setattr__(self, "interval", checked("interval", self.interval, Number(gt=0.0, unit="s")))
+        checked("observes", self.observes, Choice(get_args(Observes)))
+
     @classmethod
     def of(cls, plant: Plant, observes: Observes = "observation") -> Instruments:
         """Those of an environment around this plant, which takes and gives normalised numbers."""
+        checked_plant(plant)
         scale = np.ones(len(plant.A)) if observes == "state" else plant.sensor_full_scale
         scale = np.append(scale, 1.0) if observes == "observation and speed" else scale
         return cls(scale, drive_limit(plant), plant.voltage_limits, plant.control_interval, observes)
@@ -35,6 +50,11 @@ class Instruments:
     def in_physical_units(self) -> Instruments:
         """The same for an environment made with ``physical_units=True``, which gives amperes and takes volts."""
         return replace(self, measurement_scale=np.ones_like(self.measurement_scale), voltage_scale=np.ones_like(self.voltage_scale))
+
+    def fit(self, physical_units: bool) -> bool:
+        """Whether an environment with or without physical units is what they are scaled for."""
+        drive = self.voltage_scale if physical_units else self.drive(np.abs(self.voltage_limits).max(axis=0))
+        return bool(np.allclose(drive, 1.0))
 
     def read(self, observation: Array) -> Array:
         """Measurement (…, p) in A from an observation."""
@@ -58,3 +78,17 @@ class Instruments:
         units = "physical units" if np.all(self.voltage_scale == 1.0) else "normalised units"
         counts = f"{self.observes} ({len(self.measurement_scale)}), {len(self.voltage_scale)} voltages"
         return f"{counts}; {1e3 * self.interval:.4g} ms; {low:.5g} … {high:.5g} V; {units}"
+
+
+def checked_plant(plant: Any) -> Plant:
+    """The plant; ``ValueError`` for what is none, such as the environment that has one."""
+    if isinstance(plant, Plant):
+        return plant
+    raise Refused("plant", plant, "a beamenv.Plant, such as env.unwrapped.design_plant")
+
+
+def checked_instruments(instruments: Any) -> Instruments:
+    """The instruments; ``ValueError`` for what is none."""
+    if isinstance(instruments, Instruments):
+        return instruments
+    raise Refused("instruments", instruments, "an Instruments, such as Instruments.of(plant)")

@@ -9,12 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from baselines.design.controller import Array, Observes, name_of
-from baselines.design.instruments import Instruments
+from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.law import Law
+from baselines.design.matrix import real_matrix
 from beamenv.plant.plant import Plant
 
 if TYPE_CHECKING:
     import control
+
+
+MATRICES = ("transition", "measurement_input", "voltage_input", "state_gain", "measurement_gain")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -43,7 +47,13 @@ class LinearController(Law):
     _limits: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]."""
+        """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]; ``ValueError`` for matrices that do not fit."""
+        checked_instruments(self.instruments)
+        s, p, m = _rows(self.transition), len(self.instruments.measurement_scale), len(self.instruments.voltage_scale)
+        for name, shape in zip(MATRICES, ((s, s), (s, p), (s, m), (m, s), (m, p)), strict=True):
+            matrix = real_matrix(name, getattr(self, name), shape)
+            matrix.setflags(write=False)  # it is fused below: written to, it would change nothing
+            object.__setattr__(self, name, matrix)
         scale, drive = self.instruments.measurement_scale, self.instruments.voltage_scale[:, None]
         memory = np.hstack([self.transition, self.measurement_input * scale])
         action = np.hstack([self.state_gain, self.measurement_gain * scale]) / drive
@@ -76,12 +86,12 @@ class LinearController(Law):
         """
         if (plant is None) == (instruments is None):
             raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given")
-        behind = instruments or Instruments.of(plant)  # type: ignore[arg-type] # one of the two is there
+        behind = Instruments.of(plant) if instruments is None else checked_instruments(instruments)  # type: ignore[arg-type]
         matrices = _matrices(A, behind) if B is None and C is None and D is None else (A, B, C, D)
-        s, p, m = len(np.atleast_1d(np.asarray(matrices[0]))), len(behind.measurement_scale), len(behind.voltage_scale)
+        s, p, m = _rows(matrices[0]), len(behind.measurement_scale), len(behind.voltage_scale)
         shapes = {"A": (s, s), "B": (s, p), "C": (m, s), "D": (m, p), "voltage_input": (s, m)}
         given = (*matrices, np.zeros((s, m)) if voltage_input is None else voltage_input)
-        F, G, M, T, H = (_checked(name, each, shapes[name]) for name, each in zip(shapes, given, strict=True))
+        F, G, M, T, H = (real_matrix(name, each, shapes[name]) for name, each in zip(shapes, given, strict=True))
         return cls(name, behind, F - H @ M, G - H @ T, H, M, T)
 
     def to_control(self) -> control.StateSpace:
@@ -137,6 +147,11 @@ def linear(controller: object) -> LinearController:
     )
 
 
+def _rows(matrix: Any) -> int:
+    """So many rows ``A`` has, which decides the shapes of all."""
+    return len(matrix) if hasattr(matrix, "__len__") else 1
+
+
 def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any]:
     """Of a system of python-control, or one like it."""
     if not hasattr(system, "dt"):
@@ -146,20 +161,13 @@ def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any
     if not hasattr(system, "A"):
         import control
 
-        system = control.ss(system)
+        try:
+            system = control.ss(system)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"A is a system that control.ss does not convert: {error}") from None
     if system.dt is not True and not (system.dt and np.isclose(system.dt, instruments.interval, rtol=1e-6)):
         raise ValueError(
             f"A is a system with dt = {system.dt!r}, but must be in discrete time and sampled as the plant is, "
             f"every {instruments.interval:g} s"
         )
     return system.A, system.B, system.C, system.D
-
-
-def _checked(name: str, matrix: Any, shape: tuple[int, ...]) -> Array:
-    try:
-        numbers = np.array(matrix, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {matrix!r} must be a matrix of real numbers") from None
-    if numbers.shape != shape or not np.isfinite(numbers).all():
-        raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}")
-    return numbers

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from baselines.design.controller import Array
+from baselines.design.instruments import checked_plant
+from baselines.design.matrix import real_matrix
 from beamenv.plant.plant import Plant
 
 _ROUNDING = 1e-9
@@ -20,7 +22,7 @@ def weighted(plant: Plant, Q: ArrayLike | None = None, R: ArrayLike | None = Non
     ``Q`` (n, n) weighs the state x = [ω η; η̇] in energy coordinates, 1 being J/J, and must be symmetric and positive semidefinite;
     ``R`` (m, m) in J/V² weighs the voltages and must be symmetric and positive definite. Raises ValueError for anything else.
     """
-    n, m = plant.B.shape
+    n, m = checked_plant(plant).B.shape
     return replace(
         plant,
         state_weight=plant.state_weight if Q is None else _checked("Q", Q, n, "semidefinite"),
@@ -29,12 +31,7 @@ def weighted(plant: Plant, Q: ArrayLike | None = None, R: ArrayLike | None = Non
 
 
 def _checked(name: str, value: ArrayLike, size: int, definite: str) -> Array:
-    try:
-        weight = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r} must be a matrix of real numbers") from None
-    if weight.shape != (size, size) or not np.isfinite(weight).all():
-        raise ValueError(f"{name} has shape {weight.shape}, but must hold finite numbers in shape ({size}, {size})")
+    weight = real_matrix(name, value, (size, size))
     rounding = _ROUNDING * np.abs(weight).max()
     if np.abs(weight - weight.T).max() > rounding:
         raise ValueError(f"{name} differs from its transpose by {np.abs(weight - weight.T).max():.3g}, but must be symmetric")

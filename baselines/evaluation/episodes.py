@@ -12,8 +12,10 @@ from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
 from baselines.design.controller import Array, Controller, ControllerArgument, as_controller
-from baselines.evaluation.loop import INFO, Environment, attribute, instants
+from baselines.evaluation.loop import INFO, Environment, attribute, check_fit, instants
+from beamenv.configuration import Count, Numbers, checked
 
+SEEDS = Numbers(Count(0, 2**63 - 1), least=1, of="seeds")
 _NO_LOAD = {"load": {"case": "none"}}
 Progress = Callable[[int, int], None]
 
@@ -47,6 +49,12 @@ class Episodes:
         return np.asarray(self.interval * np.arange(1, len(self.cost) + 1))
 
 
+def checked_seeds(seeds: Any) -> tuple[int, ...]:
+    """Seeds of episodes; ``ValueError`` unless they are a range or a list of one or more whole numbers."""
+    checked_list: tuple[int, ...] = checked("seeds", list(seeds) if isinstance(seeds, range) else seeds, SEEDS)
+    return checked_list
+
+
 def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[int], progress: Progress | None = None) -> Episodes:
     """One episode for each seed. Equal seeds mean equal loads and noise, so that controllers are compared in pairs.
 
@@ -55,10 +63,8 @@ def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[i
     often as it takes; it is reset but not closed. ``progress`` is called with the number of episodes done and their total.
     Raises ValueError for no seeds, or for what is no controller.
     """
-    controller = as_controller(controller)
-    seeds = tuple(int(seed) for seed in seeds)
-    if not seeds:
-        raise ValueError("seeds is empty, but an evaluation needs at least one seed")
+    controller, seeds = as_controller(controller), checked_seeds(seeds)
+    check_fit(controller, env)
     width = env.num_envs if isinstance(env, VectorEnv) else 1
     parts = []
     for first in range(0, len(seeds), width):

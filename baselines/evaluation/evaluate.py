@@ -11,10 +11,11 @@ import numpy as np
 from gymnasium.vector import VectorEnv
 
 from baselines.design.controller import Array, ControllerArgument, as_controller, name_of
-from baselines.evaluation.episodes import Episodes, Progress, roll_out
+from baselines.evaluation.episodes import Episodes, Progress, checked_seeds, roll_out
 from baselines.evaluation.loop import Environment
 from baselines.evaluation.metrics import EpisodeMetrics, finite, measure, settling_band
 from baselines.evaluation.statistics import Estimate, interval, paired_draws
+from beamenv.configuration import Number, checked
 
 WIDEST_BATCH = 1024
 
@@ -107,8 +108,7 @@ def evaluate(
     ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no
     controller, no seeds, a confidence outside (0, 1) or a reference with other seeds.
     """
-    if not 0.0 < confidence < 1.0:
-        raise ValueError(f"confidence = {confidence!r} is not allowed: it must lie between 0 and 1")
+    confidence, seeds = checked("confidence", confidence, Number(gt=0.0, lt=1.0)), checked_seeds(seeds)
     if isinstance(env, str):
         made: VectorEnv[Any, Any, Any] = gym.make_vec(env, num_envs=max(1, min(len(seeds), WIDEST_BATCH)))
         try:

@@ -15,6 +15,7 @@ from baselines.design.law import Law
 from baselines.design.persistent_load import PersistentLoad
 from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_design
+from beamenv.configuration import Count, Numbers, checked
 from beamenv.plant.plant import Plant, SampledPlant
 
 
@@ -130,10 +131,7 @@ def doubling_blocks(plant: Plant) -> list[int]:
 
 
 def _checked(blocks: Sequence[int]) -> list[int]:
-    whole = [isinstance(block, (int, np.integer)) and not isinstance(block, bool) and block > 0 for block in blocks]
-    if not (whole and all(whole)):
-        raise ValueError(f"move_blocks = {blocks!r} is not allowed: it must hold at least one positive whole number and no others")
-    return [int(block) for block in blocks]
+    return list(checked("move_blocks", blocks, Numbers(Count(), least=1, of="counts")))
 
 
 def _deviation(held: SampledPlant, P: Array, K: Array, blocks: Sequence[int]) -> Array:

@@ -11,10 +11,14 @@ from scipy.optimize import minimize
 
 from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
+from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
 from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
+from beamenv.configuration import Count, Number, checked
 from beamenv.plant.plant import Plant
+
+POSITIVE = Number(gt=0.0)
 
 FILTER_DAMPING = 0.3
 """ζ_f of every filter: wide enough for a mode that is some per cent off."""
@@ -42,8 +46,9 @@ def positive_position_feedback(
     exactly from sample to sample, the newest reading held over the interval that it ends. Raises ValueError when sensors and
     actuators cannot be paired, or for modes, damping, leak or gains that are not allowed.
     """
+    modes = checked("modes", modes, Count(1, len(checked_plant(plant).natural_frequencies)))
+    filter_damping, leak = (checked(name, value, POSITIVE) for name, value in (("filter_damping", filter_damping), ("leak", leak)))
     frequencies = plant.natural_frequencies[:modes]
-    _check(modes, len(plant.natural_frequencies), filter_damping=filter_damping, leak=leak)
     pairs = pairing(plant, "positive position feedback")
     filters = _held_filters(frequencies, filter_damping, leak * frequencies[0], plant.control_interval)
 
@@ -55,14 +60,6 @@ def positive_position_feedback(
     if np.shape(gain) not in ((), (modes,)) or not np.isfinite(gain).all():
         raise ValueError(f"gain = {gain!r} must be a finite number, or {modes} of them, one for each mode")
     return law(gain)
-
-
-def _check(modes: int, most: int, **positive: float) -> None:
-    if not (isinstance(modes, (int, np.integer)) and 1 <= modes <= most):
-        raise ValueError(f"modes = {modes!r} must be an integer from 1 to {most}, the number of the plant's modes")
-    for name, value in positive.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} = {value!r} must be a positive number")
 
 
 def _held_filters(frequencies: Array, damping: float, corner: float, interval: float) -> tuple[Array, Array]:

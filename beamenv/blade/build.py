@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
 from beamenv.structure import RotatingBeam
+from beamenv.structure.beam import OUT_OF_SCALE
 
 Array = NDArray[np.float64]
 
@@ -45,24 +46,30 @@ class Blade:
     def plant(self) -> Plant:
         """Its reduced plant."""
         modal, config = self.modal, self.config
-        return reduced_plant(
-            modal,
-            self.full,
-            self.beam.matrices.stiffness(config.speed),
-            damping_ratio=config.damping_ratio,
-            effort_weight=config.effort_weight,
-            white_load=config.white_load,
-            sensor_noise_fraction=config.sensor_noise_fraction,
-            sensor_full_scale=config.sensor_full_scale,
-            voltage_limits=config.voltage_limits,
-            control_interval=config.control_interval,
-        )
+        try:
+            plant = reduced_plant(
+                modal,
+                self.full,
+                self.beam.matrices.stiffness(config.speed),
+                damping_ratio=config.damping_ratio,
+                effort_weight=config.effort_weight,
+                white_load=config.white_load,
+                sensor_noise_fraction=config.sensor_noise_fraction,
+                sensor_full_scale=config.sensor_full_scale,
+                voltage_limits=config.voltage_limits,
+                control_interval=config.control_interval,
+            )
+        except OverflowError:
+            raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}") from None
+        if not all(np.isfinite(getattr(plant, each.name)).all() for each in fields(plant)):
+            raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
+        return plant
 
     def changed(self, config: BladeConfig) -> Blade:
         """The blade of another configuration, with the parts of this one that do not depend on the difference."""
         other = Blade(config)
-        for part, fields in _MADE_OF.items():
-            if all(getattr(config, name) == getattr(self.config, name) for name in fields):
+        for part, depends_on in _MADE_OF.items():
+            if all(getattr(config, name) == getattr(self.config, name) for name in depends_on):
                 vars(other)[part] = getattr(self, part)
         return other
 

@@ -29,13 +29,15 @@ class PlyAngles(Kind):
     @property
     def allowed(self) -> str:
         """Both forms."""
-        return f"{PLY_ANGLES.allowed}, or such a list for each wall"
+        return f"{PLY_ANGLES.allowed}, or such a list for each wall, every wall once"
 
     def core(self) -> CoreSchema:
         """Pairs of a wall and its angles."""
         wall = core_schema.tuple_schema([core_schema.str_schema(strict=True), PLY_ANGLES.inner()], strict=True)
         walls = core_schema.tuple_variable_schema(wall, min_length=1, strict=True)
-        return core_schema.no_info_before_validator_function(_by_wall, walls)
+        return core_schema.no_info_after_validator_function(
+            _each_once, core_schema.no_info_before_validator_function(_by_wall, walls)
+        )
 
     def json(self) -> JsonSchema:
         """An array, or an object of arrays."""
@@ -49,6 +51,12 @@ def _by_wall(value: Any) -> Any:
     value = plain(tuple(value.items()) if isinstance(value, Mapping) else value)
     pairs = isinstance(value, tuple) and value and all(isinstance(each, tuple) for each in value)
     return value if pairs else ((ON_EVERY_WALL, value),)
+
+
+def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[str, tuple[float, ...]], ...]:
+    if len({wall for wall, _ in walls}) < len(walls):
+        raise ValueError
+    return walls
 
 
 @configuration("blade.beam")

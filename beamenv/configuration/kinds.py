@@ -38,6 +38,12 @@ def whole(value: Any) -> Any:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
+def wholes(value: Any) -> Any:
+    """As ``whole``, each of a sequence."""
+    value = plain(value)
+    return tuple(map(whole, value)) if isinstance(value, tuple) else value
+
+
 class Kind(ABC):
     """What a value may be: ``Annotated[float, Number(gt=0)]``; None too where the type allows it."""
 
@@ -235,9 +241,9 @@ class Range(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Numbers(Kind):
-    """A sequence of numbers."""
+    """A sequence of numbers, or of counts."""
 
-    each: Number = Number()
+    each: Number | Count = Number()
     least: int = 0
     """How many."""
     most: int | None = None
@@ -250,8 +256,8 @@ class Numbers(Kind):
         return f"a list of{count} {self.of}, each {self.each.allowed}"
 
     def core(self) -> CoreSchema:
-        """A tuple of floats."""
-        return core_schema.no_info_before_validator_function(plain, self.inner())
+        """A tuple of floats, or of integers."""
+        return core_schema.no_info_before_validator_function(plain if isinstance(self.each, Number) else wholes, self.inner())
 
     def inner(self) -> CoreSchema:
         """Of a tuple of Python's numbers."""

@@ -24,7 +24,10 @@ class Refused(ValueError):
 
 def shown(value: Any) -> str:
     """A value on one line, cut where it is long."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # noqa: BLE001 - an object that cannot even be shown is refused all the same
+        text = f"an object of type {type(value).__name__}"
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
 
 

@@ -16,11 +16,12 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Count, checked
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades, Motion
 from beamenv.simulation.mixed_blades import MixedBlades
-from beamenv.task import INFO, Task, checked_action, information, reset_options, resolve_task
+from beamenv.task import INFO, Task, checked_action, checked_task, information, reset_options, resolve_task
 
 if TYPE_CHECKING:
     from beamenv.rendering import BatchRenderer
@@ -100,16 +101,17 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         The tasks may differ in their blades alone, and these not in how many patches they have nor in their electronics.
         ``task``, ``plant`` and ``design_plant`` are then the first blade's.
         """
-        self.task = tasks[0]
+        tasks = [checked_task(task) for task in tasks]
+        blades: Blades | MixedBlades  # what cannot be built is refused before anything has changed
+        if len(tasks) == 1:
+            blades = Blades(tasks[0].bank, tasks[0].scenario, self.num_envs, tasks[0].physical_units)
+        else:
+            blades = _mixed(tasks, self.num_envs)
+        self.task, self._blades = tasks[0], blades
         self.single_action_space = self.task.action_space()
         self.single_observation_space = self.task.observation_space()
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self._blades: Blades | MixedBlades
-        if len(tasks) == 1:
-            self._blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units)
-        else:
-            self._blades = _mixed(tasks, self.num_envs)
         self._actions_shape = (self.num_envs, *self.single_action_space.shape)
         self._steps = min(self.task.steps, self._time_limit)
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
@@ -271,9 +273,8 @@ def _masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:
 
 
 def _positive(name: str, value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
-        raise ValueError(f"{name} is {value!r}, but must be a positive integer.")
-    return int(value)
+    positive: int = checked(name, value, Count())
+    return positive
 
 
 def _rows(name: str, value: Any, count: int) -> tuple[int, ...]:

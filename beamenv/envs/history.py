@@ -12,6 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
+from beamenv.configuration import Count, checked
 from beamenv.plant.plant import Plant, drive_limit
 
 Array = NDArray[np.floating[Any]]
@@ -66,7 +67,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
     def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
         RecordConstructorArgs.__init__(self, length=length)
         gymnasium.Wrapper.__init__(self, env)
-        plant = _normalised_plant(env.unwrapped, length)
+        plant, length = _normalised_plant(env.unwrapped, length)
         self._drive = drive_limit(plant)
         self._history = RollingHistory(1, length, len(plant.C), len(self._drive))
         self.observation_space = _space(self._history)
@@ -95,7 +96,7 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
 
     def __init__(self, env: VectorEnv[Any, Any, NDArray[Any]], length: int = 12) -> None:
         super().__init__(env)
-        plant = _normalised_plant(env.unwrapped, length)
+        plant, length = _normalised_plant(env.unwrapped, length)
         self._drive = drive_limit(plant)
         self._history = RollingHistory(env.num_envs, length, len(plant.C), len(self._drive))
         self.single_observation_space = _space(self._history)
@@ -138,11 +139,10 @@ def _space(history: RollingHistory) -> Box:
     return Box(-1.0, 1.0, (history.length * history.width,), np.float32)
 
 
-def _normalised_plant(unwrapped: Any, length: Any) -> Plant:
-    """The plant of the environment within; ValueError unless it and ``length`` will do."""
-    if isinstance(length, bool) or not isinstance(length, int) or length < 1:
-        raise ValueError(f"length is {length!r}, but must be a positive integer.")
+def _normalised_plant(unwrapped: Any, length: Any) -> tuple[Plant, int]:
+    """The plant of the environment within, and the length as an integer; ValueError unless both will do."""
+    length = checked("length", length, Count())
     if unwrapped.task.physical_units:
         raise ValueError("env has physical_units=True, but a history is made of normalised readings and voltages.")
     plant: Plant = unwrapped.plant
-    return plant
+    return plant, length

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
+from beamenv.configuration import Count, Refused, Table, checked, checked_table
 from beamenv.task import Task, reset_options
 
 Layout = Mapping[Side, Positions | Drawn]
@@ -98,10 +99,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         bank: int = 16,
     ) -> None:
         super().__init__(env)
-        if isinstance(bank, bool) or not isinstance(bank, (int, np.integer)) or bank < 1:
-            raise ValueError(f"bank is {bank!r}, but must be a positive integer.")
+        self._bank: int = checked("bank", bank, Count())
         self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
-        self._bank = int(bank)
         self._own: np.random.Generator | None = None
         """What layouts are drawn with when every blade has a seed of its own; the batch's generator otherwise."""
         given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
@@ -113,7 +112,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode of every blade."""
-        options = dict(options or {})
+        options = _options(options)
         layouts = self._resolved(options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
         reset_options(self.env.unwrapped.task, options, rows=self.num_envs)  # type: ignore[attr-defined]
         drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
@@ -200,17 +199,21 @@ def _resolved(config: BladeConfig, given: Any, like: Mapping[Side, Positions] | 
 def _both_sides(given: Any) -> Mapping[str, Any]:
     if isinstance(given, str):
         return dict.fromkeys(SIDES, given)
-    if not isinstance(given, Mapping) or (unknown := sorted(set(given) - set(SIDES))):
-        wrong = repr(given) if not isinstance(given, Mapping) else f"a mapping with the key {unknown[0]!r}"
-        raise ValueError(f"layout is {wrong}, but must be a name or a mapping with the keys {' and '.join(SIDES)}.")
-    return given
+    if not isinstance(given, Mapping):
+        raise Refused("layout", given, f"a name or a mapping with the keys {' and '.join(SIDES)}")
+    return checked_table("layout", given, SIDES)
+
+
+def _options(options: Any) -> dict[str, Any]:
+    """A copy of the options of a reset; the environment checks what the layout leaves of them."""
+    return {} if options is None else dict(checked("options", options, Table()))
 
 
 def _changed(
     config: BladeConfig, layout: Layout, options: Mapping[str, Any] | None, positions: Mapping[Side, Positions]
 ) -> tuple[Layout, dict[str, Any]]:
     """The layout that the options of a reset ask for, and the other options."""
-    rest = dict(options or {})
+    rest = _options(options)
     if "layout" not in rest:
         return layout, rest
     return _resolved(with_positions(config, positions), rest.pop("layout"), positions), rest

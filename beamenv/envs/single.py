@@ -13,7 +13,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades, Motion
-from beamenv.task import Task, checked_action, information, reset_options, resolve_task
+from beamenv.task import Task, checked_action, checked_task, information, reset_options, resolve_task
 
 if TYPE_CHECKING:
     from beamenv.rendering import BladeRenderer, Instant
@@ -194,11 +194,14 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         self.set_task(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
 
     def set_task(self, task: Task) -> None:
-        """Take on a task, and with it a blade, in place of the one before; what comes next must be ``reset``."""
-        self.task = task
+        """Take on a task, and with it a blade, in place of the one before; what comes next must be ``reset``.
+
+        Raises ``ValueError`` for what is no task and for one whose plants cannot be built; nothing has changed then.
+        """
+        blade = Blades(checked_task(task).bank, task.scenario, None, task.physical_units)
+        self.task, self._blade = task, blade
         self.action_space = task.action_space()
         self.observation_space = task.observation_space()
-        self._blade = Blades(task.bank, task.scenario, None, task.physical_units)
         self._action_shape = (self.plant.B.shape[1],)
         self._steps = task.steps
         self._elapsed = 0

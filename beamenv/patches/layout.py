@@ -59,6 +59,9 @@ def place(name: str, patches: int | tuple[float, ...], length: float, beam_lengt
     tolerance = 1e-9 * beam_length
     if last < 0.0:
         raise Refused("blade.patches.length", length, f"at most {OUTERMOST} of the {beam_length:.6g} m span")
+    apart = f"at least one patch length, {length:.6g} m, apart so that patches do not overlap"
+    if isinstance(patches, int) and (patches - 1) * (length - tolerance) > last:  # before as many numbers are made
+        raise Refused(f"blade.patches.{name}", patches, apart)
     positions = tuple(np.linspace(0.0, last, patches).tolist()) if isinstance(patches, int) else patches
     if min(positions) < -tolerance or max(positions) > last + tolerance:
         allowed = (
@@ -67,6 +70,5 @@ def place(name: str, patches: int | tuple[float, ...], length: float, beam_lengt
         )
         raise Refused(f"blade.patches.{name}", patches, allowed)
     if len(positions) > 1 and np.diff(np.sort(positions)).min() < length - tolerance:
-        allowed = f"at least one patch length, {length:.6g} m, apart so that patches do not overlap"
-        raise Refused(f"blade.patches.{name}", patches, allowed)
+        raise Refused(f"blade.patches.{name}", patches, apart)
     return positions

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from beamenv.configuration import Count, checked
 from beamenv.patches import PatchLayout, actuation, sensing
 from beamenv.plant.plant import Plant
 from beamenv.plant.read_only import ReadOnly
@@ -47,8 +48,7 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
         raise ValueError(
             f"speed = {float(speed)!r} rad/s must be at least 0 and below the critical speed, {beam.critical_speed:.6g} rad/s."
         )
-    if not (isinstance(modes, (int, np.integer)) and 1 <= modes <= beam.space.size):
-        raise ValueError(f"modes = {modes!r} must be an integer from 1 to {beam.space.size}, the number of trial functions.")
+    modes = checked("blade.modes", modes, Count(1, beam.space.size))  # so many trial functions
     matrices = beam.matrices
     frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), modes)
     coupling = speed * shapes.T @ matrices.gyroscopic @ shapes if gyroscopic else np.zeros((modes, modes))

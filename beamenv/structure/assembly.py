@@ -8,6 +8,7 @@ with M, K_e, K_Ω symmetric and G₁ skew (thesis §2.2 and §3.2 in quadratic f
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,27 @@ class BeamMatrices:
     """Centrifugal stiffening less spin softening, per (rad/s)²."""
     gyroscopic: Array
     """Per rad/s."""
+
+    def __post_init__(self) -> None:
+        """Nobody writes to what many share."""
+        for each in (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic):
+            each.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Made anew: NumPy forgets on the way that an array was read-only."""
+        return BeamMatrices, (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic)
+
+    @property
+    def regular(self) -> bool:
+        """Whether every number is finite, and mass and stiffness are positive definite to rounding."""
+        if not all(np.isfinite(each).all() for each in (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic)):
+            return False
+        try:
+            np.linalg.cholesky(self.mass)
+            np.linalg.cholesky(self.elastic_stiffness)
+        except np.linalg.LinAlgError:
+            return False
+        return True
 
     def stiffness(self, speed: float) -> Array:
         """K (N, N) at a speed in rad/s."""

@@ -22,6 +22,11 @@ Array = NDArray[np.float64]
 EXTRA_STATIONS = 6
 """Gauss stations beyond the number of terms on each piece of the span: pretwist and taper are then integrated to round-off."""
 
+SHORTEST = 1e-9
+"""Of the span: what lies closer together is in one place."""
+
+OUT_OF_SCALE = "one of its numbers is too large or too small beside the others."
+
 TERMS = Count(1, 30)
 
 
@@ -74,12 +79,15 @@ class RotatingBeam:
         edges = [edge for inlay in self.inlays for edge in (inlay.start, inlay.start + inlay.length)]
         stations = Stations.between(self.breakpoints(edges), self.terms + EXTRA_STATIONS)
         walls = self.walls_at(stations.z)
-        return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+        matrices = assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+        if not matrices.regular:
+            raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
+        return matrices
 
     def breakpoints(self, edges: list[float]) -> Array:
         """Ascending span coordinates of root, tip and the given edges, without repetition."""
         ends = np.unique(np.clip([0.0, *edges, self.length], 0.0, self.length))
-        return ends[np.append(True, np.diff(ends) > 1e-9 * self.length)]
+        return ends[np.append(True, np.diff(ends) > SHORTEST * self.length)]
 
     def walls_at(self, z: Array, cuts: tuple[tuple[str, float], ...] = ()) -> SpanWalls:
         """The walls at stations z (m), split at (wall, width) ``cuts`` too."""
@@ -179,8 +187,10 @@ def check_inlays(beam: RotatingBeam) -> None:
 def check_fit(beam: RotatingBeam, inlay: Inlay) -> None:
     """``ValueError`` for an inlay that leaves the blade, is as thick as its wall or wider than it at the narrow end."""
     end = inlay.start + inlay.length
-    if not 0.0 <= inlay.start < end <= beam.length * (1.0 + 1e-12):
+    if not (inlay.start >= 0.0 and end <= beam.length * (1.0 + 1e-12)):
         raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {beam.length!r} m.")
+    if not inlay.length > SHORTEST * beam.length:
+        raise ValueError(f"inlay length = {inlay.length!r} m must be above {SHORTEST * beam.length:.3g} m.")
     narrowest = beam.section.wall_width(inlay.wall) * min(1.0, 1.0 / beam.taper)
     if not 0.0 < inlay.width <= narrowest * (1.0 + 1e-12):
         raise ValueError(f"inlay width = {inlay.width!r} m must be positive and at most the {inlay.wall} wall's {narrowest:.6g} m.")

@@ -90,9 +90,9 @@ def test_a_result_is_json_and_one_row_of_a_table(env, plant):
 
 
 def test_bad_arguments_are_named(env, plant):
-    with pytest.raises(ValueError, match="seeds is empty"):
+    with pytest.raises(ValueError, match=r"seeds is \[\], but must be a list of one or more seeds"):
         evaluate(lqg(plant), env, [])
-    with pytest.raises(ValueError, match="confidence = 95 .*between 0 and 1"):
+    with pytest.raises(ValueError, match="confidence is 95, but must be a number above 0 and below 1"):
         evaluate(lqg(plant), env, [0], confidence=95)
 
 

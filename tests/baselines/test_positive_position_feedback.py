@@ -91,9 +91,9 @@ def test_what_is_not_allowed_is_refused_by_name(small_plant):
     plant = small_plant()
     with pytest.raises(ValueError, match="2 actuators and 1 sensors, which positive position feedback cannot pair"):
         positive_position_feedback(small_plant(C=plant.C[:1], sensor_full_scale=plant.sensor_full_scale[:1]))
-    with pytest.raises(ValueError, match="modes = 4 must be an integer from 1 to 3"):
+    with pytest.raises(ValueError, match="modes is 4, but must be a whole number from 1 to 3"):
         positive_position_feedback(plant, modes=4)
-    with pytest.raises(ValueError, match="filter_damping = 0.0 must be a positive number"):
+    with pytest.raises(ValueError, match="filter_damping is 0.0, but must be a positive number"):
         positive_position_feedback(plant, filter_damping=0.0)
     with pytest.raises(ValueError, match="gain = .* or 3 of them"):
         positive_position_feedback(plant, gain=[0.1, 0.2])

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from beamenv.blade import BeamConfig, BladeConfig, blade_config, from_dict, load_config, to_dict
+from beamenv.blade.build import Blade, build_plant
 from beamenv.configuration import Count, Flag, Number, Numbers, Patches, Range, Refused, Table, Texts, checked, read
 from beamenv.patches import PatchLayout
 from beamenv.scenarios.scenario import SCENARIOS, Scenario, scenario
@@ -198,3 +199,58 @@ def test_a_scenario_is_read_from_a_path_too(tmp_path):
     (tmp_path / "gust.json").write_text('{"$schema": "scenario.json", "rotor": {"turbulence": 3}}')
     assert scenario(tmp_path / "gust.json").rotor.turbulence == 3.0
     assert scenario(str(tmp_path / "gust.json")) == scenario(tmp_path / "gust.json")
+
+
+class Unshowable:
+    """An object whose own ``repr`` fails."""
+
+    def __repr__(self):
+        raise RuntimeError("no")
+
+
+def test_what_cannot_even_be_shown_is_refused():
+    with pytest.raises(ValueError, match="^blade.speed is an object of type Unshowable, but must be zero or a positive number"):
+        BladeConfig(speed=Unshowable())
+
+
+@pytest.mark.parametrize("walls", [[["all", [30]], ["all", [20]]], [("top", [1]), ("left", [1]), ("top", [2])]])
+def test_a_wall_given_twice_is_refused(walls):
+    with pytest.raises(ValueError, match=r"^blade.beam.ply_angles_deg is .*, every wall once[.]$"):
+        blade_config(overrides={"beam": {"ply_angles_deg": walls}})
+
+
+@pytest.mark.parametrize("wall", ["material", "cls", "self", ""])
+def test_a_wall_that_the_section_lacks_is_told_whatever_its_name(wall):
+    with pytest.raises(ValueError, match="^layup has no plies for wall 'right'"):
+        build_plant(blade_config(overrides={"beam": {"ply_angles_deg": {wall: [30]}}}))
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"beam": {"length": 1e6}}, "beam cannot be computed"),
+        ({"beam": {"width": 1e100}}, "beam cannot be computed"),
+        ({"beam": {"taper": 5e-324}}, "beam cannot be computed"),
+        ({"beam": {"material": {"G13": 1e100}}}, "beam cannot be computed"),
+        ({"beam": {"material": {"E1": 1e308}}}, "blade cannot be computed"),
+        ({"white_load": 1e308}, "blade cannot be computed"),
+        ({"modes": 61}, "blade.modes is 61, but must be a whole number from 1 to 60"),
+        ({"patches": {"length": 1e-12}}, "inlay length = 1e-12 m must be above"),
+        ({"patches": {"actuators": 10**9}}, "blade.patches.actuators is 1000000000, but must be at least one patch length"),
+    ],
+)
+def test_numbers_that_no_blade_can_have_are_told_in_one_sentence(changes, words):
+    with pytest.raises(ValueError, match=f"^{words}") as told:
+        build_plant(blade_config(overrides=changes))
+    assert type(told.value) in (ValueError, Refused)  # not LinAlgError, which says nothing of the blade
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("of", [lambda blade: blade, lambda blade: pickle.loads(pickle.dumps(blade)), copy.deepcopy])
+def test_the_matrices_that_blades_share_cannot_be_written_to(of):
+    blade = Blade(BladeConfig())
+    blade.plant  # noqa: B018 - so that the matrices are there
+    for name in ("mass", "elastic_stiffness", "spin_stiffness", "gyroscopic"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(of(blade).beam.matrices, name)[0, 0] = 1.0

@@ -1,11 +1,15 @@
 """Bad input gets one sentence that names it, and changes nothing."""
 
+import copy
+
 import gymnasium
 import numpy as np
 import pytest
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, SensorHistory, VectorSensorHistory
+from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
+from beamenv.task import resolve_task
 
 WRONG = [
     ({"preset": "wing"}, "preset is 'wing', but must be one of thesis"),
@@ -36,10 +40,10 @@ def test_a_bad_argument_is_named(cls, arguments, sentence):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"num_envs": 0}, "num_envs is 0, but must be a positive integer"),
+        ({"num_envs": 0}, "num_envs is 0, but must be a whole number not below 1"),
         ({"num_envs": 2.5}, "num_envs is 2.5"),
         ({"num_envs": True}, "num_envs is True"),
-        ({"max_episode_steps": 0}, "max_episode_steps is 0, but must be a positive integer"),
+        ({"max_episode_steps": 0}, "max_episode_steps is 0, but must be a whole number not below 1"),
         ({"autoreset_mode": "Never"}, "autoreset_mode is 'Never', but must be one of 'NextStep', 'SameStep'"),
         ({"autoreset_mode": gymnasium.vector.AutoresetMode.DISABLED}, "autoreset_mode is"),
     ],
@@ -136,7 +140,7 @@ def test_stepping_or_drawing_before_a_reset_is_refused():
 @pytest.mark.parametrize("length", [0, -1, 2.5, True, "long"])
 def test_a_bad_history_length_is_named(length):
     for wrap in (lambda: SensorHistory(RotatingBeamEnv(), length), lambda: VectorSensorHistory(RotatingBeamVectorEnv(2), length)):
-        with pytest.raises(ValueError, match="length is .*, but must be a positive integer"):
+        with pytest.raises(ValueError, match="length is .*, but must be a whole number not below 1"):
             wrap()
 
 
@@ -161,3 +165,58 @@ def test_a_design_plant_shares_the_electronics_of_the_true_one(design, words):
 def test_a_design_plant_reads_the_true_blade_s_instruments():
     env = gymnasium.make(beamenv.ENV_ID, design={"beam": {"pretwist_deg": 0.0}}).unwrapped
     assert env.design_plant.sensor_full_scale == pytest.approx(env.plant.sensor_full_scale)
+
+
+def test_counts_of_wrappers_follow_the_rule_of_counts():
+    for length in (3, 3.0, np.int8(3)):
+        assert SensorHistory(RotatingBeamEnv(), length).observation_space.shape == (24,)
+    assert VectorPlacementWrapper(RotatingBeamVectorEnv(2), bank=np.int8(3)).num_envs == 2
+
+
+@pytest.mark.parametrize(
+    "wrap", [lambda: PlacementWrapper(RotatingBeamEnv()), lambda: VectorPlacementWrapper(RotatingBeamVectorEnv(2))]
+)
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (3, "options is 3, but must be a mapping"),
+        ([], r"options is \[\], but must be a mapping"),
+        ({1: 2}, "options is {1: 2}, but must be a mapping"),
+        ({"layout": {1: 1, "a": 2}}, "layout is {1: 1, 'a': 2}, but must be a mapping"),
+        ({"layout": {"top": 1}}, "layout has no field 'top': its fields are actuators, sensors"),
+    ],
+)
+def test_options_of_a_placement_are_told_by_name(wrap, options, words):
+    env = wrap()
+    with pytest.raises(ValueError, match=f"^{words}"):
+        env.reset(options=options)
+
+
+@pytest.mark.parametrize("wrong", [None, 3, resolve_task, [None]])
+def test_a_refused_task_leaves_the_environment_as_it_was(wrong):
+    single, batch = RotatingBeamEnv(), RotatingBeamVectorEnv(2)
+    for env, given in ((single, wrong), (batch, [wrong])):
+        env.reset(seed=1)
+        twin = copy.deepcopy(env)
+        with pytest.raises(ValueError, match="^task is .*, but must be a Task"):
+            env.set_task(given)
+        actions = np.full(env.action_space.shape, 0.3)
+        assert np.array_equal(env.step(actions)[0], twin.step(actions)[0])
+
+
+def test_a_task_whose_bank_cannot_be_built_leaves_the_environment_as_it_was():
+    impossible = resolve_task(scenario={"plants": {"speed_ratio": [9.9, 10.0], "bank": 1}})
+    single, batch = RotatingBeamEnv(), RotatingBeamVectorEnv(2)
+    for env, given in ((single, impossible), (batch, [impossible])):
+        before = env.task
+        with pytest.raises(ValueError, match="critical speed"):
+            env.set_task(given)
+        assert env.task is before
+        env.reset(seed=1)
+
+
+@pytest.mark.parametrize("wrong", [1j * np.ones(22), ["1"] * 22, [b"1"] * 22])
+def test_numbers_are_neither_complex_nor_text(wrong):
+    with pytest.raises(ValueError, match="^options.initial_state is .*, but must be an array of numbers[.]$") as told:
+        RotatingBeamEnv().reset(options={"initial_state": wrong})
+    assert "\n" not in str(told.value)

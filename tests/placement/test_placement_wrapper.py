@@ -155,7 +155,7 @@ def test_controllers_are_made_from_the_plant_of_the_layout():
         ({"sensors": [0.0, 0.2]}, r"options\['layout'\] has 2 sensors, but the spaces are made for 4"),
         ({"sensors": {"low": 1.3}}, "sensors is 4, but must be at most 1, for patches of 0.085 m"),
         ({"sensors": {"from": 1.3}}, "sensors has no field 'from': its fields are low, high, count"),
-        ({"top": [0.0]}, "layout is a mapping with the key 'top'"),
+        ({"top": [0.0]}, "layout has no field 'top': its fields are actuators, sensors"),
         (4, "layout is 4, but must be a name or a mapping"),
     ],
 )

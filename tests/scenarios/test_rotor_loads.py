@@ -8,6 +8,7 @@ from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
 from beamenv.scenarios.scenario import SCENARIOS, scenario
+from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 
 PLANT = build_plant(blade_config())
@@ -20,7 +21,7 @@ GUSTS = scenario(
 def loads_of(chosen, kind, blades, instants):
     """(instants, blades, 2) N/m."""
     shape = (1, blades)
-    disturbances = kind(noise_factor(PLANT, chosen), shape, Turbulence.of(PLANT, chosen))
+    disturbances = kind(noise_factor(PLANT, chosen), Arrangement(shape), Turbulence.of(PLANT, chosen))
     generators = np.random.default_rng(0)
     if kind is SeededDisturbances:
         generators = [np.random.default_rng(seed) for seed in range(blades)]

@@ -5,6 +5,7 @@ import pytest
 
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import resolve_task
+from train.learning.sb3.ppo import PPOSettings
 from train.learning.sb3.sb3 import training_envs
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import REWARD_UNIT, TrainingVecEnv
@@ -14,7 +15,7 @@ SCENARIOS = ("nominal", "overload", "spillover")
 
 
 def tasks():
-    return [resolve_task(**{"duration": 0.01, "scenario": name}) for name in SCENARIOS]
+    return [resolve_task(duration=0.01, scenario=name) for name in SCENARIOS]
 
 
 def batch(index, count=2, **kwargs):
@@ -26,10 +27,10 @@ def several():
 
 
 def test_blades_are_divided_among_the_scenarios_and_none_is_left_out():
-    envs = training_envs(tasks(), 8, 0, history=3)
+    envs = training_envs(tasks(), PPOSettings(blades=8, history=3), 0)
     assert [each.num_envs for each in envs.batches] == [3, 3, 2]
     with pytest.raises(ValueError, match="blades = 2 must be at least one for each of the 3 scenarios"):
-        training_envs(tasks(), 2, 0, history=3)
+        training_envs(tasks(), PPOSettings(blades=2, history=3), 0)
 
 
 def test_windows_rewards_and_ends_are_those_of_the_batches():
@@ -81,8 +82,8 @@ def test_rewards_are_in_units_of_no_control_s_cost():
 
 
 def test_training_never_meets_a_plant_of_the_evaluation():
-    task = resolve_task(**{"duration": 0.005, "scenario": {"plants": {"damping_ratio": (0.003, 0.02), "bank": 3}}})
-    envs = training_envs([task], 4, 0, history=3)
+    task = resolve_task(duration=0.005, scenario={"plants": {"damping_ratio": (0.003, 0.02), "bank": 3}})
+    envs = training_envs([task], PPOSettings(blades=4, history=3), 0)
     decays = {float(np.trace(fused[: len(fused), : len(fused)])) for fused in envs.blades.task.bank.operators.fused}
     others = {float(np.trace(fused[: len(fused), : len(fused)])) for fused in task.bank.operators.fused}
     assert len(decays | others) == 6

@@ -8,8 +8,10 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from itertools import islice
 from typing import Any
 
 import cloudpickle
@@ -30,12 +32,16 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
             finished(job, measured(job))
         return
     check_portable(jobs)
-    from joblib.externals.loky import as_completed
-
+    waiting = iter(jobs)
     with workers(min(processes, len(jobs))) as pool:
-        futures = {pool.submit(measured, job): job for job in jobs}
-        for future in as_completed(futures):
-            finished(futures[future], future.result())
+        running: dict[Future[Cell], Job] = {}
+        while True:
+            for job in islice(waiting, 2 * processes - len(running)):  # with more, an interrupted pool writes a traceback
+                running[pool.submit(measured, job)] = job
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                finished(running.pop(future), future.result())
 
 
 @contextmanager

@@ -54,7 +54,7 @@ class Layup:
         return cls(default=stack(material, angles_deg, "angles_deg"))
 
     @classmethod
-    def by_wall(cls, material: Lamina, **angles_deg: Sequence[float]) -> Layup:
+    def by_wall(cls, material: Lamina, /, **angles_deg: Sequence[float]) -> Layup:
         """Plies wall by wall, by the names of the section's walls (a box: top, bottom, left, right)."""
         return cls(default=None, walls={wall: stack(material, angles, wall) for wall, angles in angles_deg.items()})
 

@@ -85,16 +85,7 @@ class OffPolicyTraining(SB3Training):
     name: ClassVar[str]
 
     def __init__(self, tasks: Sequence[Task], settings: OffPolicySettings, seed: int, teacher: Policy | None = None) -> None:
-        envs = training_envs(
-            tasks,
-            settings.blades,
-            seed,
-            history=settings.history,
-            energy_horizon=settings.energy_horizon,
-            discount=settings.discount,
-            held=settings.held,
-            reward_unit=settings.reward_unit,
-        )
+        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit)
         voltages = int(np.prod(envs.action_space.shape or ()))
         model = self.algorithm(
             self.networks,

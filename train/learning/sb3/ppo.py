@@ -1,10 +1,13 @@
-"""Proximal policy optimisation (Schulman et al. 2017) by Stable-Baselines3 on hundreds of blades at once."""
+"""Proximal policy optimisation (Schulman et al. 2017) by Stable-Baselines3 on hundreds of blades at once.
+
+What it gathers and how it learns is the same whatever network it trains: ``recurrent_ppo`` has another.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import torch
@@ -17,7 +20,7 @@ from beamenv.task import Task
 from train.controllers.policies import HistoryPolicy, Policy
 from train.learning.sb3.asymmetric import AsymmetricPolicy
 from train.learning.sb3.cloning import Cloning, clone
-from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
+from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs
 
 
 @configuration("settings")
@@ -61,23 +64,16 @@ class PPOSettings:
     """Weight of the latest rollout in the running cost."""
 
 
-class PPOTraining(SB3Training):
-    """Of a tanh network on the history; with a ``teacher``, from its clone on."""
+class OnPolicyTraining(SB3Training):
+    """Of an ``algorithm`` and its ``networks``, whose exploration stays what it is."""
 
-    model: PPO
+    algorithm: ClassVar[Any]
+    networks: ClassVar[Any]
 
     def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
-        envs = training_envs(
-            tasks,
-            settings.blades,
-            seed,
-            history=settings.history,
-            energy_horizon=settings.energy_horizon,
-            discount=settings.discount,
-            held=settings.held,
-        )
-        model = PPO(
-            AsymmetricPolicy,
+        envs = training_envs(tasks, settings, seed)
+        model = self.algorithm(
+            self.networks,
             envs,
             n_steps=settings.rollout,
             batch_size=settings.batch,
@@ -98,16 +94,11 @@ class PPOTraining(SB3Training):
         )
         model.policy.log_std.requires_grad_(False)  # exploration that fades would leave nothing to learn from under the white load
         if teacher is not None:
-            clone(nn.Sequential(*self._actor(model)), envs, teacher, settings.input_gain, Cloning(), seed)
+            self._start_from(teacher, model, envs, settings, seed)
         super().__init__(model, envs, tasks, settings, seed)
 
-    @staticmethod
-    def _actor(model: PPO) -> list[nn.Module]:
-        policy: Any = model.policy
-        return [policy.mlp_extractor.policy_net, policy.action_net]
-
-    def _held_back(self) -> list[nn.Parameter]:
-        return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
+    def _start_from(self, teacher: Policy, model: Any, envs: Envs, settings: PPOSettings, seed: int) -> None:
+        raise NotImplementedError
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}
@@ -115,6 +106,23 @@ class PPOTraining(SB3Training):
     def _gather_and_learn(self) -> None:
         self.model.collect_rollouts(self.envs, self._callback, self.model.rollout_buffer, self.model.n_steps)
         self.model.train()
+
+
+class PPOTraining(OnPolicyTraining):
+    """Of a tanh network on the history; with a ``teacher``, from its clone on."""
+
+    algorithm, networks = PPO, AsymmetricPolicy
+
+    def _start_from(self, teacher: Policy, model: Any, envs: Envs, settings: PPOSettings, seed: int) -> None:
+        clone(nn.Sequential(*self._actor(model)), envs, teacher, settings.input_gain, Cloning(), seed)
+
+    @staticmethod
+    def _actor(model: Any) -> list[nn.Module]:
+        policy = model.policy
+        return [policy.mlp_extractor.policy_net, policy.action_net]
+
+    def _held_back(self) -> list[nn.Parameter]:
+        return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
 
     def policy(self) -> HistoryPolicy:
         """The actor's mean as arrays."""

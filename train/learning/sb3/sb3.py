@@ -19,11 +19,13 @@ from train.learning.training import on_training_bank, uncontrolled_cost
 Envs = TrainingVecEnv | SideBySide
 
 
-def training_envs(tasks: Sequence[Task], blades: int, seed: int, **seen: Any) -> Envs:
+def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) -> Envs:
     """The batch that an agent trains on, its plants from the training bank; with several tasks the blades are divided among them.
 
-    ``seen`` are keyword arguments of ``TrainingVecEnv``.
+    What it is shown is said by the ``settings`` of its trainer, and ``seen``: keyword arguments of ``TrainingVecEnv``.
     """
+    blades = settings.blades
+    seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held")}
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
     batches = []

@@ -1,0 +1,24 @@
+"""Matrices that users hand in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from baselines.design.controller import Array
+from beamenv.configuration import shown
+
+
+def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+    """A copy as float64; ``ValueError`` names what is not of real, finite numbers in this shape: complex ones, text, masks."""
+    try:
+        given = np.asarray(value)
+    except (TypeError, ValueError, RuntimeError):
+        given = np.array(None)  # ragged, or of a kind that NumPy cannot read
+    if given.dtype.kind not in "iuf" or np.ma.is_masked(value):
+        raise ValueError(f"{name} = {shown(value)} must be a matrix of real numbers")
+    numbers = np.array(given, dtype=np.float64)
+    if numbers.shape != shape or not np.isfinite(numbers).all():
+        raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}")
+    return numbers
