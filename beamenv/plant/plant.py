@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from beamenv.plant.poles import poles_of_sampled
-from beamenv.plant.read_only import ReadOnly
+from beamenv.plant.read_only import ReadOnly, sealed
 
 if TYPE_CHECKING:
     import control
@@ -162,7 +162,9 @@ def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
     weight = np.zeros((size, size))
     weight[:n, :n] = plant.state_weight
     weight[n : n + m, n : n + m] = plant.input_weight * np.outer(drive, drive)
-    exponential = expm(np.block([[-dynamics.T, weight], [np.zeros((size, size)), dynamics]]) * interval)
+    blocks = np.zeros((2 * size, 2 * size))
+    blocks[:size, :size], blocks[:size, size:], blocks[size:, size:] = -dynamics.T, weight, dynamics
+    exponential = expm(blocks * interval)
     transition = exponential[size:, size:]
     cost = transition.T @ exponential[:size, size:] / np.outer(scale, scale)
     held = transition[:n] / scale
@@ -172,9 +174,9 @@ def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
         C=plant.C,
         D=plant.D,
         disturbance_input=held[:, n + m :],
-        cost=0.5 * (cost + cost.T),
-        process_noise=plant.process_noise / interval,
-        sensor_noise=plant.sensor_noise / interval,
+        cost=sealed(0.5 * (cost + cost.T)),
+        process_noise=sealed(plant.process_noise / interval),
+        sensor_noise=sealed(plant.sensor_noise / interval),
         interval=interval,
     )
 
@@ -184,13 +186,13 @@ def normalised(plant: Plant) -> Plant:
     drive, full_scale = drive_limit(plant), plant.sensor_full_scale
     return replace(
         plant,
-        B=plant.B * drive,
-        C=plant.C / full_scale[:, None],
-        D=plant.D * drive / full_scale[:, None],
-        input_weight=plant.input_weight * np.outer(drive, drive),
-        sensor_noise=plant.sensor_noise / np.outer(full_scale, full_scale),
-        voltage_limits=plant.voltage_limits / drive,
-        sensor_full_scale=np.ones_like(full_scale),
+        B=sealed(plant.B * drive),
+        C=sealed(plant.C / full_scale[:, None]),
+        D=sealed(plant.D * drive / full_scale[:, None]),
+        input_weight=sealed(plant.input_weight * np.outer(drive, drive)),
+        sensor_noise=sealed(plant.sensor_noise / np.outer(full_scale, full_scale)),
+        voltage_limits=sealed(plant.voltage_limits / drive),
+        sensor_full_scale=sealed(np.ones_like(full_scale)),
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 def read_only(value: Any) -> Any:
@@ -17,14 +18,22 @@ def read_only(value: Any) -> Any:
     return copied
 
 
+def sealed(fresh: NDArray[Any]) -> NDArray[Any]:
+    """An array made read-only in place; for its maker, who keeps no other view of it to write to."""
+    fresh.setflags(write=False)
+    return fresh
+
+
 class ReadOnly:
     """Base of frozen dataclasses whose arrays are read-only, copies and unpickled ones included."""
 
     __slots__ = ()
 
     def __post_init__(self) -> None:
-        for each in fields(self):  # type: ignore[arg-type]
-            object.__setattr__(self, each.name, read_only(getattr(self, each.name)))
+        for name in self.__dataclass_fields__:  # type: ignore[attr-defined]
+            value = getattr(self, name)
+            if isinstance(value, np.ndarray) and value.flags.writeable:
+                object.__setattr__(self, name, read_only(value))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Made anew: NumPy forgets on the way that an array was read-only."""

@@ -11,7 +11,7 @@ from beamenv.task import resolve_task
 from train.learning.sb3.cloning import Cloning, Follower, clone
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
-from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.sb3.vec_env import TrainingVecEnv
 from train.learning.through_plant.actors import ActorSettings, RecurrentActor
 
 SHORT = {"duration": 0.02}  # 40 control intervals
@@ -26,7 +26,7 @@ def teacher():
 
 def test_a_teacher_follows_windows_as_if_it_drove(teacher):
     """Its own actions, held for one interval each, come back in the windows: it must say the same again."""
-    envs = BladeVecEnv(3, SHORT, 0, history=4)
+    envs = TrainingVecEnv(3, SHORT, 0, history=4)
     follower, memory = Follower(teacher, 3, 4, held=1), None
     windows, begun = envs.reset(), np.ones(3, dtype=np.bool_)
     for _ in range(60):
@@ -36,7 +36,7 @@ def test_a_teacher_follows_windows_as_if_it_drove(teacher):
 
 
 def test_a_teacher_overruled_goes_by_what_was_held(teacher):
-    envs = BladeVecEnv(3, SHORT, 0, history=4, held=3)
+    envs = TrainingVecEnv(3, SHORT, 0, history=4, held=3)
     follower, memory = Follower(teacher, 3, 4, held=3), None
     windows, begun = envs.reset(), np.ones(3, dtype=np.bool_)
     for step in range(8):
@@ -52,7 +52,7 @@ def test_a_teacher_overruled_goes_by_what_was_held(teacher):
 
 
 def test_cloning_reduces_the_error_of_regression(teacher):
-    envs = BladeVecEnv(8, SHORT, 0, history=4, held=2)
+    envs = TrainingVecEnv(8, SHORT, 0, history=4, held=2)
     torch.manual_seed(0)
     student = nn.Sequential(nn.Linear(32, 16), nn.Tanh(), nn.Linear(16, 4))
     errors = clone(student, envs, teacher, 1.0, BRIEF, 0)
@@ -60,7 +60,7 @@ def test_cloning_reduces_the_error_of_regression(teacher):
 
 
 def test_a_teacher_must_be_shown_every_instant(teacher):
-    envs = BladeVecEnv(2, SHORT, 0, history=2, held=3)
+    envs = TrainingVecEnv(2, SHORT, 0, history=2, held=3)
     with pytest.raises(ValueError, match="history = 2 must be at least held = 3"):
         clone(nn.Linear(16, 4), envs, teacher, 1.0, BRIEF, 0)
 

@@ -12,7 +12,7 @@ import beamenv
 from beamenv.task import resolve_task
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings, RecurrentPPOTraining
-from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.sb3.vec_env import TrainingVecEnv
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = PPOSettings(blades=8, history=3, rollout=4, batch=32, epochs=1, units=16)
@@ -34,7 +34,7 @@ def enlarged(training):
 
 def test_the_kept_policy_is_the_deterministic_actor_on_the_windows_of_training():
     training = enlarged(trained(PPOTraining, replace(TINY, held=1)))
-    policy, envs = training.policy(), BladeVecEnv(4, SHORT, 1, history=3, shows_state=True)
+    policy, envs = training.policy(), TrainingVecEnv(4, SHORT, 1, history=3, shows_state=True)
     observations, memory, starts = envs.reset(), None, np.ones(4, dtype=bool)
     largest = 0.0
     for _ in range(50):

@@ -8,7 +8,7 @@ from beamenv.task import resolve_task
 from train.learning.sb3.ppo import PPOSettings
 from train.learning.sb3.sb3 import training_envs
 from train.learning.sb3.side_by_side import SideBySide
-from train.learning.sb3.vec_env import REWARD_UNIT, BladeVecEnv
+from train.learning.sb3.vec_env import REWARD_UNIT, TrainingVecEnv
 from train.learning.training import uncontrolled_cost
 
 SCENARIOS = ("nominal", "overload", "spillover")
@@ -19,7 +19,7 @@ def tasks():
 
 
 def batch(index, count=2, **kwargs):
-    return BladeVecEnv(count, tasks()[index], index, history=3, shows_state=True, **kwargs)
+    return TrainingVecEnv(count, tasks()[index], index, history=3, shows_state=True, **kwargs)
 
 
 def several():

@@ -8,7 +8,7 @@ from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
 
 import beamenv
 from beamenv.simulation.blades import reward_scale
-from train.learning.sb3.vec_env import REWARD_UNIT, BladeVecEnv
+from train.learning.sb3.vec_env import REWARD_UNIT, TrainingVecEnv
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 COUNT = 4
@@ -16,7 +16,7 @@ FIRST_TO_END = COUNT - 1  # blades begin spread over the episode, the last one f
 
 
 def batch():
-    return BladeVecEnv(COUNT, SHORT, seed=5, history=3)
+    return TrainingVecEnv(COUNT, SHORT, seed=5, history=3)
 
 
 def plain_batch():
@@ -88,7 +88,7 @@ def test_episodes_end_at_different_steps():
 
 def test_one_seed_gives_identical_bits_and_another_does_not():
     def run(seed):
-        envs = BladeVecEnv(COUNT, SHORT, seed, history=3, energy_horizon=0.1, shows_state=True)
+        envs = TrainingVecEnv(COUNT, SHORT, seed, history=3, energy_horizon=0.1, shows_state=True)
         return [envs.reset(), *(part for step in range(30) for part in envs.step(actions(step))[:3])]
 
     first, second, other = run(1), run(1), run(2)
@@ -97,7 +97,7 @@ def test_one_seed_gives_identical_bits_and_another_does_not():
 
 
 def test_held_actions_are_steps_of_the_blades_with_their_rewards_added():
-    slow, fast = BladeVecEnv(COUNT, SHORT, 5, history=3, held=2), BladeVecEnv(COUNT, SHORT, 5, history=3)
+    slow, fast = TrainingVecEnv(COUNT, SHORT, 5, history=3, held=2), TrainingVecEnv(COUNT, SHORT, 5, history=3)
     slow.reset()
     elapsed = np.arange(COUNT) * 20 // COUNT // 2 * 2
     fast.envs.reset(seed=5, options={"elapsed": elapsed})
@@ -157,7 +157,7 @@ def test_only_finished_episodes_have_an_info():
 
 def test_a_failed_blade_is_not_truncated():
     weak = {"white_load": 1e9, "sensor_noise_fraction": 0.02}
-    envs = BladeVecEnv(2, {"blade": weak, **SHORT}, seed=0)
+    envs = TrainingVecEnv(2, {"blade": weak, **SHORT}, seed=0)
     envs.reset()
     _, _, ends, infos = envs.step(np.zeros((2, 4)))
     assert ends.all()
@@ -165,7 +165,7 @@ def test_a_failed_blade_is_not_truncated():
 
 
 def test_stored_energy_counts_as_cost_to_come():
-    plain, shaped = batch(), BladeVecEnv(COUNT, SHORT, seed=5, history=3, energy_horizon=0.1)
+    plain, shaped = batch(), TrainingVecEnv(COUNT, SHORT, seed=5, history=3, energy_horizon=0.1)
     plain.reset()
     shaped.reset()
     before = 0.5 * (shaped.blades.state**2).sum(axis=1)
@@ -178,7 +178,7 @@ def test_stored_energy_counts_as_cost_to_come():
 
 
 def test_what_shaping_adds_over_an_episode_is_the_fall_of_the_potential():
-    plain, shaped = batch(), BladeVecEnv(COUNT, SHORT, seed=5, history=3, energy_horizon=0.1)
+    plain, shaped = batch(), TrainingVecEnv(COUNT, SHORT, seed=5, history=3, energy_horizon=0.1)
     gymnasium_batch, _ = plain_batch()
     plain.reset()
     shaped.reset()
@@ -192,7 +192,7 @@ def test_what_shaping_adds_over_an_episode_is_the_fall_of_the_potential():
 
 
 def test_a_critic_may_be_shown_the_state_after_what_the_actor_sees():
-    plain, full = batch(), BladeVecEnv(COUNT, SHORT, seed=5, history=3, shows_state=True)
+    plain, full = batch(), TrainingVecEnv(COUNT, SHORT, seed=5, history=3, shows_state=True)
     windows, observations = plain.reset(), full.reset()
     np.testing.assert_array_equal(observations[:, : full.seen], windows)
     assert observations.shape[1] == full.seen + full.blades.state.shape[1]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, normalised
-from beamenv.plant.read_only import ReadOnly, read_only
+from beamenv.plant.read_only import ReadOnly, read_only, sealed
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
 
@@ -86,13 +86,13 @@ class Bank(ReadOnly):
         parts = [Operators.from_plant(unit) for unit in units]
         return cls(
             plant=plant,
-            operators=replace(parts[0], fused=np.stack([part.fused for part in parts])),
-            readout=np.stack([unit.C.T for unit in units]),
-            tip=np.stack([each.tip_displacement.T for each in plants]),
-            strain=np.stack([each.strain for each in plants]),
-            release=np.stack([static_deflection(each, np.eye(2)) for each in plants]),
+            operators=replace(parts[0], fused=sealed(np.stack([part.fused for part in parts]))),
+            readout=sealed(np.stack([unit.C.T for unit in units])),
+            tip=sealed(np.stack([each.tip_displacement.T for each in plants])),
+            strain=sealed(np.stack([each.strain for each in plants])),
+            release=sealed(np.stack([static_deflection(each, np.eye(2)) for each in plants])),
             speeds=speeds,
-            effort_weight=np.stack([unit.input_weight * unit.control_interval for unit in units]),
+            effort_weight=sealed(np.stack([unit.input_weight * unit.control_interval for unit in units])),
             to_design=to_design,
         )
 
@@ -104,11 +104,11 @@ class Bank(ReadOnly):
             return first
         views, starts = [bank.to_design for bank in banks], [bank.start for bank in banks]
         fused = [bank.operators.fused.reshape(len(bank), *bank.operators.fused.shape[-2:]) for bank in banks]
-        whole = {name: np.concatenate([getattr(bank, name) for bank in banks]) for name in _BY_PLANT}
+        whole = {name: sealed(np.concatenate([getattr(bank, name) for bank in banks])) for name in _BY_PLANT}
         return cls(
             plant=first.plant,
             others=tuple(bank.plant for bank in banks[1:]),
-            operators=replace(first.operators, fused=np.concatenate(fused)),
+            operators=replace(first.operators, fused=sealed(np.concatenate(fused))),
             to_design=None if any(view is None for view in views) else np.concatenate(views),  # type: ignore[arg-type]
             start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
             runs=first.runs,

@@ -25,5 +25,7 @@ def coordinates(displacing: Array, moving: Array, design: Blade) -> Array:
     """(n, d) map of states whose halves move the trial functions' coefficients by ``displacing`` and ``moving`` (N, r)."""
     projection = design.modal.mode_shapes.T @ design.beam.matrices.mass
     displaced, moved = design.modal.natural_frequencies[:, None] * (projection @ displacing), projection @ moving
-    still = np.zeros_like(displaced)
-    return np.asarray(np.block([[displaced, still], [still, moved]]).T)
+    d, r = displaced.shape
+    whole = np.zeros((2 * d, 2 * r))
+    whole[:d, :r], whole[d:, r:] = displaced, moved
+    return whole.T

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
 from beamenv.plant.plant import Plant
+from beamenv.plant.read_only import sealed
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import coordinates
 from beamenv.structure.base_motion import base_loads
@@ -152,10 +153,10 @@ def spin_up_bank(blade: Blade, design: Blade, speeds: tuple[float, float], steps
     back = incoming.swapaxes(1, 2)
     return replace(
         bank,
-        operators=replace(bank.operators, fused=_at_instants(bank.operators.fused, incoming, outgoing)),
-        readout=back @ bank.readout,
-        tip=back @ bank.tip,
-        strain=bank.strain @ incoming,
+        operators=replace(bank.operators, fused=sealed(_at_instants(bank.operators.fused, incoming, outgoing))),
+        readout=sealed(back @ bank.readout),
+        tip=sealed(back @ bank.tip),
+        strain=sealed(bank.strain @ incoming),
         release=np.asarray(np.linalg.solve(incoming, bank.release.swapaxes(1, 2)), dtype=np.float64).swapaxes(1, 2),
         start=_initial_state(run_up, roots[0])[None],
         runs=True,
@@ -172,18 +173,18 @@ def plant_at(reference: Plant, run_up: RunUp, time: float, root: Array) -> Plant
     r = len(root)
     at = np.asarray(time)
     inverse = np.linalg.inv(root)
-    dynamics = np.block(
-        [[np.zeros((r, r)), root.T], [-run_up.restoring(at) @ inverse.T, -run_up.rate_matrix(at)]],
-    )
+    dynamics = np.zeros((2 * r, 2 * r))
+    dynamics[:r, r:] = root.T
+    dynamics[r:, :r], dynamics[r:, r:] = -run_up.restoring(at) @ inverse.T, -run_up.rate_matrix(at)
     to_reference = np.zeros((2 * r, 2 * r))  # energy coordinates of the configured speed from those of this one
     to_reference[:r, :r] = reference.natural_frequencies[:, None] * inverse.T
     to_reference[r:, r:] = np.eye(r)
     return replace(
         reference,
-        A=dynamics,
-        tip_displacement=reference.tip_displacement @ to_reference,
-        strain=reference.strain @ to_reference,
-        C=reference.C @ to_reference,
+        A=sealed(dynamics),
+        tip_displacement=sealed(reference.tip_displacement @ to_reference),
+        strain=sealed(reference.strain @ to_reference),
+        C=sealed(reference.C @ to_reference),
     )
 
 

@@ -16,7 +16,7 @@ from torch import nn
 
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
-from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.sb3.vec_env import TrainingVecEnv
 
 Array = NDArray[Any]
 
@@ -60,7 +60,7 @@ class Follower:
 
 
 def clone(
-    student: nn.Module, envs: BladeVecEnv | SideBySide, teacher: Policy, gain: float, cloning: Cloning, seed: int
+    student: nn.Module, envs: TrainingVecEnv | SideBySide, teacher: Policy, gain: float, cloning: Cloning, seed: int
 ) -> list[float]:
     """Train ``student``, from ``gain`` times a window to an action, to do as the teacher; the mean squared errors on the way."""
     generator = np.random.default_rng(seed)
@@ -87,7 +87,7 @@ def clone(
     return errors
 
 
-def _instants(envs: BladeVecEnv | SideBySide, voltages: int) -> int:
+def _instants(envs: TrainingVecEnv | SideBySide, voltages: int) -> int:
     """In a window; ``ValueError`` unless it shows all since the last action."""
     batch = envs.batches[0] if isinstance(envs, SideBySide) else envs
     instants = batch.seen // (len(batch.blades.plant.C) + voltages)

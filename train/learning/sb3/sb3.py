@@ -13,16 +13,16 @@ from torch import nn
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
-from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.sb3.vec_env import TrainingVecEnv
 from train.learning.training import on_training_bank, uncontrolled_cost
 
-Envs = BladeVecEnv | SideBySide
+Envs = TrainingVecEnv | SideBySide
 
 
 def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) -> Envs:
     """The batch that an agent trains on, its plants from the training bank; with several tasks the blades are divided among them.
 
-    What it is shown is said by the ``settings`` of its trainer, and ``seen``: keyword arguments of ``BladeVecEnv``.
+    What it is shown is said by the ``settings`` of its trainer, and ``seen``: keyword arguments of ``TrainingVecEnv``.
     """
     blades = settings.blades
     seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held")}
@@ -32,7 +32,7 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     for index, task in enumerate(map(on_training_bank, tasks)):
         count = blades // len(tasks) + (index < blades % len(tasks))
         reference = uncontrolled_cost(task)
-        batches.append(BladeVecEnv(count, task, seed + index, reference=reference, shows_state=True, **seen))
+        batches.append(TrainingVecEnv(count, task, seed + index, reference=reference, shows_state=True, **seen))
     return batches[0] if len(batches) == 1 else SideBySide(batches)
 
 

@@ -10,7 +10,7 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from train.learning.sb3.vec_env import BladeVecEnv
+from train.learning.sb3.vec_env import TrainingVecEnv
 
 Array = NDArray[Any]
 
@@ -21,7 +21,7 @@ class SideBySide(VecEnv):
     States of plants of different order are padded by zeros, displacements and velocities apart: a mode keeps its place.
     """
 
-    def __init__(self, batches: Sequence[BladeVecEnv]) -> None:
+    def __init__(self, batches: Sequence[TrainingVecEnv]) -> None:
         self.batches = list(batches)
         first = self.batches[0]
         self.seen, self.held = first.seen, first.held

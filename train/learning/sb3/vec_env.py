@@ -1,19 +1,16 @@
-"""Stable-Baselines3's ``VecEnv`` straight over the batched environment."""
+"""What agents of Stable-Baselines3 are trained in: ``beamenv.BladeVecEnv`` with memory, and with rewards that teach sooner."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from gymnasium.spaces import Box
-from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
-from stable_baselines3.common.vec_env import VecEnv
 
-import beamenv
+from beamenv import BladeVecEnv, VectorSensorHistory
 from beamenv.plant.plant import sample
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
@@ -25,8 +22,8 @@ REWARD_UNIT = 0.01
 """What the environment's reward is multiplied by if not said otherwise: its values, hundreds, would take a critic long to reach."""
 
 
-class BladeVecEnv(VecEnv):
-    """Blades whose agent sees the last ``history`` readings and own voltages; SAME_STEP, infos for finished episodes only.
+class TrainingVecEnv(BladeVecEnv):
+    """Blades whose agent sees the last ``history`` readings and own voltages; infos for finished episodes only.
 
     With ``energy_horizon`` τ > 0 the reward is shaped by the vibration energy E as a potential: r + τ (E − γ E⁺)/scale. For an
     agent that learns with the ``discount`` γ this changes no policy's rank (Ng, Harada and Russell 1999), but what a voltage takes
@@ -54,16 +51,19 @@ class BladeVecEnv(VecEnv):
         reference: float | None = None,
         reward_unit: float = REWARD_UNIT,
     ) -> None:
-        batch = batch_of(environment, count)
-        self.blades: Any = batch.unwrapped
-        self.envs = beamenv.VectorSensorHistory(batch, length=history)
+        task = environment if isinstance(environment, Task) else None
+        super().__init__(count, seed, **({} if isinstance(environment, Task) else environment))
+        self.blades: Any = self.envs.unwrapped
+        if task is not None:
+            self.blades.set_task([task])
+        self.envs = VectorSensorHistory(self.envs, length=history)
         actions = self.blades.single_action_space
         self.seen = int(np.prod(self.envs.single_observation_space.shape or ()))
         """How many numbers of an observation sensors show; what follows is the state."""
         self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
         width = self.seen + (0 if self._state_gain is None else len(self._state_gain))
-        super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), Box(-1.0, 1.0, actions.shape, np.float32))
-        self._seed: int | None = seed
+        self.observation_space = Box(-np.inf, np.inf, (width,), np.float32)
+        self.action_space = Box(-1.0, 1.0, actions.shape, np.float32)
         self._scale = reward_scale(self.blades.plant)
         self._per_step = self.blades.task.steps / reference if reference else np.nan
         self._unit = reward_unit * (self._scale * self._per_step if reference else 1.0)
@@ -74,7 +74,6 @@ class BladeVecEnv(VecEnv):
         self._energy = np.zeros(count)
         self.last_cost = 0.0
         """J s: mean increment of J over the batch in the last step, unshaped."""
-        self._actions: Array = np.zeros((count, *actions.shape))
         self._unfinished: list[dict[str, Any]] = [{} for _ in range(count)]
 
     @property
@@ -96,10 +95,6 @@ class BladeVecEnv(VecEnv):
             return windows
         self._states = (self.blades.state * self._state_gain).astype(np.float32)
         return np.concatenate([windows, self._states], axis=1)
-
-    def step_async(self, actions: Array) -> None:
-        """Keep the actions for ``step_wait``."""
-        self._actions = actions
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Observations, rewards, ends and infos; where an episode ended the observation is the next one's first."""
@@ -124,41 +119,6 @@ class BladeVecEnv(VecEnv):
             last = np.append(final[row], self._states[row])  # the last state shown stands for that at the end
             infos[row] = {"terminal_observation": last, "TimeLimit.truncated": not terminated[row]}
         return infos
-
-    def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """The seed of the next ``reset``, one for the whole batch."""
-        self._seed = seed
-        return [seed] * self.num_envs
-
-    def close(self) -> None:
-        """Close the batch."""
-        self.envs.close()
-
-    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """The batch's one attribute, for each of the indices."""
-        return [getattr(self.blades, attr_name)] * len(list(self._get_indices(indices)))
-
-    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Not offered: the blades of a batch are one environment."""
-        raise NotImplementedError(f"attr_name = {attr_name!r} cannot be set: the blades of a batch are one environment.")
-
-    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """Not offered: the blades of a batch are one environment."""
-        raise NotImplementedError(f"method_name = {method_name!r} cannot be called: the blades of a batch are one environment.")
-
-    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """No blade has wrappers of its own."""
-        return [False] * len(list(self._get_indices(indices)))
-
-
-def batch_of(environment: Mapping[str, Any] | Task, count: int) -> Any:
-    """The batched environment with the given keyword arguments, or of a task."""
-    task = environment if isinstance(environment, Task) else None
-    keywords: Mapping[str, Any] = {} if isinstance(environment, Task) else environment
-    batch: Any = gym.make_vec(beamenv.ENV_ID, num_envs=count, autoreset_mode=AutoresetMode.SAME_STEP, **keywords)
-    if task is not None:
-        batch.unwrapped.set_task([task])
-    return batch
 
 
 def typical_state(task: Task, reference: float | None = None) -> Array:
