@@ -177,6 +177,9 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     return designed
 
 
+_DOUBLE = np.dtype(np.float64)
+
+
 def checked_task(task: Any) -> Task:
     """The task; ``ValueError`` for anything else."""
     if isinstance(task, Task):
@@ -197,6 +200,8 @@ def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
 
 
 def _numbers(name: str, value: Any) -> Array:
+    if type(value) is np.ndarray and value.dtype is _DOUBLE:  # a blade alone has no time to look closer
+        return value
     try:
         given = np.asarray(value)
         if given.dtype.kind not in "fiub":  # complex numbers would lose a part, text would be read as numbers
