@@ -1,4 +1,4 @@
-"""How arguments are read: what each may be (``kinds``, ``numbers``), tables of them (``reading``), files, one sentence for a refusal.
+"""How arguments are read: what each may be (``kinds``, ``numbers``), tables of them (``reading``), files, and the one refusal.
 
 The rules, the same for every argument, dictionary and file:
 
