@@ -97,7 +97,10 @@ class Range(Kind):
         """A number or an array of two."""
         end = Count(int(self.ge), int(self.le)).json() if self.whole else Number(ge=_finite(self.ge), le=_finite(self.le)).json()
         pair = {"type": "array", "items": end, "minItems": 2, "maxItems": 2}
-        return pair if self.encloses is not None else {"anyOf": [end, pair]}
+        if self.encloses is None:
+            return {"anyOf": [end, pair]}
+        ends = [{"type": "number", "exclusiveMaximum": self.encloses}, {"type": "number", "exclusiveMinimum": self.encloses}]
+        return {"type": "array", "prefixItems": ends, "minItems": 2, "maxItems": 2}
 
     def _both(self, value: Any) -> Any:
         value = plain(value)

@@ -1,16 +1,19 @@
 """What an editor is told of blade and scenario files."""
 
 import json
+import math
+from dataclasses import fields, is_dataclass
 from importlib.resources import files
 
 import pytest
 from typer.testing import CliRunner
 
-from beamenv.blade import PRESETS, to_dict
+from beamenv.blade import PRESETS, BeamConfig, BladeConfig, from_dict, to_dict
 from beamenv.blade.files import blade_schema
 from beamenv.configuration.files import parsed_table
 from beamenv.scenarios import named
-from beamenv.scenarios.scenario import SCENARIOS, scenario_schema
+from beamenv.scenarios.scenario import SCENARIOS, Scenario, scenario, scenario_schema
+from beamenv.structure import Lamina
 from train.cli.app import app
 
 KNOWN = {
@@ -30,9 +33,13 @@ def holds(value, schema, root):
     if "enum" in schema and value not in schema["enum"]:
         return False
     kind = schema.get("type")
+    if kind == "integer" and isinstance(value, float) and value.is_integer():
+        value = int(value)  # to JSON schema 11.0 is an integer
     if kind and (not isinstance(value, TYPES[kind]) or (isinstance(value, bool) and kind != "boolean")):
         return False
     if isinstance(value, dict):
+        if len(value) < schema.get("minProperties", 0):
+            return False
         rest = schema.get("additionalProperties", True)
         parts = [(each, schema.get("properties", {}).get(name, rest)) for name, each in value.items()]
         return all(part if isinstance(part, bool) else holds(each, part, root) for each, part in parts)
@@ -43,7 +50,8 @@ def holds(value, schema, root):
         return fits and all(holds(each, part, root) for each, part in zip(value, parts, strict=False))
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         low, high = schema.get("minimum", value), schema.get("maximum", value)
-        return low <= value <= high and not value <= schema.get("exclusiveMinimum", value - 1)
+        above, below = schema.get("exclusiveMinimum", -math.inf), schema.get("exclusiveMaximum", math.inf)
+        return low <= value <= high and above < value < below
     return True
 
 
@@ -107,3 +115,42 @@ def test_the_command_writes_what_the_functions_say(tmp_path):
     refused = CliRunner().invoke(app, ["schema", "blade", "--output", str(tmp_path / "none" / "here.json")])
     assert refused.exit_code == 2
     assert "Traceback" not in refused.stderr
+
+
+VALUES = [
+    None, True, "", "no", "MFC", "graphite-epoxy", "higher_order", 0, -0.0, 1, 3, 1.0, 11.0, 0.5, 1.5, -1, 1e6, [], [1], [0.9, 1.1],
+    [-1, 1], [1, 2], [0, 0], [1, 2, 3], ["1", "2"], [True, False], [[0, 1]], [["all", [30, 30]]], {}, {"all": [30]}, {"a": 1},
+    {"E1": 1e11}, {"E1": "x"}, {"turbulence": 1}, {"delay": [0, 1.5]}, {"length": 1.0},
+]  # fmt: skip
+"""What somebody may write for a field."""
+
+
+def places(cls, path=()):
+    """The path of every field of a configuration, within tables too."""
+    for each in fields(cls):
+        yield (*path, each.name)
+        default = getattr(cls(), each.name)
+        if is_dataclass(default):
+            yield from places(type(default), (*path, each.name))
+        if each.name == "material" and cls is BeamConfig:
+            yield from ((*path, "material", name.name) for name in fields(Lamina))
+
+
+@pytest.mark.parametrize(
+    ("cls", "schema", "reader"), [(BladeConfig, blade_schema, from_dict), (Scenario, scenario_schema, scenario)]
+)
+def test_editor_and_reader_agree_on_every_value_of_every_field_alone(cls, schema, reader):
+    """Both refuse it or neither, but for what ties numbers together, which a schema cannot say: then the sentence names both."""
+    root, tied = schema(), ("that do not add up", "smaller in magnitude than sqrt", "None where other plants are drawn")
+    for path in places(cls):
+        for value in VALUES:
+            table = value
+            for name in reversed(path):
+                table = {name: table}
+            try:
+                reader(table)
+            except ValueError as error:
+                falls = isinstance(value, list) and len(value) == 2 and sorted(value) != value
+                assert not holds(table, root, root) or falls or any(words in str(error) for words in tied), (path, value, error)
+            else:
+                assert holds(table, root, root), (path, value)

@@ -131,3 +131,9 @@ def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, mo
     assert named in result.stderr
     assert "Traceback" not in result.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_training_seed_of_what_has_none_is_refused_and_not_ignored():
+    refused = CliRunner().invoke(app, ["evaluate", "lqg", "--seeds", "2", "--trained-seed", "3"])
+    assert refused.exit_code == 2
+    assert refused.stderr == "beamenv: trained_seed is 3, but must be left out, for 'lqg' is no agent that ships.\n"

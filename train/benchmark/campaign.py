@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import beamenv
-from beamenv.configuration import Count, Flag, Table, Texts, checked
+from beamenv.blade.config import BladeConfig
+from beamenv.blade.files import to_dict
+from beamenv.blade.presets import blade_config
+from beamenv.configuration import Count, Flag, Table, Text, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.scenario import Scenario, scenario
 from train.benchmark.cells import Cell, Job, Setting, read_cell, write_cell
@@ -22,6 +28,9 @@ from train.shared.held_out import SEEDS, held_out
 from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
+
+ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units", "max_episode_steps")
+"""Of the environment, that all cells may share; the scenario is each cell's own."""
 
 
 def benchmark(
@@ -56,15 +65,17 @@ def benchmark(
     no scenario is left.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
-    environment = checked("environment", environment or {}, Table())
-    own = checked("own", own or {}, Table())
+    arguments = environment_json({} if environment is None else environment)
+    own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
     scenarios = None if scenarios is None else checked("scenarios", scenarios, Texts())
+    folder = None if folder is None else Path(checked("folder", os.fspath(folder) if isinstance(folder, Path) else folder, Text()))
+    models = [Path(each) for each in checked("models", models, Texts())]
     if folder is not None:
         check_folder(folder)
     listed = listed_controllers(controllers, own, models, trusted, trained)
     known, refused = read_scenarios(scenarios)
-    settings = [Setting(name, each, seeds, json.dumps(environment, sort_keys=True)) for name, each in known.items()]
+    settings = [Setting(name, each, seeds, arguments) for name, each in known.items()]
     queue = [
         Job(setting, each.name, name, source)
         for setting in settings
@@ -76,6 +87,25 @@ def benchmark(
     if folder is not None:
         write_all(folder, table)
     return table
+
+
+def environment_json(environment: Any) -> str:
+    """The environment's arguments as JSON; ``ValueError`` for unknown ones, and for a blade that would fail in every cell."""
+    given = checked_table("environment", environment, ARGUMENTS)
+    blade_config(given.get("preset", "thesis"), given.get("blade"), given.get("speed"))
+    try:
+        return json.dumps(given, sort_keys=True, default=_plain)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {error}.") from None
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know of itself: configurations, and NumPy's numbers and arrays."""
+    if isinstance(value, BladeConfig):
+        return to_dict(value)
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"{shown(value)} is of type {type(value).__name__}")
 
 
 def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:

@@ -64,6 +64,8 @@ def listed_controllers(
 
 
 def _given(name: str, controller: Any) -> Given:
+    if not name.strip() or not name.isprintable() or set(name) & set("/\\:"):
+        raise Refused("own", name, "names that files can have, without slashes, colons and line breaks")
     try:
         return Given(as_controller(controller))
     except ValueError:
