@@ -21,7 +21,7 @@ from beamenv.configuration import Flag, Number, Refused, checked, checked_table,
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario, with_load
 from beamenv.scenarios.scenario import scenario as as_scenario
-from beamenv.simulation.blades import Motion
+from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.banks import build_bank
 from beamenv.simulation.strain_limit import FAILURE_STRAIN

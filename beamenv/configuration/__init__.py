@@ -1,4 +1,4 @@
-"""How arguments are read: what each may be (``kinds``), tables of them (``reading``), files, and one sentence for a refusal.
+"""How arguments are read: what each may be (``kinds``, ``numbers``), tables of them (``reading``), files, and the one refusal.
 
 The rules, the same for every argument, dictionary and file:
 
@@ -14,23 +14,8 @@ The rules, the same for every argument, dictionary and file:
 - What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
 """
 
-from beamenv.configuration.kinds import (
-    Choice,
-    Count,
-    Flag,
-    Natural,
-    Number,
-    Numbers,
-    Patches,
-    Positive,
-    Range,
-    Real,
-    Share,
-    Table,
-    Text,
-    Texts,
-    Whole,
-)
+from beamenv.configuration.kinds import Choice, Flag, Table, Text, Texts
+from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
 from beamenv.configuration.sentence import Refused, shown
 

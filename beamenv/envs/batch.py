@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -17,10 +16,12 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Count, checked
+from beamenv.envs.batch_arguments import chosen_mode, drawn_rows, elapsed_intervals, own_seeds
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.blades import Blades, Motion
+from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
+from beamenv.simulation.motion import Motion
 from beamenv.task import INFO, Task, checked_action, checked_task, information, reset_options, resolve_task
 
 if TYPE_CHECKING:
@@ -87,10 +88,10 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
-        self.num_envs = _positive("num_envs", num_envs)
-        self._drawn = _rows("render_index", render_index, self.num_envs)
-        self._time_limit = sys.maxsize if max_episode_steps is None else _positive("max_episode_steps", max_episode_steps)
-        self._mode = _autoreset_mode(autoreset_mode)
+        self.num_envs = checked("num_envs", num_envs, Count())
+        self._drawn = drawn_rows("render_index", render_index, self.num_envs)
+        self._time_limit = sys.maxsize if max_episode_steps is None else checked("max_episode_steps", max_episode_steps, Count())
+        self._mode = chosen_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
         self._generators: np.random.Generator | list[np.random.Generator] | None = None
         self.set_task([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
@@ -165,7 +166,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         so many control intervals off each first episode: episodes that begin together otherwise stay in step for ever.
         """
         options = dict(options or {})
-        elapsed = _elapsed(options.pop("elapsed", 0), self._steps, self.num_envs)
+        elapsed = elapsed_intervals(options.pop("elapsed", 0), self._steps, self.num_envs)
         scenario, initial_state = reset_options(self.task, options, self.num_envs)
         self._seed(seed)
         assert self._generators is not None
@@ -183,7 +184,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             super().reset(seed=int(seed))
             self._generators = self.np_random
         else:
-            self._generators = [seeding.np_random(number)[0] for number in _seeds(seed, self.num_envs)]
+            self._generators = [seeding.np_random(number)[0] for number in own_seeds(seed, self.num_envs)]
 
     def step(self, actions: Array) -> tuple[Array, Array, Mask, Mask, dict[str, Any]]:
         """Hold the voltages of every blade over one control interval."""
@@ -270,42 +271,3 @@ def _masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:
     for name in INFO:
         info[f"_{name}"] = np.ones(len(info[name]), dtype=np.bool_) if mask is None else mask.copy()
     return info
-
-
-def _positive(name: str, value: Any) -> int:
-    positive: int = checked(name, value, Count())
-    return positive
-
-
-def _rows(name: str, value: Any, count: int) -> tuple[int, ...]:
-    """Rows of the batch, from one number or a sequence."""
-    rows = np.atleast_1d(np.asarray(value))
-    if rows.ndim != 1 or rows.dtype.kind not in "iu" or not len(rows) or not np.all((rows >= 0) & (rows < count)):
-        raise ValueError(f"{name} is {value!r}, but must be an integer from 0 to {count - 1}, or a sequence of such integers.")
-    return tuple(rows.tolist())
-
-
-def _elapsed(value: Any, steps: int, count: int) -> Rows:
-    """Control intervals already over, one for each blade."""
-    elapsed = np.asarray(value)
-    if elapsed.shape not in ((), (count,)) or elapsed.dtype.kind not in "iu" or not np.all((elapsed >= 0) & (elapsed < steps)):
-        raise ValueError(f"options['elapsed'] is {value!r}, but must be integers from 0 to {steps - 1}, one or {count} of them.")
-    return elapsed.astype(np.int64)
-
-
-def _seeds(seed: Sequence[int], count: int) -> list[int]:
-    try:
-        seeds = [operator.index(number) for number in seed]
-    except TypeError:
-        seeds = [-1]
-    if len(seeds) != count or min(seeds) < 0:
-        raise ValueError(f"seed is {seed!r}, but must be an integer, or a sequence of {count} integers that are not negative.")
-    return seeds
-
-
-def _autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
-    selectable = (AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP)
-    for mode in selectable:
-        if value in (mode, mode.value):
-            return mode
-    raise ValueError(f"autoreset_mode is {value!r}, but must be one of {', '.join(repr(mode.value) for mode in selectable)}.")

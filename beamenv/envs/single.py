@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.blades import Blades, Motion
+from beamenv.simulation.blades import Blades
+from beamenv.simulation.motion import Motion
 from beamenv.task import Task, checked_action, checked_task, information, reset_options, resolve_task
 
 if TYPE_CHECKING:

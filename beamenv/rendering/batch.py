@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from beamenv.rendering.history import Instant
 from beamenv.rendering.renderer import BladeRenderer
-from beamenv.simulation.blades import Blades, Motion
+from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
+from beamenv.simulation.motion import Motion
 from beamenv.task import Task
 
 Rows = NDArray[np.int64]

@@ -3,54 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, drive_limit, normalised
 from beamenv.plant.reduction import REFERENCE_LOAD
-from beamenv.scenarios.drawing import DRAWS as LOAD_DRAWS
-from beamenv.scenarios.drawing import draw_uniforms, load_cases
+from beamenv.scenarios.drawing import load_cases
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
+from beamenv.simulation.chance import Generators, draw
 from beamenv.simulation.kernel import advance, row_dot, row_product
 from beamenv.simulation.memory import Arrangement
+from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 from beamenv.simulation.signals.electronics import Electronics
-from beamenv.simulation.signals.faults import DRAWS as FAULT_DRAWS
 from beamenv.simulation.strain_limit import FAILURE_STRAIN as FAILURE_STRAIN
 from beamenv.simulation.strain_limit import safe_energy, strained_too_much
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
-Generators = np.random.Generator | Sequence[np.random.Generator]
 
 _FULL, _MINUS_FULL = np.array(1.0), np.array(-1.0)
 """NumPy is quicker with these than with Python numbers, which tells with a blade alone."""
-
-
-class Motion(NamedTuple):
-    """What one control interval brought to each blade, in fresh arrays; "…" is N, or nothing for a single blade."""
-
-    observation: Array
-    """(…, p) sensor readings, clipped to full scale."""
-    reward: Array
-    """(…,)"""
-    failed: NDArray[np.bool_]
-    """(…,) strained beyond ``FAILURE_STRAIN``, or no longer finite."""
-    volts: Array
-    """(…, m), V, asked for, after saturation: what the patches get unless delay, hysteresis or failure are between."""
-    tip_displacement: Array
-    """(…, 2), m: lag, flap, at the end of the interval."""
-    energy: Array
-    """(…,), J: vibration energy at the end of the interval."""
-    effort: Array
-    """(…,), J s: the actuators' share uᵀRu Δt of the cost increment."""
-    cost_increment: Array
-    """(…,), J s: ∫(xᵀQx + uᵀRu)dt over the interval."""
 
 
 def reward_scale(plant: Plant) -> float:
@@ -66,19 +44,6 @@ def reward_scale(plant: Plant) -> float:
 def _alike(values: Array) -> Array:
     """One number () in place of equal ones (k,): it broadcasts faster."""
     return np.array(values[0]) if np.all(values == values[0]) else values
-
-
-class Numbers(NamedTuple):
-    """Random numbers that k beginning episodes take, in the order in which they are drawn."""
-
-    faults: Array
-    """(k, ``FAULT_DRAWS``) uniform, or (k, 0): plant and faults."""
-    load: Array
-    """(k, ``LOAD_DRAWS``) uniform: load case."""
-    turns: Array
-    """(k, 3 H) uniform: the rotor's harmonics."""
-    noise: Array
-    """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
 
 
 class Blades:
@@ -188,7 +153,7 @@ class Blades:
             turbulence = Turbulence.of(self.plant, scenario)
             self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence)
         assert self._disturbances is not None
-        numbers = self._draw(scenario, generators, rows)
+        numbers = draw(scenario, generators, rows, self.plants.group, self._disturbances.columns, self._chance_at_begin)
         self._begin_plants_and_faults(rows, numbers.faults)
         index = self.plants.index[rows]
         lowest = self._lowest_frequency[self.plants.group[rows]]
@@ -206,20 +171,6 @@ class Blades:
         self._state[at] = state
         motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
-
-    def _draw(self, scenario: Scenario, generators: Generators, rows: Rows) -> Numbers:
-        """What chance has a say in when episodes begin. One generator for all serves one group of blades after the other."""
-        widths = FAULT_DRAWS if self._chance_at_begin else 0, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
-        if not isinstance(generators, np.random.Generator):
-            own = [generators[row] for row in rows]
-            faults, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)
-            return Numbers(faults, load, turns, np.empty(0))
-        columns, drawn = self.disturbances.columns, []
-        for count in np.bincount(self.plants.group[rows]).tolist():
-            if count:
-                uniforms = [draw_uniforms(generators, count, width) for width in widths]
-                drawn.append((*uniforms, generators.standard_normal((count, columns))))
-        return Numbers(*drawn[0]) if len(drawn) == 1 else Numbers(*map(np.concatenate, zip(*drawn, strict=True)))
 
     @property
     def _chance_at_begin(self) -> bool:

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.blades import Blades, Generators, Motion, Rows
+from beamenv.simulation.blades import Blades, Rows
+from beamenv.simulation.chance import Generators
+from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.bank import Bank
 
 Array = NDArray[np.float64]

@@ -1,0 +1,49 @@
+"""What chance has a say in when episodes begin."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.scenarios.drawing import DRAWS as LOAD_DRAWS
+from beamenv.scenarios.drawing import draw_uniforms
+from beamenv.scenarios.scenario import Scenario
+from beamenv.simulation.signals.faults import DRAWS as FAULT_DRAWS
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+Generators = np.random.Generator | Sequence[np.random.Generator]
+
+
+class Numbers(NamedTuple):
+    """Random numbers that k beginning episodes take, in the order in which they are drawn."""
+
+    faults: Array
+    """(k, ``FAULT_DRAWS``) uniform, or (k, 0): plant and faults."""
+    load: Array
+    """(k, ``LOAD_DRAWS``) uniform: load case."""
+    turns: Array
+    """(k, 3 H) uniform: the rotor's harmonics."""
+    noise: Array
+    """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
+
+
+def draw(scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: bool) -> Numbers:
+    """The numbers of the episodes of ``rows``: one generator for all serves one group of blades after the other.
+
+    ``group`` (N,) is each blade's, ``columns`` is c; without ``faults`` nothing is drawn for plants and faults.
+    """
+    widths = FAULT_DRAWS if faults else 0, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
+    if not isinstance(generators, np.random.Generator):
+        own = [generators[row] for row in rows]
+        first, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)
+        return Numbers(first, load, turns, np.empty(0))
+    drawn = []
+    for count in np.bincount(group[rows]).tolist():
+        if count:
+            uniforms = [draw_uniforms(generators, count, width) for width in widths]
+            drawn.append((*uniforms, generators.standard_normal((count, columns))))
+    return Numbers(*drawn[0]) if len(drawn) == 1 else Numbers(*map(np.concatenate, zip(*drawn, strict=True)))
