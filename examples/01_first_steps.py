@@ -48,8 +48,8 @@ assert abs(stiffness[0, 0] / (GRAPHITE_EPOXY.E2 * perimeter * section.thickness)
 # %%
 for speed in (0.0, 200.0, 1000.0, 1400.0, 1428.0):
     modes = beam.modes(speed, count=3)
-    told = ", ".join(f"{w:7.1f} {family}" for w, family in zip(modes.natural_frequencies, modes.families, strict=True))
-    print(f"{speed:6.0f} rad/s: {told}")
+    listed = ", ".join(f"{w:7.1f} {family}" for w, family in zip(modes.natural_frequencies, modes.families, strict=True))
+    print(f"{speed:6.0f} rad/s: {listed}")
 assert beam.natural_frequencies(1.001 * by_hand, count=1, motions=("lag", "extension"))[0] == 0.0
 
 # %% [markdown]

@@ -31,7 +31,7 @@ envs = gym.make_vec(beamenv.ENV_ID, num_envs=32, scenario="deflection")
 learnt = evaluate(policy, envs, seeds=range(32))
 optimal = evaluate(lqg(envs.unwrapped.design_plant), envs, seeds=range(32), reference=learnt.reference)
 for result in (learnt, optimal):
-    told = result.relative_cost
-    print(f"{result.name:>16}: J / J without control = {told.value:.3f} [{told.low:.3f}, {told.high:.3f}]")
+    cost = result.relative_cost
+    print(f"{result.name:>16}: J / J without control = {cost.value:.3f} [{cost.low:.3f}, {cost.high:.3f}]")
 assert learnt.relative_cost.high < 1.0
 assert optimal.relative_cost.value < learnt.relative_cost.value

@@ -50,6 +50,8 @@ class FunctionController:
             action = np.asarray(given)
         except (TypeError, ValueError, RuntimeError) as error:  # torch raises the last of a tensor that wants a gradient
             raise ValueError(f"controller = {self.name} gives what is no array: {error}") from None
+        if np.shape(observation)[:-1] == (1,) and action.ndim == 1:  # of a blade alone, a row says enough
+            action = action[None]
         if action.ndim != np.ndim(observation) or action.shape[:-1] != np.shape(observation)[:-1]:
             raise ValueError(
                 f"controller = {self.name} gives actions of shape {action.shape} for observations of shape "

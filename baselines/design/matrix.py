@@ -22,3 +22,11 @@ def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     if numbers.shape != shape or not np.isfinite(numbers).all():
         raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}")
     return numbers
+
+
+def one_or_each(name: str, value: Any, count: int, of: str) -> Array:
+    """A number, or one for each of ``count``, as an array (count,); ``ValueError`` for anything else."""
+    try:
+        return np.broadcast_to(real_matrix(name, value, np.shape(value) if np.shape(value) == (count,) else ()), count)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(value)} must be a finite number, or {count} of them, one for each {of}") from None

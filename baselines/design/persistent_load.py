@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from baselines.design.load_model import LoadModel, with_load
+from beamenv.configuration import Number, configuration
 from beamenv.plant.plant import SampledPlant
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("persistent_load")
 class PersistentLoad:
     """Line loads in lag and flap that last: independent first-order Gauss–Markov processes.
 
@@ -19,16 +20,10 @@ class PersistentLoad:
     needs care: on the default blade from 5 to 20 N/m and from 0.2 to 0.5 s J moves by less than 2 %.
     """
 
-    magnitude: float = 10.0
+    magnitude: Annotated[float, Number(gt=0.0, unit="N/m")] = 10.0
     """N/m, root mean square."""
-    duration: float = 0.25
+    duration: Annotated[float, Number(gt=0.0, unit="s")] = 0.25
     """s, correlation time."""
-
-    def __post_init__(self) -> None:
-        for name in ("magnitude", "duration"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{name} = {value!r} of a persistent load is not allowed: it must be a positive number")
 
     def model(self, interval: float) -> LoadModel:
         """Two states, the loads themselves in N/m, over a control interval in s."""

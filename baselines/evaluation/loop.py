@@ -18,7 +18,7 @@ from beamenv.task import Task
 
 Environment: TypeAlias = "gym.Env[Any, Any] | VectorEnv[Any, Any, Any]"
 INFO = ("cost_increment", "effort", "tip_displacement", "volts")
-"""Keys of the environment's ``info`` that an instant tells."""
+"""Keys of the environment's ``info`` that an instant holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

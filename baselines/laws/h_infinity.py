@@ -14,6 +14,7 @@ from baselines.design.controller import Array
 from baselines.design.linear import LinearController
 from baselines.design.weights import weighted
 from baselines.laws.lqg import known_sensor_noise, observer, sampled_lqg
+from beamenv.configuration import Number, checked
 from beamenv.plant.plant import Plant, sample
 
 _BISECTION = 1e-5
@@ -34,8 +35,7 @@ def h_infinity(plant: Plant, back_off: float = 1.5, *, Q: ArrayLike | None = Non
     white noise. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Raises ValueError unless ``back_off`` exceeds 1
     and white loads act.
     """
-    if not (np.isfinite(back_off) and back_off > 1.0):
-        raise ValueError(f"back_off = {back_off!r} is not allowed: it must be a number above 1")
+    back_off = checked("back_off", back_off, Number(gt=1.0))
     plant = weighted(plant, Q, R)
     return h_infinity_law(plant, back_off * least_attenuation(plant))
 

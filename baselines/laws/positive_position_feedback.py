@@ -13,6 +13,7 @@ from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
+from baselines.design.matrix import one_or_each
 from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
 from beamenv.configuration import Count, Number, checked
@@ -57,9 +58,7 @@ def positive_position_feedback(
 
     if gain is None:
         return law(_least_cost_gains(lambda gains: stationary_cost(plant, law(gains)), modes))
-    if np.shape(gain) not in ((), (modes,)) or not np.isfinite(gain).all():
-        raise ValueError(f"gain = {gain!r} must be a finite number, or {modes} of them, one for each mode")
-    return law(gain)
+    return law(one_or_each("gain", gain, modes, "mode"))
 
 
 def _held_filters(frequencies: Array, damping: float, corner: float, interval: float) -> tuple[Array, Array]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import reduce
 from operator import add
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,10 +15,11 @@ from baselines.design.load_model import LoadModel
 from baselines.design.persistent_load import PersistentLoad
 from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_lqg
+from beamenv.configuration import Count, Number, Numbers, configuration
 from beamenv.plant.plant import Plant
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("harmonics")
 class RotorHarmonics:
     """Line loads in lag and flap at whole multiples of the rotor speed: oscillators that all but keep their phase.
 
@@ -26,25 +27,14 @@ class RotorHarmonics:
     of 3 N/m in any direction is 1.5 N/m root mean square in lag and in flap, and steady over an episode of 0.5 s.
     """
 
-    speed: float
+    speed: Annotated[float, Number(gt=0.0, unit="rad/s")]
     """rad/s, of the rotor."""
-    orders: tuple[int, ...] = (1, 2, 3, 4)
+    orders: Annotated[tuple[int, ...], Numbers(Count(), least=1, of="orders")] = (1, 2, 3, 4)
     """Loads per revolution."""
-    magnitude: float = 1.5
+    magnitude: Annotated[float, Number(gt=0.0, unit="N/m")] = 1.5
     """N/m, root mean square, of each harmonic in each direction."""
-    duration: float = 0.5
+    duration: Annotated[float, Number(gt=0.0, unit="s")] = 0.5
     """s: time in which a harmonic forgets its amplitude and phase."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "orders", tuple(self.orders))
-        for name in ("speed", "magnitude", "duration"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{name} = {value!r} of rotor harmonics is not allowed: it must be a positive number")
-        if not self.orders or any(order != int(order) or order < 1 for order in self.orders):
-            raise ValueError(
-                f"orders = {self.orders!r} of rotor harmonics are not allowed: give one or more whole numbers from 1 up"
-            )
 
     def model(self, interval: float) -> LoadModel:
         """Four states for each order, an in-phase and a quadrature part (N/m) in lag and in flap, over an interval in s.

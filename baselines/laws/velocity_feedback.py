@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
 from baselines.design.linear import LinearController, static_law
+from baselines.design.matrix import one_or_each
 from beamenv.plant.plant import Plant
 
 _DECADES = np.linspace(-6.0, 1.0, 36)
@@ -25,9 +26,7 @@ def velocity_feedback(plant: Plant, gain: ArrayLike | None = None) -> LinearCont
     ValueError when sensors and actuators cannot be paired, or for a gain of another shape.
     """
     pairs = pairing(plant, "velocity feedback")
-    gains = _least_cost_gains(plant, pairs) if gain is None else np.asarray(gain, dtype=np.float64)
-    if gains.shape not in ((), (len(pairs),)) or not np.isfinite(gains).all():
-        raise ValueError(f"gain = {gain!r} must be a finite number, or {len(pairs)} of them, one for each actuator")
+    gains = _least_cost_gains(plant, pairs) if gain is None else one_or_each("gain", gain, len(pairs), "actuator")
     return _law(plant, "velocity feedback", pairs, gains)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from baselines.placement.search.search import place
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_positions
+from beamenv.configuration.writing import write_whole
 
 METHOD, SEED = "multistart", 0
 """It met the best layout known with every seed tried; the thesis' GA and SQP miss it by 1 to 2 % now and then."""
@@ -58,11 +59,6 @@ def _kept_in(config: BladeConfig) -> Path:
 
 
 def _keep(path: Path, text: str) -> None:
-    """Write the whole file or none; a cache that cannot be written to is ignored."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
-            file.write(text)
-        os.replace(file.name, path)
-    except OSError:
-        return
+    """A cache that cannot be written to is ignored."""
+    with suppress(OSError):
+        write_whole(path, text)

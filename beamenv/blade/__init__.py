@@ -1,6 +1,6 @@
 """A blade as a user describes it: configuration, presets, files, layouts of its patches; and what is built from it."""
 
-from beamenv.blade.build import Blade, build_beam, build_plant, plant_of
+from beamenv.blade.build import Blade, build_beam, build_plant, displacement_operator, plant_of
 from beamenv.blade.config import MATERIALS, BeamConfig, BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.files import from_dict, load_config, to_dict
@@ -16,6 +16,7 @@ __all__ = [
     "blade_config",
     "build_beam",
     "build_plant",
+    "displacement_operator",
     "from_dict",
     "load_config",
     "plant_of",

@@ -10,7 +10,7 @@ from beamenv.plant.plant import Plant
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Design:
-    """The design plant and what it was built from; the blade that really turns may be another one, of which this tells nothing."""
+    """The design plant and what it was built from; the blade that really turns may be another one, which is not in here."""
 
     plant: Plant
     config: BladeConfig

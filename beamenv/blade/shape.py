@@ -5,6 +5,7 @@ Coordinates are lag, flap and span, in m. Everything that draws a blade draws wh
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -134,3 +135,15 @@ def _size(beam: RotatingBeam, span: Array) -> Array:
 
 def _angle(beam: RotatingBeam, span: Array) -> Array:
     return np.radians(beam.presetting_deg + beam.pretwist_deg * span / beam.length)
+
+
+def magnification(deflection: float, drawn: float, digits: Sequence[int] = range(1, 10)) -> float:
+    """How many times larger than life a deflection (m) is drawn: a digit times a power of ten, no more than makes it ``drawn`` m.
+
+    1 for a blade that does not move.
+    """
+    if deflection <= 0.0:
+        return 1.0
+    wanted = drawn / deflection
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(power * max(digit for digit in digits if digit * power <= wanted))

@@ -7,7 +7,7 @@ The rules, the same for every argument, dictionary and file:
 - True and false are ``True``, ``False`` and NumPy's ``bool_``; 1, "yes" and "no" are refused.
 - A sequence is a list, a tuple or a one-dimensional array, never a string. A range is two numbers that do not fall, and one
   number means both ends.
-- The keys of a table are the names of its fields; an unknown one is refused, and those there are are told.
+- The keys of a table are the names of its fields; an unknown one is refused, and the known ones are listed.
 - A table may be partial. What it leaves out stays as it stood: that of the preset or scenario it departs from, also within
   tables of tables, and a material's as well.
 - A constructor takes objects: tables are for ``blade_config``, ``scenario``, ``from_dict`` and files.

@@ -38,7 +38,7 @@ def configuration(path: str, slots: bool = True, eq: bool = True) -> Callable[[t
 
         __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined] # a nested table needs no constructor of its own
         made.__init__ = __init__
-        made.path = path
+        made._path = path
         return made
 
     return checked_class
@@ -60,7 +60,7 @@ def read(base: T, given: Any, path: str | None = None) -> T:
     Raises ``ValueError`` of one sentence about ``path``.
     """
     cls: Any = type(base)
-    path = path or str(cls.path)
+    path = path or str(cls._path)
     if isinstance(given, cls):
         return given
     if not isinstance(given, Mapping):

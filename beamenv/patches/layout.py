@@ -39,11 +39,11 @@ class PatchLayout:
 
     def actuator_positions(self, beam_length: float) -> tuple[float, ...]:
         """Root-side edges in m; ``ValueError`` if patches overlap or leave 0 … 0.7 L."""
-        return place("actuators", self.actuators, self.length, beam_length)
+        return spaced("actuators", self.actuators, self.length, beam_length)
 
     def sensor_positions(self, beam_length: float) -> tuple[float, ...]:
         """Root-side edges in m; ``ValueError`` if patches overlap or leave 0 … 0.7 L."""
-        return place("sensors", self.sensors, self.length, beam_length)
+        return spaced("sensors", self.sensors, self.length, beam_length)
 
     def inlays(self, beam_length: float) -> tuple[Inlay, ...]:
         """The patches as foreign material in the walls; none when they are not passive."""
@@ -53,7 +53,7 @@ class PatchLayout:
         return tuple(self.patch.inlay(wall, start, self.length, self.width) for wall, starts in walls for start in starts)
 
 
-def place(name: str, patches: int | tuple[float, ...], length: float, beam_length: float) -> tuple[float, ...]:
+def spaced(name: str, patches: int | tuple[float, ...], length: float, beam_length: float) -> tuple[float, ...]:
     """Positions in m, equally spaced where only a number is given, checked against the blade and each other."""
     last = OUTERMOST * beam_length - length
     tolerance = 1e-9 * beam_length

@@ -154,7 +154,7 @@ def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
     """
     interval = plant.control_interval if interval is None else interval
     n, m = plant.B.shape
-    drive = np.abs(plant.voltage_limits).max(axis=0)  # voltages in units of their limit keep the exponential well scaled
+    drive = drive_limit(plant)  # voltages in units of their limit keep the exponential well scaled
     scale = np.concatenate([np.ones(n), drive, np.ones(plant.disturbance_input.shape[1])])
     size = len(scale)
     dynamics = np.zeros((size, size))

@@ -1,4 +1,4 @@
-"""What a picture tells of an episode: its last instants."""
+"""What a picture shows of an episode: its last instants."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
+from beamenv.plant.plant import drive_limit
 from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.charts import Chart, draw_scale, round_above
 from beamenv.rendering.deformation import Deformation
@@ -44,7 +45,7 @@ class BladeRenderer:
         self._scene = Scene(task.blade)
         self._deformation = Deformation(task, self._scene.solid.stations)
         self._actuators = len(config.patches.actuator_positions(config.beam.length))
-        self._limit = float(np.abs(plant.voltage_limits).max())
+        self._limit = float(drive_limit(plant).max())
         self._colours = line_colours(plant.B.shape[1])
         usual_cost = 0.1 * WINDOW / config.control_interval * reward_scale(plant)
         usual_tip = self._scene.solid.reference_deflection

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
-from beamenv.blade.shape import body, patch, quadrilaterals
+from beamenv.blade.shape import body, magnification, patch, quadrilaterals
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
 from beamenv.plant.plant import Plant
 from beamenv.plant.reduction import REFERENCE_LOAD
@@ -27,13 +27,6 @@ def reference_deflection(plant: Plant) -> float:
     """Static tip deflection, m, under the reference load in lag or in flap, whichever is larger."""
     tip = plant.tip_displacement @ static_deflection(plant, np.diag([REFERENCE_LOAD] * 2)).T
     return float(np.linalg.norm(tip, axis=0).max())
-
-
-def magnification(length: float, deflection: float) -> float:
-    """How many times larger than life a ``deflection`` is drawn on a blade: one significant digit."""
-    wanted = SHOWN_DEFLECTION * length / deflection
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(power * np.floor(wanted / power))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,7 +50,7 @@ class BladeSolid:
     def __init__(self, blade: Blade) -> None:
         beam, patches = blade.beam, blade.config.patches
         self.reference_deflection = reference_deflection(blade.plant)
-        self.magnification = magnification(beam.length, self.reference_deflection)
+        self.magnification = magnification(self.reference_deflection, SHOWN_DEFLECTION * beam.length)
         starts = [patches.actuator_positions(beam.length), patches.sensor_positions(beam.length)]
         spans = [np.array(start)[:, None] + patches.length * np.array([0.0, 1.0]) for start in starts]
         even = np.linspace(0.0, beam.length, STATIONS)

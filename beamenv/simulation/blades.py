@@ -108,7 +108,7 @@ class Blades:
     @property
     def index(self) -> Rows:
         """(N,) place of each blade's plant in the bank, or among the plants of its group."""
-        return self.plants.place
+        return self.plants.within_group
 
     @property
     def disturbances(self) -> SharedDisturbances | SeededDisturbances:
@@ -166,7 +166,7 @@ class Blades:
             state += self.bank.start[self.plants.group[rows]]
         if initial_state is not None:
             state[...] = initial_state
-        at = self._lie.place(rows)
+        at = self._lie.rows_of(rows)
         self._joined[at] = 0.0
         self._state[at] = state
         motion = self._undriven(state, noise, rows)
@@ -244,7 +244,7 @@ class Blades:
     def state_dict(self) -> dict[str, Any]:
         """What moves, from the first ``begin`` on: copies of arrays, in dictionaries; the generators are the caller's.
 
-        An equally made batch that has begun as this one did, with one generator or with one for each blade, goes on from it bit
+        An equally made batch that has begun as this one did, with one generator or with one for each blade, continues from it bit
         for bit after ``load_state_dict``.
         """
         return {

@@ -68,7 +68,7 @@ class Arrangement:
         memory = np.zeros((*blocks, columns, size + spread))[..., :size] if self.shape else np.zeros(columns)
         return memory, memory.swapaxes(-2, -1) if self.shape else memory
 
-    def place(self, rows: Rows) -> tuple[Rows, ...]:
+    def rows_of(self, rows: Rows) -> tuple[Rows, ...]:
         """Index of ``rows`` in arrays of the batch's shape."""
         return np.divmod(rows, self.shape[-1]) if self.shape else ()
 

@@ -106,6 +106,8 @@ def test_a_plain_function_of_the_observations_is_a_controller(env, plant):
         assert function.name == "function"
     assert function.relative_cost.value != 1.0
     assert roll_out(np.zeros_like, env, [0]).voltages.max() == 0.0
+    alone = evaluate(lambda readings: gain @ readings[0], env, range(3))  # of a blade alone a row without a batch will do
+    np.testing.assert_allclose(numbers(alone), numbers(evaluate(law, env, range(3))), rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -113,7 +115,7 @@ def test_a_plain_function_of_the_observations_is_a_controller(env, plant):
     [
         (3, "controller = 3 is not allowed: it must be an object with Stable-Baselines3's predict, or a function"),
         (PersistentLoad, "controller = <class .*PersistentLoad'> is not allowed"),
-        (lambda readings: readings[0], r"controller = function gives actions of shape \(4,\) for observations of shape \(1, 4\)"),
+        (lambda readings: readings[0, 0], r"controller = function gives actions of shape \(\) for observations of shape \(1, 4\)"),
     ],
 )
 def test_what_is_no_controller_is_refused_in_one_sentence(env, controller, sentence):

@@ -92,5 +92,7 @@ def test_what_is_not_possible_is_refused_by_name(blade, small_plant):
         h_infinity(small_plant(process_noise=np.zeros((2, 2))))
     with pytest.raises(ValueError, match="attenuation = .* is too little"):
         h_infinity_law(plant, 0.99 * least)
-    with pytest.raises(ValueError, match="back_off = 1.0 is not allowed"):
+    with pytest.raises(ValueError, match="back_off is 1.0, but must be a number above 1"):
         h_infinity(plant, back_off=1.0)
+    with pytest.raises(ValueError, match="back_off is '2', but must be a number above 1"):
+        h_infinity(plant, back_off="2")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from baselines import closed_loop_poles, no_control, stationary_cost
+from baselines import closed_loop_poles, no_control, stationary_cost, velocity_feedback
 from baselines.laws.positive_position_feedback import positive_position_feedback
 
 OMEGA, DAMPING = 200.0, 0.01
@@ -97,3 +97,10 @@ def test_what_is_not_allowed_is_refused_by_name(small_plant):
         positive_position_feedback(plant, filter_damping=0.0)
     with pytest.raises(ValueError, match="gain = .* or 3 of them"):
         positive_position_feedback(plant, gain=[0.1, 0.2])
+
+
+@pytest.mark.parametrize("gain", ["a", [1.0] * 7, True, np.nan, [0.1, 0.1, 1j]])
+def test_gains_that_are_no_numbers_are_refused(small_plant, gain):
+    for law in (velocity_feedback, positive_position_feedback):
+        with pytest.raises(ValueError, match="gain = .* must be a finite number, or . of them, one for each"):
+            law(small_plant(), gain=gain)

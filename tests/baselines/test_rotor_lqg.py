@@ -73,9 +73,11 @@ def test_turbulence_stands_beside_the_harmonics(small_plant):
 
 
 def test_impossible_harmonics_are_refused_by_name(small_plant):
-    with pytest.raises(ValueError, match="speed = 0.0 of rotor harmonics"):
+    with pytest.raises(ValueError, match="harmonics.speed is 0.0, but must be a positive number"):
         RotorHarmonics(0.0)
-    with pytest.raises(ValueError, match=r"orders = \(1.5,\)"):
+    with pytest.raises(
+        ValueError, match=r"harmonics.orders is \(1.5,\), but must be a list of one or more orders, each a whole number"
+    ):
         RotorHarmonics(SPEED, orders=(1.5,))
     with pytest.raises(ValueError, match="order 80 at 100 rad/s.*below 6283.19 rad/s"):
         rotor_lqg(small_plant(), RotorHarmonics(SPEED, orders=(80,)))

@@ -112,7 +112,8 @@ def test_the_command_writes_what_the_functions_say(tmp_path):
         assert json.loads(printed.stdout) == schema()
         assert CliRunner().invoke(app, ["schema", kind, "--output", str(tmp_path / kind)]).exit_code == 0
         assert json.loads((tmp_path / kind).read_text(encoding="utf-8")) == schema()
-    refused = CliRunner().invoke(app, ["schema", "blade", "--output", str(tmp_path / "none" / "here.json")])
+    assert CliRunner().invoke(app, ["schema", "blade", "--output", str(tmp_path / "new" / "here.json")]).exit_code == 0
+    refused = CliRunner().invoke(app, ["schema", "blade", "--output", str(tmp_path / "blade" / "here.json")])  # within a file
     assert refused.exit_code == 2
     assert "Traceback" not in refused.stderr
 

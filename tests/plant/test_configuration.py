@@ -37,7 +37,6 @@ def test_ganged_actuators_have_one_voltage():
 
 
 def test_json_and_toml_files_give_the_same_blade(tmp_path):
-    pytest.importorskip("tomllib")
     (tmp_path / "blade.json").write_text(json.dumps({"speed": 100.0, "beam": {"taper": 2.0}}))
     (tmp_path / "blade.toml").write_text("speed = 100.0\n[beam]\ntaper = 2.0\n")
     assert load_config(tmp_path / "blade.json") == load_config(tmp_path / "blade.toml")

@@ -67,14 +67,14 @@ QUIET = {"white_load": False, "sensor_noise": False}
 STEADY = {"preset": "step", "magnitude": [30.0, 30.0], "direction_deg": [90.0, 90.0], "onset": [0.0, 0.0], **QUIET}
 
 
-def steady(**troubles):
+def steady(**changes):
     """Without noise, under one load: all that is left to chance is a scenario's trouble."""
-    return {**STEADY, **troubles}
+    return {**STEADY, **changes}
 
 
 @pytest.mark.parametrize("bias", [0.0, 0.3])
 @pytest.mark.parametrize(
-    "troubles",
+    "changes",
     [
         {},
         {"plants": {"spin_up": [100.0, 300.0]}},
@@ -83,9 +83,9 @@ def steady(**troubles):
     ],
     ids=["nominal", "spin-up", "hysteresis and delay", "two speeds"],
 )
-def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, troubles):
+def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, changes):
     """Under one load and a constant voltage, once every blade has begun an episode of its own."""
-    task, episodes = task_of(steady(**troubles), 0.05), 64
+    task, episodes = task_of(steady(**changes), 0.05), 64
     actor = new_actor(task_of(), GradientSettings())
     with torch.no_grad():
         actor.unit.out.weight.zero_()

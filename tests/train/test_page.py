@@ -17,13 +17,14 @@ import beamenv
 from baselines import evaluate, lqg, lqr, no_control, scheduled_lqg_for
 from baselines.evaluation.loop import instants
 from beamenv.blade.build import build_plant
+from beamenv.blade.shape import magnification
 from beamenv.plant.plant import sample
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
 from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record, write_page
-from train.page.blade import blade_figures, frame_times, magnification, motions
+from train.page.blade import ROUND, SHOWN_DEFLECTION, blade_figures, frame_times, motions
 from train.page.page import plots, render
 from train.page.plots import amplitude_density
 from train.shared.versions import versions
@@ -213,7 +214,7 @@ def test_actuators_are_coloured_by_the_voltage_of_the_frame(page_content):
 
 @pytest.mark.parametrize(("largest", "factor"), [(4e-4, 1000.0), (3e-4, 1000.0), (1.9e-4, 2000.0), (4e-1, 1.0), (0.0, 1.0)])
 def test_deflections_are_magnified_to_at_most_a_fifth_of_the_span(largest, factor):
-    assert magnification(largest, span=2.023) == factor
+    assert magnification(largest, SHOWN_DEFLECTION * 2.023, ROUND) == factor
 
 
 # Plots.

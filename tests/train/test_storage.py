@@ -6,9 +6,10 @@ import os
 import numpy as np
 import pytest
 
+from beamenv.configuration.writing import write_whole
 from train.controllers.policies import RecurrentPolicy
 from train.controllers.policy_files import save_policy
-from train.shared.files import check_folder, write_csv, write_json, write_whole
+from train.shared.files import check_folder, write_csv, write_json
 
 
 def names(folder):
@@ -35,7 +36,7 @@ def test_an_interrupted_write_leaves_the_old_file_whole_and_no_litter(tmp_path, 
             kept(first, *arguments).close()
         raise interruption
 
-    monkeypatch.setattr(f"train.shared.files.os.{call}", interrupt)
+    monkeypatch.setattr(f"beamenv.configuration.writing.os.{call}", interrupt)
     with pytest.raises(interruption):
         write_whole(path, "new")
     monkeypatch.undo()

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import typer
 
+from beamenv.configuration.writing import write_whole
 from train.reproduce.catalogue import STUDIES, chosen
 from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import Record, load, run
-from train.shared.files import write_whole
 
 
 def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:

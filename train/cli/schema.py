@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from beamenv.configuration.writing import write_whole
 from train.cli.options import one_sentence, print_json
 
 
@@ -32,4 +33,4 @@ def schema(
         if output is None:
             print_json(content)
         else:
-            output.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            write_whole(output, json.dumps(content, indent=2, ensure_ascii=False) + "\n")

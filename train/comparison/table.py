@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from baselines import Evaluation
+from beamenv.configuration.writing import write_whole
 from train.shared import markdown
 from train.shared.columns import Column
-from train.shared.files import write_csv, write_whole
+from train.shared.files import write_csv
 
 COLUMNS = (
     Column("relative_cost", "J / J without control", 1.0, "{:.3f}", interval=True),

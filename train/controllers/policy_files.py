@@ -12,11 +12,12 @@ from typing import Any, cast
 
 import numpy as np
 
+from beamenv.configuration.writing import write_whole
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
-from train.shared.files import write_json, write_whole
+from train.shared.files import write_json
 
 KINDS: Mapping[str, type[Policy]] = {kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, ResidualPolicy, LSTMPolicy)}
 

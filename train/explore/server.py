@@ -19,7 +19,7 @@ class _Quiet(WSGIRequestHandler):
 
 
 def serve(port: int, host: str = LOOPBACK) -> BaseWSGIServer:
-    """A server that is bound and waits for ``serve_forever``; port 0 takes a free one, which ``server.port`` tells.
+    """A server that is bound and waits for ``serve_forever``; port 0 takes a free one, which ``server.port`` gives.
 
     Raises ``ValueError`` for a host that is not loopback, and for a port that is none or cannot be had.
     """

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from beamenv.configuration.writing import write_whole
 from train.figures.figure import Curve, Marker, Panel, listed
-from train.shared.files import write_whole
 
 STYLE: Mapping[str, Any] = {
     "font.size": 9,

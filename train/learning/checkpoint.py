@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from train.shared.files import write_whole
+from beamenv.configuration.writing import write_whole
 
 NAME = "checkpoint.pt"
 

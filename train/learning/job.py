@@ -54,7 +54,7 @@ class Job:
 
     def identity(self) -> dict[str, Any]:
         """What two runs must share for one to resume the other."""
-        weights = None if self.teacher is None else sha256((self.teacher / "weights.npz").read_bytes()).hexdigest()
+        weights = None if self.teacher is None else sha256(_weights(self.teacher).read_bytes()).hexdigest()
         return {
             "agent": self.name,
             "recipe": self.recipe.to_dict(),
@@ -64,6 +64,13 @@ class Job:
             "budget": [str(self.budget.updates), str(self.budget.seconds)],
             "teacher": weights,
         }
+
+
+def _weights(teacher: Path) -> Path:
+    weights = teacher / "weights.npz"
+    if not weights.is_file():
+        raise ValueError(f"teacher = {str(teacher)!r} must be the folder of a trained agent, but has no weights.npz.")
+    return weights
 
 
 def run(job: Job, folder: Path, report: Report, resume: bool = False) -> list[Path]:

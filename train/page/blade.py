@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import build_beam, displacement_operator
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.shape import Skin, body, edges, end_triangles, patch, side_triangles
+from beamenv.blade.shape import Skin, body, edges, end_triangles, magnification, patch, side_triangles
 from beamenv.patches.layout import ACTUATOR_WALL
 from train.figures.palette import NEUTRAL
 from train.page.recording import RecordedEpisode, Recording
@@ -24,6 +24,8 @@ FRAME_INTERVAL = 4e-3
 MOST_FRAMES = 500
 SHOWN_DEFLECTION = 0.2
 """Share of the span that the largest deflection is drawn as, at most."""
+ROUND = (1, 2, 5)
+"""Digits of the magnification."""
 RAISED = 0.06
 """Depths of the section that patches are drawn above the wall they lie in, so that they are seen."""
 BODY = "#a9b4c0"
@@ -51,24 +53,15 @@ def frame_times(episode: RecordedEpisode) -> Array:
     return np.asarray(time[::stride])
 
 
-def magnification(largest: float, span: float) -> float:
-    """How many times larger than life a deflection (m) is drawn: the largest 1, 2 or 5 times a power of ten that keeps it below
-    a fifth of the span; 1 for a blade that does not move.
-    """
-    if largest <= 0.0:
-        return 1.0
-    wanted = SHOWN_DEFLECTION * span / largest
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor * power <= wanted))
-
-
 def motions(episode: RecordedEpisode) -> tuple[list[Motion], float]:
     """The pair with the displacements that are drawn, and their common magnification."""
     blade, times = episode.blade, frame_times(episode)
     operator = displacement_operator(blade, _stations(blade))
     rows = [np.searchsorted(recording.time, times).clip(max=len(recording.time) - 1) for recording in episode.pair]
     true = [np.einsum("dkn,fn->fdk", operator, each.states[row]) for each, row in zip(episode.pair, rows, strict=True)]
-    factor = magnification(max(float(np.linalg.norm(each[:, :2], axis=1).max()) for each in true), blade.beam.length)
+    factor = magnification(
+        max(float(np.linalg.norm(each[:, :2], axis=1).max()) for each in true), SHOWN_DEFLECTION * blade.beam.length, ROUND
+    )
     return [Motion(*parts) for parts in zip(episode.pair, rows, [factor * each for each in true], strict=True)], factor
 
 

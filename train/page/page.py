@@ -13,6 +13,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
+from beamenv.configuration.writing import write_whole
 from train.figures import screen
 from train.figures.figure import Panel
 from train.figures.heat_map import HeatMap
@@ -23,7 +24,6 @@ from train.page.blade import blade_figures, frame_times, motions
 from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
 from train.page.table import Table
-from train.shared.files import write_whole
 from train.shared.versions import versions
 
 

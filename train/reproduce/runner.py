@@ -10,12 +10,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from beamenv.configuration.writing import write_whole
 from train.reproduce.drawing import curve_rows, draw
 from train.reproduce.judging.study import Outcome, Study
 from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
 from train.shared.digests import digest, source_digest
-from train.shared.files import write_whole
 
 DEPENDS_ON = ("beamenv", "baselines", "train.reproduce", "train.figures.figure", "train.figures.paper")
 """Packages that decide what a study finds and shows."""

@@ -1,36 +1,21 @@
-"""Files that are written whole or not at all."""
+"""Folders, JSON and CSV: files that are written whole or not at all."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-import os
-import secrets
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+from beamenv.configuration.writing import write_whole
 
 
 def check_folder(folder: Path) -> None:
     """``ValueError`` if a file has the name of the folder: better raised before a training than after it."""
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"folder = {str(folder)!r} must be a folder, or not be there yet, but is a file.")
-
-
-def write_whole(path: Path, content: bytes | str) -> None:
-    """Write a file beside its place and move it there: no reader meets half of it, and no interruption leaves it."""
-    data = content.encode() if isinstance(content, str) else content
-    path.parent.mkdir(parents=True, exist_ok=True)
-    name = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
-    handle = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        os.replace(name, path)
-    except BaseException:
-        name.unlink(missing_ok=True)
-        raise
 
 
 def write_json(path: Path, content: Any) -> None:

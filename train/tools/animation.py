@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw, ImageFont
 import beamenv
 from baselines import Controller, lqg, no_control
 from baselines.evaluation.loop import instants
-from train.shared.files import write_whole
+from beamenv.configuration.writing import write_whole
 
 Picture = NDArray[np.uint8]
 

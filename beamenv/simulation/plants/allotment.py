@@ -37,7 +37,7 @@ class Allotment:
         self._gather()
 
     @property
-    def place(self) -> Rows:
+    def within_group(self) -> Rows:
         """(N,) places among the plants of each blade's group."""
         return self.index - self._first
 
@@ -52,7 +52,7 @@ class Allotment:
     def _allot(self, rows: Rows, index: Rows) -> None:
         self.index[rows] = index
         if self.drawn and self._lie.shape and len(rows) < len(self.index):
-            at = self._lie.place(rows)  # in place: operators of many blades are many megabytes
+            at = self._lie.rows_of(rows)  # in place: operators of many blades are many megabytes
             self.operators.fused[at] = self._bank.operators.fused[index]
             self.effort_weight[at] = self._bank.effort_weight[index]
         elif self._each > 1:

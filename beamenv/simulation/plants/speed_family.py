@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Number, Numbers, checked
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.coordinates import seen_from
 
@@ -38,8 +39,9 @@ def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike) -> Sp
     are [ωη; η̇], signs and order of the modes do not matter. Raises ValueError for speeds that do not ascend, lie beyond the
     critical speed, or are so far away that the retained modes are others.
     """
-    grid = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
-    if grid.ndim != 1 or not grid.size or not np.isfinite(grid).all() or np.any(np.diff(grid) <= 0.0):
+    given = (speeds,) if np.ndim(speeds) == 0 else speeds
+    grid = np.array(checked("speeds", given, Numbers(Number(ge=0.0, unit="rad/s"), least=1)), dtype=np.float64)
+    if np.any(np.diff(grid) <= 0.0):
         raise ValueError(f"speeds = {speeds!r} must be one or more numbers in rad/s, each greater than the one before")
     own = Blade(config).with_fixed_range()
     family = [own.changed(replace(own.config, speed=float(speed))) for speed in grid]

@@ -112,7 +112,7 @@ class SharedDisturbances:
         """
         self._cases = merged(self._cases, rows, cases)
         self._steps[rows] = 0
-        at = self._lie.place(rows)
+        at = self._lie.rows_of(rows)
         self._amplitude[at] = cases.amplitude
         disturbance = normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
         self._rows[at] = disturbance

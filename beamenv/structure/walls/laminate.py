@@ -59,7 +59,7 @@ class Layup:
         return cls(default=None, walls={wall: stack(material, angles, wall) for wall, angles in angles_deg.items()})
 
     def plies(self, wall: str) -> tuple[Ply, ...]:
-        """The plies of a wall; ``ValueError`` when the lay-up has none for it."""
+        """The plies of a wall; ``ValueError`` for a wall that the lay-up leaves out."""
         plies = self.walls.get(wall, self.default)
         if plies is None:
             raise ValueError(f"layup has no plies for wall {wall!r}; it has them for {', '.join(sorted(self.walls))}.")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from beamenv.configuration.writing import write_whole
 from train.benchmark.showing.heat_map import heat_map
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import BenchmarkTable
 from train.figures.paper import save
 from train.figures.paper_heat_map import heat_map as drawn
-from train.shared.files import write_whole
 
 INTRODUCTION = """\
 # The benchmark

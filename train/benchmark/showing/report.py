@@ -8,10 +8,11 @@ from typing import Any
 
 from baselines.evaluation.metrics import finite
 from baselines.evaluation.statistics import CONFIDENCE, RESAMPLES
+from beamenv.configuration.writing import write_whole
 from train.benchmark.table import UNSTABLE, BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.shared.columns import Column, number, share
-from train.shared.files import write_csv, write_json, write_whole
+from train.shared.files import write_csv, write_json
 from train.shared.markdown import escaped
 from train.shared.markdown import table as markdown_table
 

@@ -1,7 +1,7 @@
 """The controllers that agents are compared with, a file each: a file put into this folder is a controller of its name.
 
 Such a module has a ``KIND``, one of ``KINDS``, and ``build(design)``, which returns the controller. A ``beamenv.Design`` is the
-design plant and its configuration: what the true blade is like no controller is told. ``lqg_load.py`` is called "lqg-load".
+design plant and its configuration: no controller knows what the true blade is like. ``lqg_load.py`` is called "lqg-load".
 """
 
 from __future__ import annotations

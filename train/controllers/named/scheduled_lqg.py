@@ -1,4 +1,4 @@
-"""LQG that follows the rotor's speed, which it is told."""
+"""LQG that follows the measured speed of the rotor."""
 
 import numpy as np
 

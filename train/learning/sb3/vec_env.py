@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
 from beamenv import BladeVecEnv, VectorSensorHistory
-from beamenv.plant.plant import sample
+from beamenv.plant.plant import drive_limit, sample
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 
@@ -27,14 +27,14 @@ class TrainingVecEnv(BladeVecEnv):
 
     With ``energy_horizon`` τ > 0 the reward is shaped by the vibration energy E as a potential: r + τ (E − γ E⁺)/scale. For an
     agent that learns with the ``discount`` γ this changes no policy's rank (Ng, Harada and Russell 1999), but what a voltage takes
-    out of the blade is told at once.
+    out of the blade shows at once.
 
     An action is ``held`` for so many control intervals: a step of this environment is as many of the blades'.
 
     With ``shows_state`` the true state follows the history in each observation, in units of what is typical: for a critic.
 
     ``reference``, J s, is the cost of an episode without control. If it is given, rewards are in its units, so that those of
-    scenarios of very different loads have one size, and ``relative_cost`` is told.
+    scenarios of very different loads have one size, and ``relative_cost`` is known.
     """
 
     def __init__(
@@ -127,7 +127,7 @@ def typical_state(task: Task, reference: float | None = None) -> Array:
     Where an episode without control costs more than these amount to, ``reference`` in J s, they are enlarged to its measure.
     """
     held = sample(task.plant)
-    drive = held.B * (0.2 * np.abs(task.plant.voltage_limits).max(axis=0))
+    drive = held.B * (0.2 * drive_limit(task.plant))
     excitation = drive @ drive.T + held.disturbance_input @ held.process_noise @ held.disturbance_input.T
     variance = np.diag(solve_discrete_lyapunov(held.A, excitation))
     energy = 0.5 * float(variance.sum()) * task.steps * held.interval

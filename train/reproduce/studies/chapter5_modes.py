@@ -12,7 +12,7 @@ from scipy.linalg import cholesky, expm, solve_continuous_lyapunov, svd
 from baselines import lqr
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
-from beamenv.plant.plant import Plant
+from beamenv.plant.plant import Plant, drive_limit
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Small
@@ -81,7 +81,7 @@ def step_outputs(A: Array, B: Array, C: Array, steps: int) -> Array:
 
 def truncation_errors(plant: Plant) -> dict[str, Array]:
     """Error of the step responses (voltage and flap load to current and flap tip) over the number of states, two ways."""
-    count, drive = len(plant.natural_frequencies), np.abs(plant.voltage_limits).max(axis=0)
+    count, drive = len(plant.natural_frequencies), drive_limit(plant)
     inputs = np.hstack([plant.B * drive, 30.0 * plant.disturbance_input[:, 1:]])
     outputs = np.vstack([plant.C.sum(axis=0, keepdims=True), plant.tip_displacement[1:]])
     steps = round(DURATION / CONTROL_INTERVAL)
