@@ -64,6 +64,7 @@ class Blades:
         self.count = None if self._sizes is None else sum(self._sizes)
         self._lie = Arrangement.of(self._sizes)
         self.shape = self._shape = self._lie.shape
+        self._multiply = self._lie.product if self._lie.runs else row_product  # a blade alone has no time to ask
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
@@ -217,11 +218,11 @@ class Blades:
         acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
         self._voltages[...] = acting.reshape(self._voltages.shape)
         self._disturbances.loads(self._loads)
-        following, reading, tip, increment = advance(self.plants.operators, self._joined, self._product, self._lie.product)
+        following, reading, tip, increment = advance(self.plants.operators, self._joined, self._product, self._multiply)
         self._state[...] = following
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = 0.5 * row_dot(self._state, self._state)
-        effort = row_dot(self._lie.product(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
+        effort = row_dot(self._multiply(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
         self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
