@@ -79,8 +79,10 @@ class AsymmetricRecurrentPolicy(RecurrentActorCriticPolicy):
         self.optimizer = optimiser(self.parameters(), lr=self.optimizer.defaults["lr"], **self.optimizer_kwargs)
 
 
-class AsymmetricSACPolicy(SACPolicy):
-    """SB3's policy: the actor on what is seen, the critics on the true state."""
+class _Apart:
+    """Of a policy with critics of actions: the actor on what is seen, the critics on the true state."""
+
+    observation_space: Space[Any]
 
     def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
         self._seen, self._actor_gain = seen, actor_gain
@@ -88,29 +90,22 @@ class AsymmetricSACPolicy(SACPolicy):
 
     def make_actor(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
         """With the part it sees."""
-        return super().make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
+        policy: Any = super()
+        return policy.make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
 
     def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
         """With the part that is hidden from the actor."""
+        policy: Any = super()
         width = int(self.observation_space.shape[0])  # type: ignore[index]
-        return super().make_critic(Part(self.observation_space, self._seen, width))
+        return policy.make_critic(Part(self.observation_space, self._seen, width))
 
 
-class AsymmetricTQCPolicy(TQCPolicy):
-    """sb3-contrib's policy: the actor on what is seen, the critics on the true state."""
+class AsymmetricSACPolicy(_Apart, SACPolicy):
+    """SB3's policy, actor and critics apart."""
 
-    def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
-        self._seen, self._actor_gain = seen, actor_gain
-        super().__init__(*args, **kwargs)
 
-    def make_actor(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
-        """With the part it sees."""
-        return super().make_actor(Part(self.observation_space, 0, self._seen, self._actor_gain))
-
-    def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
-        """With the part that is hidden from the actor."""
-        width = int(self.observation_space.shape[0])  # type: ignore[index]
-        return super().make_critic(Part(self.observation_space, self._seen, width))
+class AsymmetricTQCPolicy(_Apart, TQCPolicy):
+    """sb3-contrib's policy, actor and critics apart."""
 
 
 def tanh_layers(inputs: int, units: int) -> nn.Sequential:

@@ -1,0 +1,55 @@
+"""What a benchmark is given, and what it refuses before it measures anything."""
+
+import json
+
+import numpy as np
+import pytest
+
+import beamenv
+from train.benchmark import benchmark
+from train.benchmark.campaign import environment_json
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"seeds": 1}, "seeds is 1, but must be a whole number not below 2"),
+        ({"controllers": ["pid"]}, "controller is 'pid', but must be one of .*lqg, lqg-load"),
+        ({"own": {"mine": 3}}, "controller 'mine' is of type int"),
+        ({"own": {"lqg": np.zeros_like}}, "'lqg' is there twice"),
+        ({"scenarios": []}, "scenarios is empty"),
+        ({"scenarios": ["delay", "mine/delay.toml"]}, "scenarios delay and mine/delay.toml have the same name"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_at_once(arguments, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        benchmark(**arguments)
+
+
+@pytest.mark.parametrize("name", ["", " ", "a/b", "../mine", "a\\b", "a\nb"])
+def test_names_that_no_file_can_have_are_refused(name, tmp_path):
+    with pytest.raises(ValueError, match="^own is .*, but must be names that files can have"):
+        benchmark({name: np.zeros_like}, scenarios=["nominal"], controllers=[], seeds=2, folder=tmp_path / "in")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("environment", "words"),
+    [
+        ({"colour": 1}, "environment has no field 'colour': its fields are preset, speed"),
+        ({"scenario": "delay"}, "environment has no field 'scenario'"),
+        ({"blade": {"speed": "x"}}, "blade.speed is 'x', but must be zero or a positive number"),
+        ({"design": object()}, "environment is not allowed, for a cell's file could not hold it"),
+        ([1], "environment is .1., but must be a mapping"),
+    ],
+)
+def test_an_environment_that_fails_in_every_cell_is_refused_at_once(environment, words):
+    with pytest.raises(ValueError, match=f"^{words}"):
+        benchmark(scenarios=["nominal"], controllers=[], seeds=2, environment=environment)
+
+
+def test_numbers_of_numpy_and_whole_blades_are_the_same_environment():
+    blade = beamenv.blade_config(overrides={"speed": 150.0, "voltage_limits": (-100.0, 100.0)})
+    listed = {"speed": np.float32(150.0), "voltage_limits": np.array([-100.0, 100.0])}
+    of = [environment_json({"blade": given}) for given in (blade, listed)]
+    assert [beamenv.blade_config(overrides=json.loads(each)["blade"]) for each in of] == [blade, blade]
