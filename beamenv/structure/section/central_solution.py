@@ -29,7 +29,7 @@ PER_LINE = 3 * (ACROSS + 1)
 PASSES = 40
 """Most iterations for the pretwist's terms, each some 50 times smaller than the one before on a blade."""
 
-CONVERGED = 1e-9
+CONVERGED = 1e-7
 
 
 def equilibrium(pretwist: float) -> Array:
@@ -72,6 +72,11 @@ class Factorised:
         scale = np.sqrt(np.trace(bordered.sum(axis=1)[..., len(ends) :, len(ends) :], axis1=-2, axis2=-1))
         systems = (_assembled(each, sums.rigid_lines[v], scale[v]) for v, each in enumerate(bordered))
         return cls(sums, inner, coupling, tuple(lu_factor(system, check_finite=False) for system in systems), scale)
+
+    @property
+    def first(self) -> Factorised:
+        """That of the first section alone."""
+        return Factorised(self.sums.first, self.inner[:1], self.coupling[:1], self.factors[:1], self.scale[:1])
 
     def solve(self, loads: Array, resultants: Array) -> tuple[Array, Array]:
         """Warping (V, lines, 12, c) and beam strain (V, 6, c) under nodal loads of the elements (V, K, size, c), not yet added up

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from beamenv.structure.section.elements import (
     ACROSS,
     RIGID,
+    gauss_rule,
     layers,
     lobatto_nodes,
     places,
@@ -52,6 +52,11 @@ class ElementSums:
     """∫ ρ (1, x, y, x², xy, y²) dA (V, 6)."""
     nodes: Array
     """(V, lines, 4, 2), m."""
+
+    @property
+    def first(self) -> ElementSums:
+        """That of the first section alone."""
+        return ElementSums(*(getattr(self, each.name)[:1] for each in fields(self)))
 
     @property
     def size(self) -> int:
@@ -153,8 +158,8 @@ class _Totals:
 
     def add(self, ring: Ring, layer: _Layer, pretwist: float) -> None:
         """∫ table × table over the layer, contracted with what a pair of tables means in energy: the ply's stiffness is constant."""
-        along, weight_along = legendre.leggauss(ring.order + 1)
-        depth, weight = legendre.leggauss(ACROSS + 1 if layer.high - layer.low > 0.4 * ring.thickness else 2)
+        along, weight_along = gauss_rule(ring.order + 1)
+        depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * ring.thickness else 2)
         half = 0.5 * (layer.high - layer.low)
         here = places(ring, layer.members, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
         tables = here.tables()
@@ -165,39 +170,48 @@ class _Totals:
         of_beam = pairs[:, 4 * nodes :, 4 * nodes :]
         stiffness = stiffness_in_section(layer.ply, ring.tangents.reshape(-1, 2)[layer.members])
         B, S, Z = strain_of_tables(pretwist)
-        stressed_B, stressed_S, stressed_Z = np.einsum("ekl,tlc->etkc", stiffness, B), stiffness @ S, np.einsum("ekl,tlc->etkc", stiffness, Z)
+        stressed_B, stressed_S, stressed_Z = (_stressed(stiffness, rows) for rows in (B, S[None], Z))
         at, value = layer.members, shapes[:, 3, :, 3]
-        size = 3 * nodes
-
-        def whole(meaning: Array, integrals: Array) -> Array:
-            """Σ over pairs of tables: (E, T, c, d) and (E, T, i, j) to (E, 3i + c, 3j + d)."""
-            tables, c, d = meaning.shape[1:]
-            i, j = integrals.shape[2:]
-            product = integrals.reshape(count, tables, -1).swapaxes(-1, -2) @ meaning.reshape(count, tables, -1)
-            return product.reshape(count, i, j, c, d).transpose(0, 1, 3, 2, 4).reshape(count, i * c, j * d)
-
-        self.warping[at] += whole(
-            np.einsum("tkc,eukd->etucd", B, stressed_B).reshape(count, 16, 3, 3), shapes.transpose(0, 1, 3, 2, 4).reshape(count, 16, nodes, nodes)
-        )
-        self.cross[at] += whole(np.einsum("tkc,ekd->etcd", B, stressed_S), shapes[:, :, :, 3])
-        self.derivative[at] += whole(np.einsum("kc,ekd->ecd", S, stressed_S)[:, None], value[:, None])
-        self.beam_strain[at] += np.einsum("tkc,eukd,etiu->eicd", B, stressed_Z, with_beam, optimize=True).reshape(count, size, RIGID)
-        self.derivative_strain[at] += np.einsum("kc,eukd,eiu->eicd", S, stressed_Z, with_beam[:, 3], optimize=True).reshape(count, size, RIGID)
-        self.beam[at] += np.einsum("tkc,eukd,etu->ecd", Z, stressed_Z, of_beam, optimize=True)
+        values, square = shapes[:, :, :, 3], shapes.transpose(0, 1, 3, 2, 4).reshape(count, 16, nodes, nodes)
+        self.warping[at] += _summed(_meaning(B, stressed_B), square)
+        self.cross[at] += _summed(_meaning(B, stressed_S), values)
+        self.derivative[at] += _summed(_meaning(S[None], stressed_S), value[:, None])
+        by_pair = with_beam.transpose(0, 1, 3, 2)[..., None]
+        self.beam_strain[at] += _summed(_meaning(B, stressed_Z), by_pair.reshape(count, 12, nodes, 1))
+        self.derivative_strain[at] += _summed(_meaning(S[None], stressed_Z), by_pair[:, 3])
+        self.beam[at] += _summed(_meaning(Z, stressed_Z), of_beam.reshape(count, 9, 1, 1))
         monomials = np.stack([np.ones_like(here.x), here.x, here.y, here.x**2, here.x * here.y, here.y**2], axis=1)
         weighted = monomials * here.weight[:, None]
         sums = weighted @ tables
-        of_shapes, of_constants = sums[..., : 4 * nodes].reshape(count, MONOMIALS, 4, nodes), sums[..., 4 * nodes :]
-        self.moments[at] += np.concatenate(
-            [
-                np.einsum("efti,etc->efic", of_shapes, stressed_B[:, :, 5], optimize=True).reshape(count, MONOMIALS, size),
-                np.einsum("efi,ec->efic", of_shapes[:, :, 3], stressed_S[:, 5]).reshape(count, MONOMIALS, size),
-                np.einsum("eft,etc->efc", of_constants, stressed_Z[:, :, 5]),
-            ],
-            axis=-1,
+        of_shapes = sums[..., : 4 * nodes].reshape(count, MONOMIALS, 4, nodes).transpose(0, 2, 1, 3)
+        parts = (
+            (stressed_B, of_shapes.reshape(count, 4, -1, 1)),
+            (stressed_S, of_shapes[:, 3].reshape(count, 1, -1, 1)),
+            (stressed_Z, sums[..., 4 * nodes :].transpose(0, 2, 1)[..., None]),
         )
+        spanwise = [_summed(stressed[:, :, None, 5], integrals).reshape(count, MONOMIALS, -1) for stressed, integrals in parts]
+        self.moments[at] += np.concatenate(spanwise, axis=-1)
         self.mass[at] += layer.ply.material.density * value
         self.inertia[at] += layer.ply.material.density * weighted.sum(axis=-1)
+
+
+def _stressed(stiffness: Array, rows: Array) -> Array:
+    """(E, T, 6, c): stresses of strains (T, 6, c)."""
+    return np.asarray(stiffness[:, None] @ rows)
+
+
+def _meaning(left: Array, stressed: Array) -> Array:
+    """(E, T·U, c, d): energy of a pair of tables, from strains (T, 6, c) and stresses (E, U, 6, d)."""
+    energy = left.swapaxes(-1, -2)[None, :, None] @ stressed[:, None]
+    return energy.reshape(len(stressed), -1, *energy.shape[-2:])
+
+
+def _summed(meaning: Array, integrals: Array) -> Array:
+    """Σ over T pairs of tables: (E, T, c, d) and (E, T, i, j) to (E, ic, jd)."""
+    count, pairs, c, d = meaning.shape
+    i, j = integrals.shape[2:]
+    product = integrals.reshape(count, pairs, -1).swapaxes(-1, -2) @ meaning.reshape(count, pairs, -1)
+    return product.reshape(count, i, j, c, d).transpose(0, 1, 3, 2, 4).reshape(count, i * c, j * d)
 
 
 def line_nodes(ring: Ring) -> Array:

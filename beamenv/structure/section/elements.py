@@ -39,15 +39,32 @@ def lobatto_nodes(order: int) -> Array:
     return nodes
 
 
-def lagrange(nodes: Array, at: Array) -> tuple[Array, Array]:
-    """(len(at), len(nodes)): values and slopes of the polynomials that are 1 at one node and 0 at the others."""
-    order = len(nodes) - 1
-    inverse = np.linalg.inv(legendre.legvander(nodes, order))
+@lru_cache
+def gauss_rule(points: int) -> tuple[Array, Array]:
+    """Nodes and weights (points,) of Gauss's rule on −1 … 1."""
+    rule = legendre.leggauss(points)
+    for values in rule:
+        values.setflags(write=False)
+    return rule
+
+
+@lru_cache
+def inverse_vandermonde(order: int) -> tuple[Array, Array]:
+    """(order + 1, order + 1): Legendre coefficients of the polynomials that are 1 at one Lobatto node and 0 at the others, and
+    those of their slopes.
+    """
+    inverse = np.linalg.inv(legendre.legvander(lobatto_nodes(order), order))
     slopes = np.zeros((order + 1, order + 1))
     derived = legendre.legder(np.eye(order + 1))
     slopes[: len(derived)] = derived
+    return inverse, slopes @ inverse
+
+
+def lagrange(order: int, at: Array) -> tuple[Array, Array]:
+    """(len(at), order + 1): values and slopes of the polynomials that are 1 at one Lobatto node and 0 at the others."""
+    inverse, slopes = inverse_vandermonde(order)
     there = legendre.legvander(at, order)
-    return there @ inverse, there @ slopes @ inverse
+    return there @ inverse, there @ slopes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,8 +123,8 @@ def places(ring: Ring, members: NDArray[np.intp], along: Array, across: Array, w
     by_along = np.broadcast_to(0.5 * (end - start), position.shape)
     by_across = np.broadcast_to((1.0 - share) * d[:, None, None] + share * e[:, None, None], position.shape)
     area = by_along[..., 0] * by_across[..., 1] - by_along[..., 1] * by_across[..., 0]
-    values, slopes = lagrange(lobatto_nodes(ring.order), along)
-    through, steepness = lagrange(lobatto_nodes(ACROSS), 2.0 * across / ring.thickness)
+    values, slopes = lagrange(ring.order, along)
+    through, steepness = lagrange(ACROSS, 2.0 * across / ring.thickness)
     shape = (len(along), len(across), -1)
     value = (values[:, None, :, None] * through[None, :, None, :]).reshape(shape)
     s = (slopes[:, None, :, None] * through[None, :, None, :]).reshape(shape)

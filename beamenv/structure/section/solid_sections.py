@@ -11,13 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
 from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
-from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
+from beamenv.structure.section.elements import RIGID, Places, gauss_rule, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.mesh import Ring
 from beamenv.structure.walls.laminate import Laminate
 
@@ -49,6 +48,8 @@ class SolidSections:
     """(V, AMPLITUDES, AMPLITUDES), per metre; the shapes' momenta on the whole are zero."""
     stress_moments: Array
     """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, 6) per Saint-Venant's beam strain."""
+    saint_venant: Array
+    """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
 
     @classmethod
     def build(cls, ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> SolidSections:
@@ -68,7 +69,13 @@ class SolidSections:
             inertia=sums.inertia,
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, central, pretwist),
+            saint_venant=_saint_venant(central, unit, pretwist),
         )
+
+    @property
+    def classical_stiffness(self) -> Array:
+        """(V, 4, 4) for (w′, θx′, θy′, φ′): no transverse force acts."""
+        return np.asarray(np.linalg.inv(np.linalg.inv(self.stiffness)[:, 2:, 2:]))
 
     @property
     def tension_centre(self) -> Array:
@@ -101,8 +108,8 @@ class SolidSections:
         (m from the mid-line) of the elements ``under`` (K,).
         """
         members = np.flatnonzero(np.tile(under, len(self.shapes)))
-        along, weight_along = legendre.leggauss(self.ring.order + 1)
-        depth, weight = legendre.leggauss(2)
+        along, weight_along = gauss_rule(self.ring.order + 1)
+        depth, weight = gauss_rule(2)
         half = 0.5 * (high - low)
         here = places(self.ring, members, along, low + half * (1.0 + depth), weight_along, half * weight)
         turned = turn_of_strains(self.ring.tangents.reshape(-1, 2)[members]).swapaxes(-1, -2)[..., [0, 5, 3]] @ stress
@@ -124,6 +131,15 @@ class SolidSections:
         onward = np.einsum("eqcj,kc->eqkj", fields[:, :, 3], S)
         beam = np.einsum("eqt,tkc->eqkc", tables[..., 4 * nodes :], Z)
         return np.concatenate([beam, strained, onward], axis=-1)
+
+
+def _saint_venant(central: CentralSolution, unit: Array, pretwist: float) -> Array:
+    """(V, STRAINS, 6)."""
+    state = np.zeros((len(central.strain), STRAINS, RIGID))
+    state[:, :RIGID] = central.strain
+    state[:, RIGID : 2 * RIGID] = np.diag(1.0 / unit)
+    state[:, RIGID + AMPLITUDES : 2 * RIGID + AMPLITUDES] = equilibrium(pretwist) / unit[:, None]
+    return state
 
 
 def _energy(sums: ElementSums, shapes: Array) -> Array:
