@@ -27,6 +27,11 @@ class Blade:
 
     config: BladeConfig
 
+    @property
+    def as_beam(self) -> Blade:
+        """The blade that the configuration describes: this one, unless it moves as a plant file says."""
+        return self
+
     @cached_property
     def beam(self) -> RotatingBeam:
         """The blade with its patches' passive effect."""
