@@ -96,9 +96,7 @@ class GivenBlade(Blade):
         shapes, full, model = beam.modal.mode_shapes, beam.full, self.model
         own = shapes.T @ full.forces, (full.charges @ shapes).T, shapes.T @ full.line_load, (full.tip @ shapes).T
         given = model.actuation, model.charges.T, model.line_load, model.tip.T
-        signs = counterparts(
-            _answers(given, own), model.natural_frequencies, _answers(own, own), beam.modal.natural_frequencies
-        )
+        signs = counterparts(_answers(given, own), model.natural_frequencies, _answers(own, own), beam.modal.natural_frequencies)
         return sealed(shapes @ signs)
 
 

@@ -212,9 +212,7 @@ def _as_text(value: Any) -> Any:
 
 def _as_texts(value: Any) -> Any:
     value = plain(value)
-    return (
-        tuple(map(_as_text, value)) if isinstance(value, tuple) else value
-    )
+    return tuple(map(_as_text, value)) if isinstance(value, tuple) else value
 
 
 def _as_dict(value: Any) -> Any:

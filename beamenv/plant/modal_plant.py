@@ -67,7 +67,7 @@ class ModalPlant(ReadOnly):
         skew, largest = np.abs(self.gyroscopic + self.gyroscopic.T).max(), np.abs(self.gyroscopic).max()
         if skew > SKEW_WITHIN * largest:
             raise ValueError(
-                f"plant.gyroscopic differs from minus its transpose by {skew:.3g} 1/s, but must be skew: gyroscopic forces do no work."
+                f"plant.gyroscopic differs from minus its transpose by {skew:.3g}, but must be skew: such forces do no work."
             )
         if self.damping_ratio is not None:
             _keep(self, "damping_ratio", _checked_damping(self.damping_ratio, r))
@@ -135,7 +135,9 @@ def _matrix(name: str, given: Any, shape: tuple[int | None, ...], what: str) -> 
         values = np.asarray(None)
     if values.dtype.kind not in "fiu":
         raise Refused(f"plant.{name}", given, "an array of real numbers")
-    fits = values.ndim == len(shape) and all(has > 0 and has == (want or has) for has, want in zip(values.shape, shape, strict=True))
+    fits = values.ndim == len(shape) and all(
+        has > 0 and has == (want or has) for has, want in zip(values.shape, shape, strict=True)
+    )
     if not fits:
         wanted = ", ".join("any" if want is None else str(want) for want in shape)
         raise ValueError(f"plant.{name} has shape {values.shape}, but must have shape ({wanted}): {what}.")

@@ -134,7 +134,7 @@ def _beside(path: Path, content: dict[str, Any]) -> dict[str, Any]:
     """The content of a file with the plant file that it names taken to lie where it does itself."""
     plants = content.get("plants")
     truth = plants.get("truth") if isinstance(plants, dict) else None
-    if not isinstance(truth, str) or not truth.endswith(ENDING):
+    if plants is None or not isinstance(truth, str) or not truth.endswith(ENDING):
         return content
     return {**content, "plants": {**plants, "truth": str(path.parent / truth)}}
 

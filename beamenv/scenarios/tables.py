@@ -33,7 +33,7 @@ class PlantVariation:
     damping_ratio: Annotated[Pair | None, Range(1e-6, 0.9)] = None
     """Of every mode, drawn on a logarithmic scale; None: the configured one."""
     truth: Annotated[str | None, NameOrFile(NAMES, ENDING)] = None
-    """What moves in place of the beam: a plant file (``beamenv.plant.files``), or the name of one that ships; nothing varies then."""
+    """What moves in place of the beam, alone: a plant file (``beamenv.plant.files``), or the name of one that ships."""
     modes: Annotated[int | None, Count()] = None
     """Modes of the true plant; None: the configured number, or all that a plant file has."""
     design_modes: Annotated[int | None, Count()] = None
