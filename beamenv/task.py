@@ -68,7 +68,7 @@ class Task:
     @property
     def plant(self) -> Plant:
         """The true plant: what moves."""
-        return self.blade.plant
+        return self.blade.truth
 
     @property
     def design_plant(self) -> Plant:
@@ -81,7 +81,7 @@ class Task:
         return Design(self.design_plant, self.design_config)
 
     @property
-    def truth(self) -> Design:
+    def true_design(self) -> Design:
         """What a bound may be built from: the true plant in place of the design's, or the one that all drawn ones depart from."""
         return Design(self.plant, self.config)
 
@@ -129,7 +129,7 @@ def resolve_task(
     _check_failures(chosen, true.plant)
     task = Task(
         blade=true,
-        design_blade=true if designed == config and truth is None else _alive(_BLADES, _same_electronics(designed, true)),
+        design_blade=true if designed == config else _alive(_BLADES, _same_electronics(designed, true)),
         scenario=chosen,
         steps=round(duration / interval),
         physical_units=physical_units,

@@ -37,66 +37,59 @@ NEAR = 0.25
 
 @dataclass(frozen=True)
 class GivenBlade(Blade):
-    """A blade of the configuration's electronics and patches that moves as ``model`` says."""
+    """A blade of the configuration's electronics and patches that moves as ``model`` says; its design plant is the beam's."""
 
     model: ModalPlant
 
     @cached_property
     def as_beam(self) -> Blade:
         """The blade that the configuration describes."""
-        return Blade(self.config)
+        beam = Blade(self.config)
+        vars(beam).update(beam=self.beam, modal=self.modal, full=self.full)
+        return beam
 
     @cached_property
-    def modal(self) -> ModalModel:
-        """Its modes; the shapes, by the beam's trial functions, are those of their counterparts."""
+    def true_modal(self) -> ModalModel:
+        """The model's modes; the shapes, by the beam's trial functions, are those of their counterparts."""
         gyroscopic = self.model.gyroscopic if self.config.gyroscopic else np.zeros_like(self.model.gyroscopic)
         return ModalModel(self.model.natural_frequencies, self._shapes(), gyroscopic)
 
     @cached_property
-    def plant(self) -> Plant:
-        """Its plant."""
+    def truth(self) -> Plant:
+        """The plant that moves."""
         config, model, omega = self.config, self.model, self.model.natural_frequencies
-        beam = self.as_beam.plant
-        strain = model.strain
-        full = FullModel(
-            forces=model.actuation,
-            charges=model.charges,
-            line_load=model.line_load,
-            tip=model.tip,
-            strain=self.as_beam.full.strain @ self.modal.mode_shapes if strain is None else strain,
-        )
-        by_themselves = ModalModel(omega, np.eye(len(omega)), self.modal.gyroscopic)  # its trial functions are its modes
+        strain = self.full.strain @ self.true_modal.mode_shapes if model.strain is None else model.strain
         plant = reduced_plant(
-            by_themselves,
-            full,
+            ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic),  # its trial functions are its modes
+            FullModel(model.actuation, model.charges, model.line_load, model.tip, strain),
             np.diag(omega**2),
             damping_ratio=config.damping_ratio if model.damping_ratio is None else model.damping_ratio,
             effort_weight=config.effort_weight,
             white_load=config.white_load,
             sensor_noise_fraction=config.sensor_noise_fraction,
-            sensor_full_scale=float(beam.sensor_full_scale[0]),
+            sensor_full_scale=float(self.plant.sensor_full_scale[0]),
             voltage_limits=config.voltage_limits,
             control_interval=config.control_interval,
         )
-        return replace(plant, input_weight=beam.input_weight)
+        return replace(plant, input_weight=self.plant.input_weight)
 
     def changed(self, config: BladeConfig) -> GivenBlade:
         """The same modes behind other electronics; ``ValueError`` for another beam, other patches or another speed."""
         for name in ("beam", "patches", "speed"):
             if getattr(config, name) != getattr(self.config, name):
                 raise ValueError(f"blade.{name} cannot be changed where a plant file says how the blade moves.")
-        other = GivenBlade(config, self.model)
-        vars(other)["as_beam"] = self.as_beam.changed(config)
+        beam, other = self.as_beam.changed(config), GivenBlade(config, self.model)
+        vars(other).update(beam=beam.beam, modal=beam.modal, full=beam.full)
         return other
 
     def _shapes(self) -> Array:
         """(N, r)."""
-        modes = min(self.as_beam.beam.space.size, max(self.config.modes, len(self.model.natural_frequencies)))
-        beam = self.as_beam.changed(replace(self.config, modes=modes))
-        shapes, full, model = beam.modal.mode_shapes, beam.full, self.model
+        modes = min(self.beam.space.size, max(self.config.modes, len(self.model.natural_frequencies)))
+        beam, full, model = self.as_beam.changed(replace(self.config, modes=modes)).modal, self.full, self.model
+        shapes = beam.mode_shapes
         own = shapes.T @ full.forces, (full.charges @ shapes).T, shapes.T @ full.line_load, (full.tip @ shapes).T
         given = model.actuation, model.charges.T, model.line_load, model.tip.T
-        signs = counterparts(_answers(given, own), model.natural_frequencies, _answers(own, own), beam.modal.natural_frequencies)
+        signs = counterparts(_answers(given, own), model.natural_frequencies, _answers(own, own), beam.natural_frequencies)
         return sealed(shapes @ signs)
 
 

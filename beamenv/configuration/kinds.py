@@ -6,6 +6,7 @@ Here is what they have in common, and those of flags, names and tables; ``number
 from __future__ import annotations
 
 import os
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -161,7 +162,7 @@ class NameOrFile(Kind):
 
     def json(self) -> JsonSchema:
         """A string."""
-        return {"anyOf": [{"enum": list(self.names)}, {"type": "string", "pattern": f"{self.ending.replace('.', '[.]')}$"}]}
+        return {"anyOf": [{"enum": list(self.names)}, {"type": "string", "pattern": f"{re.escape(self.ending)}$"}]}
 
     def _known(self, value: str) -> str:
         if value not in self.names and not value.endswith(self.ending):

@@ -245,5 +245,5 @@ def test_configuration_and_versions_are_told_without_the_name_of_the_host(page, 
 
 def test_natural_frequencies_are_marked_in_the_spectra(page_content):
     (figure,) = [plot.figure for plot in plots(page_content) if plot.name == "spectra"]
-    modes = page_content.episode.blade.plant.natural_frequencies / (2.0 * np.pi)
+    modes = page_content.episode.blade.truth.natural_frequencies / (2.0 * np.pi)
     np.testing.assert_allclose([shape.x0 for shape in figure.layout.shapes], modes)

@@ -37,7 +37,7 @@ def time_series(episode: RecordedEpisode) -> go.Figure:
 
 def spectra(episode: RecordedEpisode) -> go.Figure:
     """Amplitude spectral density of the tip in lag and flap, before and after; dotted: natural frequencies of the blade."""
-    modes = episode.blade.plant.natural_frequencies / (2.0 * np.pi)
+    modes = episode.blade.truth.natural_frequencies / (2.0 * np.pi)
     highest = 1.1 * float(modes[-1])
     tips: list[list[Curve]] = [[], []]
     for recording, look in _coloured(episode):

@@ -42,7 +42,7 @@ class NamedController:
 
     def build_for(self, task: Task) -> Controller:
         """The controller for a task: from its design, unless it is told the truth."""
-        return self.build(task.truth if self.told_the_truth else task.design)
+        return self.build(task.true_design if self.told_the_truth else task.design)
 
 
 def discover() -> Mapping[str, NamedController]:
