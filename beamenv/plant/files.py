@@ -7,6 +7,7 @@ A file needs ``natural_frequencies``, ``gyroscopic``, ``actuation``, ``charges``
 from __future__ import annotations
 
 import io
+import zlib
 from dataclasses import MISSING, fields
 from functools import lru_cache
 from importlib.resources import files
@@ -71,17 +72,14 @@ def _read(path: Path) -> ModalPlant:
 
 def _of_bytes(content: bytes, name: str) -> ModalPlant:
     try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:  # which a single array is not
             arrays = {key: archive[key] for key in archive.files}
-    except (ValueError, EOFError, OSError, AttributeError, BadZipFile) as error:  # of a single array, an object, or no archive
-        raise ValueError(f"file {name!r} cannot be read: {_why(error)}") from None
+    except (ValueError, TypeError, EOFError, OSError, RuntimeError, BadZipFile, zlib.error) as error:
+        objects = "Object arrays" in str(error)
+        why = "it holds Python objects" if objects else "it is no .npz archive of arrays"
+        raise ValueError(f"file {name!r} cannot be read: {why}.") from None
     with of_file(name):
         return _of_arrays(arrays)
-
-
-def _why(error: Exception) -> str:
-    told = " ".join(str(error).split()).rstrip(".")
-    return "it holds Python objects." if "pickle" in told and "Object arrays" in told else "it is no .npz archive of arrays."
 
 
 def _of_arrays(arrays: dict[str, Any]) -> ModalPlant:

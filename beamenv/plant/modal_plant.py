@@ -22,7 +22,7 @@ from beamenv.plant.read_only import ReadOnly
 Array = NDArray[np.float64]
 
 SKEW_WITHIN = 1e-9
-"""Largest |G + Gᵀ| over the largest |G|: what is left of a skew matrix that a program has printed or rounded."""
+"""Largest |G + Gᵀ| over the largest |G| or the first frequency: what is left of a skew matrix that a program has rounded."""
 
 _DAMPING = Number(ge=0.0, lt=1.0)
 
@@ -64,8 +64,8 @@ class ModalPlant(ReadOnly):
         ):
             if name != "strain" or self.strain is not None:
                 _keep(self, name, _matrix(name, getattr(self, name), shape, what))
-        skew, largest = np.abs(self.gyroscopic + self.gyroscopic.T).max(), np.abs(self.gyroscopic).max()
-        if skew > SKEW_WITHIN * largest:
+        skew, largest = (np.abs(part).max() for part in (self.gyroscopic + self.gyroscopic.T, self.gyroscopic))
+        if skew > SKEW_WITHIN * max(largest, self.natural_frequencies[0]):
             raise ValueError(
                 f"plant.gyroscopic differs from minus its transpose by {skew:.3g}, but must be skew: such forces do no work."
             )
