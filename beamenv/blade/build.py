@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
+from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
 from beamenv.structure import RotatingBeam
@@ -101,13 +102,14 @@ class Blade:
         return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)
 
 
-_MADE_OF = {"beam": ("beam", "patches"), "modal": ("beam", "patches", "speed", "modes", "gyroscopic"), "full": ("beam", "patches")}
+_BEAM = ("beam", "patches", "model")
+_MADE_OF = {"beam": _BEAM, "modal": (*_BEAM, "speed", "modes", "gyroscopic"), "full": _BEAM}
 """The fields of a configuration that each part depends on."""
 
 
 def build_beam(config: BladeConfig) -> RotatingBeam:
     """The blade with its patches' passive effect."""
-    return config.beam.build(config.patches)
+    return config.beam.build(config.patches, config.model)
 
 
 def build_plant(config: BladeConfig) -> Plant:
@@ -116,7 +118,12 @@ def build_plant(config: BladeConfig) -> Plant:
 
 
 def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
-    """The plant of a beam that ``config.beam`` does not describe, of any section, say; it carries the inlays of passive patches."""
+    """The plant of a beam that ``config.beam`` does not describe, of any section, say; it carries the inlays of passive patches.
+
+    Raises ``ValueError`` for a beam of another model than the configuration's.
+    """
+    if beam.model != config.model:
+        raise Refused("beam.model", beam.model, f"the blade's, {config.model!r}")
     blade = Blade(config)
     vars(blade)["beam"] = beam
     return blade.plant

@@ -62,7 +62,7 @@ def test_inlay_over_a_whole_wall_is_another_outermost_ply(shear_flow, width):
     host = Layup.by_wall(GRAPHITE_EPOXY, top=[30] * 6, **angles)
     plies = tuple(Ply(GRAPHITE_EPOXY, 30.0) for _ in range(6))
     covered = Layup(default=plies, walls={"top": (*plies[:5], Ply(MFC.lamina, 90.0))})
-    options = {"length": 2.0, "pretwist_deg": 30.0, "hub_radius": 0.2, "shear_flow": shear_flow}
+    options = {"length": 2.0, "pretwist_deg": 30.0, "hub_radius": 0.2, "model": "thesis", "shear_flow": shear_flow}
     section = replace(SECTION, width=width)
     whole = Inlay("top", 0.0, 2.0, width, Ply(MFC.lamina, 90.0), section.thickness / 6.0)
     inlaid = RotatingBeam(section, host, inlays=(whole,), **options)

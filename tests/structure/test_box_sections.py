@@ -77,14 +77,14 @@ def test_stiffness_agrees_with_finite_elements(boxes, shear):
 def test_shear_flow_of_the_thesis_overestimates_off_axis_walls(boxes, box, expected):
     """Percent off the elements: the thesis' side walls cannot relax in shear. Cross plies are untouched."""
     section, layup, reference = boxes[box]
-    off = percent_off(stiffnesses(section, layup, shear_flow="thesis"), reference)
+    off = percent_off(stiffnesses(section, layup, model="thesis"), reference)
     assert off == pytest.approx(expected, abs=0.06)  # own output: guards, does not prove
 
 
 def test_shear_flows_agree_where_stretch_and_shear_do_not_couple(boxes):
     """K15 = 0 for plies along and across: the tables of the thesis at θ = 0 stand."""
     section, layup, _ = boxes["CP-0-0.537in"]
-    one, other = (section.stiffness(layup, shear_flow=flow) for flow in ("consistent", "thesis"))
+    one, other = (section.stiffness(layup, shear_flow=flow, model="thesis") for flow in ("consistent", "thesis"))
     assert one == pytest.approx(other, rel=1e-12, abs=1e-6)
 
 

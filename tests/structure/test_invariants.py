@@ -37,6 +37,7 @@ def blades(draw, terms=FEW_TERMS, layup=ANY_LAYUP, pretwist=ANY_PRETWIST):
         pretwist_deg=draw(pretwist),
         presetting_deg=draw(st.floats(-90.0, 90.0)),
         taper=draw(st.floats(1.0, 2.0)),
+        model="thesis",
         shear=draw(st.sampled_from(["higher_order", "first_order", "rigid"])),
         shear_flow=draw(st.sampled_from(["consistent", "thesis"])),
         terms=draw(terms),

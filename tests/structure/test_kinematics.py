@@ -122,7 +122,7 @@ def test_the_axis_a_section_is_described_from_changes_no_frequency_at_rest(shift
     The shear flow must answer to all of ε0, its warping part −F_w φ'' too: without it 30° plies miss this by 8 %.
     """
     layup = Layup.uniform(GRAPHITE_EPOXY, angles)
-    beam = RotatingBeam(CROOKED, layup, length=1.5, shear=shear, shear_flow=shear_flow, terms=6)
+    beam = RotatingBeam(CROOKED, layup, length=1.5, model="thesis", shear=shear, shear_flow=shear_flow, terms=6)
     moved = tuple((x + shift[0], y + shift[1]) for x, y in CORNERS)
     shifted = replace(beam, section=replace(CROOKED, corners=moved))
     count = 12
