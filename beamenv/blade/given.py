@@ -74,8 +74,8 @@ class GivenBlade(Blade):
         return replace(plant, input_weight=self.plant.input_weight)
 
     def changed(self, config: BladeConfig) -> GivenBlade:
-        """The same modes behind other electronics; ``ValueError`` for another beam, other patches or another speed."""
-        for name in ("beam", "patches", "speed"):
+        """The same modes behind other electronics; ``ValueError`` for another beam, model, speed or other patches."""
+        for name in ("beam", "patches", "model", "speed"):
             if getattr(config, name) != getattr(self.config, name):
                 raise ValueError(f"blade.{name} cannot be changed where a plant file says how the blade moves.")
         beam, other = self.as_beam.changed(config), GivenBlade(config, self.model)

@@ -19,7 +19,7 @@ from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
-from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, write_page
+from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record_episode, write_page
 from train.page.blade import ROUND, SHOWN_DEFLECTION, blade_figures, frame_times, motions
 from train.page.page import plots, render
 from train.page.plots import amplitude_density
@@ -247,3 +247,13 @@ def test_natural_frequencies_are_marked_in_the_spectra(page_content):
     (figure,) = [plot.figure for plot in plots(page_content) if plot.name == "spectra"]
     modes = page_content.episode.blade.truth.natural_frequencies / (2.0 * np.pi)
     np.testing.assert_allclose([shape.x0 for shape in figure.layout.shapes], modes)
+
+
+def test_the_solid_is_shown_as_far_as_the_beam_has_its_modes():
+    idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
+    episode = record_episode({"duration": 0.05, "scenario": "solid-20"}, 3, (idle, idle))
+    assert episode.without_control.states.shape[1] == 40
+    pair, factor = motions(episode)
+    shown = pair[0].displacement[:, :2, -1] / factor
+    true = episode.without_control.tip[pair[0].rows]
+    assert np.abs(shown - true).max() < 0.05 * np.abs(true).max()
