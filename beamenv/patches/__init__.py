@@ -4,4 +4,16 @@ from beamenv.patches.layout import PatchLayout
 from beamenv.patches.material import MFC, PATCH_MATERIALS, PZT, PatchMaterial
 from beamenv.patches.operators import PatchResponse, actuation, force_per_span, local_response, patch_force, sensing
 
-__all__ = ["MFC", "PATCH_MATERIALS", "PZT", "PatchLayout", "PatchMaterial", "PatchResponse", "actuation", "force_per_span", "local_response", "patch_force", "sensing"]
+__all__ = [
+    "MFC",
+    "PATCH_MATERIALS",
+    "PZT",
+    "PatchLayout",
+    "PatchMaterial",
+    "PatchResponse",
+    "actuation",
+    "force_per_span",
+    "local_response",
+    "patch_force",
+    "sensing",
+]

@@ -79,8 +79,8 @@ class LinearFamily:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyFamily:
-    """The same about the non-linear steady states, of which few are worked out: between them K and G/Ω, smooth functions of Ω², follow
-    a polynomial.
+    """The same about the non-linear steady states, of which few are worked out: between them K and G/Ω, smooth functions of Ω²,
+    follow a polynomial.
     """
 
     nodes: Array

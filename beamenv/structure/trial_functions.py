@@ -134,7 +134,8 @@ class Stations:
         """Stations for functions of ``order`` on the whole span: the fewer the shorter a piece is."""
         share = np.diff(breakpoints) / (breakpoints[-1] - breakpoints[0])
         pieces = [cls.between(breakpoints[k : k + 2], int(np.ceil(LEAST + order * part))) for k, part in enumerate(share)]
-        return cls(*(np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("z", "weight")), breakpoints, 0)
+        z, weight = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("z", "weight"))
+        return cls(z, weight, breakpoints, 0)
 
     def integral_to_tip(self, values: Array) -> Array:
         """∫_z^L f dσ at every station, exact for f polynomial (degree < per_piece) on each piece."""

@@ -1,8 +1,8 @@
 """The blade model's matrices: M, K and G at a speed, about the steady state there, with the sections' warping eliminated.
 
-The coefficients q are those of the reference line and the sections' turns, (u, v, s, θx, θy, φ). A section's shapes have amplitudes
-a(z) of their own, zero at the clamp, which have next to no inertia: for given strains e(z) of the beam they take the values of least
-energy, a = −K_aa⁻¹ ∫(Φᵀ E_ae + Φ′ᵀ E_a′e) e dz, and move with q (Guyan's reduction, whose mass they keep).
+The coefficients q are those of the reference line and the sections' turns, (u, v, s, θx, θy, φ). A section's shapes have
+amplitudes a(z) of their own, zero at the clamp, which have next to no inertia: for given strains e(z) of the beam they take the
+values of least energy, a = −K_aa⁻¹ ∫(Φᵀ E_ae + Φ′ᵀ E_a′e) e dz, and move with q (Guyan's reduction, whose mass they keep).
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ class ExactBeam:
         inertia = at.inertia(placement)
         push = at.force(inertia.centrifugal)
         coefficients = np.linalg.solve(elastic, push)
-        resultants, _ = at.resultants((at.strain_rows @ coefficients))
+        resultants, _ = at.resultants(at.strain_rows @ coefficients)
         moments = np.einsum("sfi,si->sf", at.stress_moments, at.strain_rows @ coefficients)
         spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening)
         spin += at.strain_form(under_stress(moments), at.strain_rows)
@@ -131,7 +131,7 @@ class ExactBeam:
         """Per Ω²."""
         at = self._at
         coefficients = np.linalg.solve(self.matrices.elastic_stiffness, at.force(at.inertia(at.unloaded).centrifugal))
-        return SteadyState(coefficients, at.resultants(at.strain_rows @ coefficients)[1])
+        return SteadyState(np.asarray(coefficients), at.resultants(at.strain_rows @ coefficients)[1])
 
     def at(self, speed: float, near: SteadyState | None = None) -> OperatingPoint:
         """The blade at a speed, rad/s; ``near`` is a steady state to start from. ``ValueError`` where there is no stable one."""
@@ -211,7 +211,7 @@ class _AtStations:
         whole = whole + mixed + mixed.T + self._shape_form(self.energy[:, SHAPE_SLOPE, SHAPE_SLOPE], self.slope, self.slope)
         size = AMPLITUDES * terms
         whole[np.arange(size), np.arange(size)] += HELD * np.diagonal(whole).max()
-        return cho_factor(whole, lower=True, check_finite=False)  # type: ignore[no-any-return]
+        return cho_factor(whole, lower=True, check_finite=False)
 
     def _shape_form(self, section: Array, left: Array, right: Array) -> Array:
         """∫ Φᵢ section_jk Φ′_l dz, (AMPLITUDES × terms)²."""
@@ -286,7 +286,8 @@ class _AtStations:
         strain = placement.strain
         moments = np.einsum("sfi,si->sf", self.stress_moments, strain)
         fibres = FibreExtension.of(strain)
-        return self.resultants(strain)[0] + fibres.resultants(moments, self.stress_moments), fibres.stiffness(moments, self.stress_moments)
+        resultants = self.resultants(strain)[0] + fibres.resultants(moments, self.stress_moments)
+        return resultants, fibres.stiffness(moments, self.stress_moments)
 
     def _tangent(
         self, placement: Placement, resultants: Array, stiffness: Array, inertia: SpinningSections, strain_rows: Array, speed: float

@@ -75,7 +75,9 @@ class SpinningSections:
         form[:, MOVE, SPIN], form[:, SPIN, MOVE] = moved, moved.swapaxes(-1, -2)
         across = outward[:, :, None] * self.first[:, None, :] + PLANE @ self.second
         form[:, SPIN, SPIN] = (
-            _times_identity(self.second) - self.second - AROUND @ self.second @ AROUND.T
+            _times_identity(self.second)
+            - self.second
+            - AROUND @ self.second @ AROUND.T
             + 0.5 * (across + across.swapaxes(-1, -2))
             - _times_identity(across)
         )

@@ -70,7 +70,9 @@ class Placement:
         force, moment = ((self.frame @ part[..., None])[..., 0] for part in (resultants[:, :3], resultants[:, 3:]))
         form = np.zeros((len(force), INCREMENT, INCREMENT))
         across = self.slope[:, :, None] * force[:, None, :]
-        form[:, SPIN, SPIN] = 0.5 * (across + across.swapaxes(-1, -2)) - np.eye(3) * np.trace(across, axis1=-2, axis2=-1)[:, None, None]
+        form[:, SPIN, SPIN] = (
+            0.5 * (across + across.swapaxes(-1, -2)) - np.eye(3) * np.trace(across, axis1=-2, axis2=-1)[:, None, None]
+        )
         form[:, SPIN, MOVE_SLOPE], form[:, MOVE_SLOPE, SPIN] = hat(force), hat(force).swapaxes(-1, -2)
         half = 0.5 * hat(moment)
         form[:, SPIN, SPIN_SLOPE], form[:, SPIN_SLOPE, SPIN] = half, half.swapaxes(-1, -2)
@@ -79,8 +81,8 @@ class Placement:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FibreExtension:
-    """The quadratic part of the fibres' extension: squares (S, 6), to which the moments ∫σ_zz (1, x, y, x², xy, y²) dA are conjugate
-    with a factor ½, and their slopes (S, 6, 6) per strain.
+    """The quadratic part of the fibres' extension: squares (S, 6), to which the moments ∫σ_zz (1, x, y, x², xy, y²) dA are
+    conjugate with a factor ½, and their slopes (S, 6, 6) per strain.
     """
 
     squares: Array
@@ -97,9 +99,7 @@ class FibreExtension:
 
     def resultants(self, moments: Array, per_strain: Array) -> Array:
         """(S, 6) of the energy ½ moments · squares, with moments (S, 6) = per_strain (S, 6, 6) strain."""
-        return 0.5 * (
-            np.einsum("sfi,sf->si", per_strain, self.squares) + np.einsum("sfi,sf->si", self.slopes, moments)
-        )
+        return 0.5 * (np.einsum("sfi,sf->si", per_strain, self.squares) + np.einsum("sfi,sf->si", self.slopes, moments))
 
     def stiffness(self, moments: Array, per_strain: Array) -> Array:
         """(S, 6, 6): its second change per strain."""

@@ -24,7 +24,7 @@ def about_span(angle: Array) -> Array:
 
 
 def _coefficients(vector: Array) -> tuple[Array, Array, Array]:
-    """sin a/a, (1 − cos a)/a² and (a − sin a)/a³ of the angle a, (…, 1, 1)."""
+    """Sin a/a, (1 − cos a)/a² and (a − sin a)/a³ of the angle a, (…, 1, 1)."""
     angle = np.linalg.norm(vector, axis=-1)[..., None, None]
     square = angle**2
     safe = np.where(angle < _SMALL, 1.0, angle)
@@ -43,7 +43,7 @@ def rotation(vector: Array) -> Array:
 
 
 def rotation_vector(matrix: Array) -> Array:
-    """c (…, 3) of rotations by less than π."""
+    """C (…, 3) of rotations by less than π."""
     skew = 0.5 * (matrix - np.swapaxes(matrix, -1, -2))
     axis = np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
     sine = np.linalg.norm(axis, axis=-1)

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
-from beamenv.structure.section.elements import ACROSS, RIGID
 from beamenv.structure.section.element_sums import ElementSums
+from beamenv.structure.section.elements import ACROSS, RIGID
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class Factorised:
         ends, inside = _ends(size), slice(PER_LINE, size - PER_LINE)
         stiffness = sums.warping
         full = np.concatenate([stiffness, sums.beam_strain], axis=-1)
-        inner = np.linalg.inv(stiffness[..., inside, inside])
+        inner = np.asarray(np.linalg.inv(stiffness[..., inside, inside]), dtype=np.float64)
         columns = np.concatenate([ends, size + np.arange(RIGID)])
         coupling = full[..., inside, :][..., columns]
         bordered = np.zeros((*stiffness.shape[:2], len(columns), len(columns)))
@@ -114,7 +114,7 @@ def _assembled(bordered: Array, rigid: Array, scale: float) -> Array:
     first, last, strain = slice(0, PER_LINE), slice(PER_LINE, 2 * PER_LINE), slice(2 * PER_LINE, None)
     for rows, row in ((here, first), (there, last)):
         for columns, column in ((here, first), (there, last)):
-            np.add.at(lines, (rows, slice(None), columns), bordered[:, row, column])
+            lines[rows, :, columns] += bordered[:, row, column]
     size = count * PER_LINE
     whole = np.zeros((size + RIGID, size + RIGID))
     whole[:size, :size] = lines.reshape(size, size)

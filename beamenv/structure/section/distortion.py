@@ -15,8 +15,8 @@ from beamenv.structure.section.central_solution import Factorised, mean_motion, 
 Array = NDArray[np.float64]
 
 DISTORTIONS = 4
-"""Shapes that a section may take beside Saint-Venant's: with them the first eleven modes of the thesis' blade are within 1.4 % of solid
-elements; with none its second torsion mode is 9 % too high."""
+"""Shapes that a section may take beside Saint-Venant's: with them the first eleven modes of the thesis' blade are within 1.4 % of
+solid elements; with none its second torsion mode is 9 % too high."""
 
 ROUNDS = 3
 """Of subspace iteration."""

@@ -96,7 +96,8 @@ class ElementSums:
             self.cross.swapaxes(-1, -2) @ warping + self.derivative @ derivative + self.derivative_strain @ strain,
             self.beam_strain.swapaxes(-1, -2) @ warping + self.derivative_strain.swapaxes(-1, -2) @ derivative + self.beam @ strain,
         )
-        return np.asarray(sum(left @ right for left, right in zip(transposed, stress, strict=True)).sum(axis=1))
+        energies = [left @ right for left, right in zip(transposed, stress, strict=True)]
+        return np.asarray((energies[0] + energies[1] + energies[2]).sum(axis=1))
 
     def inertial(self, warping: Array) -> Array:
         """M times displacements of elements (V, K, size, c)."""
@@ -154,10 +155,10 @@ class _Totals:
         square, strain = (elements, size, size), (elements, size, RIGID)
         moments = (elements, MONOMIALS, 2 * size + RIGID)
         shapes = square, square, square, strain, strain, (elements, RIGID, RIGID), moments, (elements, nodes, nodes)
-        return cls(*(np.zeros(shape) for shape in shapes), np.zeros((elements, MONOMIALS)))
+        return cls(*(np.zeros(shape) for shape in (*shapes, (elements, MONOMIALS))))
 
     def add(self, ring: Ring, layer: _Layer, pretwist: float) -> None:
-        """∫ table × table over the layer, contracted with what a pair of tables means in energy: the ply's stiffness is constant."""
+        """∫ table × table over the layer, contracted with what a pair of tables means in energy."""
         along, weight_along = gauss_rule(ring.order + 1)
         depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * ring.thickness else 2)
         half = 0.5 * (layer.high - layer.low)

@@ -53,11 +53,11 @@ def inverse_vandermonde(order: int) -> tuple[Array, Array]:
     """(order + 1, order + 1): Legendre coefficients of the polynomials that are 1 at one Lobatto node and 0 at the others, and
     those of their slopes.
     """
-    inverse = np.linalg.inv(legendre.legvander(lobatto_nodes(order), order))
+    inverse = np.asarray(np.linalg.inv(legendre.legvander(lobatto_nodes(order), order)), dtype=np.float64)
     slopes = np.zeros((order + 1, order + 1))
     derived = legendre.legder(np.eye(order + 1))
     slopes[: len(derived)] = derived
-    return inverse, slopes @ inverse
+    return inverse, np.asarray(slopes @ inverse, dtype=np.float64)
 
 
 def lagrange(order: int, at: Array) -> tuple[Array, Array]:

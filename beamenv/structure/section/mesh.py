@@ -1,4 +1,4 @@
-"""A section as a ring of solid elements: each straight piece of a wall, mitred where walls meet, is one element across its thickness.
+"""A section as a ring of solid elements: each straight piece of a wall, mitred where walls meet, is one element through it.
 
 Along the contour an element runs from one *line* to the next; a line crosses the wall from its inner to its outer face, along the
 normal, or along the mitre at a corner. A point of an element is (1 − t)(P + n d) + t(P′ + n d′) with t in 0 … 1 between the lines
@@ -53,8 +53,8 @@ class Ring:
 
 
 def ring(vertices: Array, walls: Sequence[str], thickness: float, cuts: Sequence[tuple[str, float]] = ()) -> Ring:
-    """The elements of a closed polygon with vertices (S, K, 2), counter-clockwise, cut where a strip (wall, width) in the middle of a
-    wall begins and ends.
+    """The elements of a closed polygon with vertices (S, K, 2), counter-clockwise, cut where a strip (wall, width) in the middle of
+    a wall begins and ends.
 
     Raises ``ValueError`` where a wall is too short for its thickness at the corners.
     """
@@ -73,7 +73,8 @@ def ring(vertices: Array, walls: Sequence[str], thickness: float, cuts: Sequence
             directions.append(normal_of(tangent[:, k]) + (np.maximum(share, 0.0)[:, None] @ slant[:, ends, k])[:, 0])
             tangents.append(tangent[:, k])
             edges.append(Edge(wall, reach))
-    return Ring(*(np.stack(each, axis=1) for each in (points, directions, tangents)), tuple(edges), thickness)
+    P, d, along = (np.stack(each, axis=1) for each in (points, directions, tangents))
+    return Ring(P, d, along, tuple(edges), thickness)
 
 
 def normal_of(tangent: Array) -> Array:
@@ -82,8 +83,8 @@ def normal_of(tangent: Array) -> Array:
 
 
 def _corners(tangent: Array, thickness: float) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """At corner k, between edges k − 1 and k: by how much the mitre departs from the normal of each edge (S, K, K, 2), how far (m) it
-    reaches along both walls (S, K), and whether it is sharp (K,).
+    """At corner k, between edges k − 1 and k: by how much the mitre departs from the normal of each edge (S, K, K, 2), how far (m)
+    it reaches along both walls (S, K), and whether it is sharp (K,).
     """
     normal, before = normal_of(tangent), np.roll(tangent, 1, axis=1)
     cosine = (before * tangent).sum(axis=-1)
@@ -101,7 +102,7 @@ def _corner_elements(length: Array, intrusion: Array, thickness: float, wall: st
 
 
 def _lines(length: Array, grown: Array, sharp: NDArray[np.bool_], halves: list[float]) -> list[tuple[Array, float]]:
-    """Where lines cross one edge, (S,) m from its start, ascending, and the reach (see ``Edge``) of the element that begins there."""
+    """Where lines cross one edge, (S,) m from its start, ascending, and the reach (see ``Edge``) of what begins there."""
     whole = bool(halves) and halves[-1] >= 0.5 * length.max() * (1.0 - 1e-9)
     strips, outer = (halves[:-1], halves[-1]) if whole else (halves, np.inf)
     margins = [np.maximum(0.5 * length - half, NARROWEST * length) for half in strips]

@@ -101,11 +101,11 @@ class SolidSections:
         one = np.ones(1)
         start = places(self.ring, every, np.array([-1.0]), np.array([0.5 * self.ring.thickness]), one, one)
         sections, count = self.ring.points.shape[:2]
-        return self._strain(start, np.s_[:, :])[..., 0, 5, :].reshape(sections, count, STRAINS)
+        return self._strain(start, every)[..., 0, 5, :].reshape(sections, count, STRAINS)
 
     def layer_force(self, under: NDArray[np.bool_], low: float, high: float, stress: Array) -> Array:
-        """Work (V, STRAINS) per strain of the section and per metre, of stresses (ss, zz, sz), Pa, in a layer from ``low`` to ``high``
-        (m from the mid-line) of the elements ``under`` (K,).
+        """Work (V, STRAINS) per strain of the section and per metre, of stresses (ss, zz, sz), Pa, in a layer from ``low`` to
+        ``high`` (m from the mid-line) of the elements ``under`` (K,).
         """
         members = np.flatnonzero(np.tile(under, len(self.shapes)))
         along, weight_along = gauss_rule(self.ring.order + 1)
@@ -117,10 +117,9 @@ class SolidSections:
         work = np.einsum("eqkn,eq,ek->en", strain, here.weight, turned, optimize=True)
         return np.asarray(work.reshape(len(self.shapes), -1, STRAINS).sum(axis=1))
 
-    def _strain(self, here: Places, members: object) -> Array:
-        """(E, Q, 6, STRAINS)."""
-        shapes = self.shapes.reshape(-1, *self.shapes.shape[2:])
-        shapes = shapes if isinstance(members, tuple) else shapes[members]
+    def _strain(self, here: Places, members: NDArray[np.intp]) -> Array:
+        """(E, Q, 6, STRAINS) at points of some elements, by their flat indices."""
+        shapes = self.shapes.reshape(-1, *self.shapes.shape[2:])[members]
         e, q, nodes = here.value.shape
         tables = here.tables()
         B, S, Z = strain_of_tables(self.pretwist)
@@ -157,7 +156,6 @@ def _stress_moments(sums: ElementSums, central: CentralSolution, pretwist: float
     here = sums.gather(central.warping)
     size = sums.size
     T = equilibrium(pretwist)
-    per_resultant = (
-        sums.moments[..., :size] @ here + sums.moments[..., size : 2 * size] @ (here @ T) + sums.moments[..., 2 * size :] @ central.strain[:, None]
-    ).sum(axis=1)
+    warp, onward, beam = (sums.moments[..., part] for part in (slice(size), slice(size, 2 * size), slice(2 * size, None)))
+    per_resultant = (warp @ here + onward @ (here @ T) + beam @ central.strain[:, None]).sum(axis=1)
     return np.asarray(per_resultant @ central.stiffness).reshape(-1, MONOMIALS, RIGID)

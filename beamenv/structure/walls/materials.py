@@ -65,8 +65,8 @@ class Lamina:
 
     @property
     def nu23(self) -> float:
-        """Contraction through the thickness per extension across the fibres: that of a ply isotropic in the plane 2, 3, E2/2G23 − 1,
-        or as near to it as leaves its energy positive.
+        """Contraction through the thickness per extension across the fibres: that of a ply isotropic in the plane 2, 3,
+        E2/2G23 − 1, or as near to it as leaves its energy positive.
         """
         most = 1.0 - 2.0 * self.nu12**2 * self.E2 / self.E1
         return float(np.clip(0.5 * self.E2 / self.G23 - 1.0, -0.95, most - 1e-3 * (1.0 + most)))
