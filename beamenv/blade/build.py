@@ -28,6 +28,11 @@ class Blade:
 
     config: BladeConfig
 
+    @property
+    def as_beam(self) -> Blade:
+        """The blade that the configuration describes: this one, unless it moves as a plant file says."""
+        return self
+
     @cached_property
     def beam(self) -> RotatingBeam:
         """The blade with its patches' passive effect."""
@@ -66,6 +71,16 @@ class Blade:
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
 
+    @property
+    def true_modal(self) -> ModalModel:
+        """The modes of its true plant."""
+        return self.modal
+
+    @property
+    def truth(self) -> Plant:
+        """Its true plant, that moves."""
+        return self.plant
+
     def changed(self, config: BladeConfig) -> Blade:
         """The blade of another configuration, with the parts of this one that do not depend on the difference."""
         other = Blade(config)
@@ -81,7 +96,9 @@ class Blade:
     def displacement_operator(self, stations: Sequence[float] | Array) -> Array:
         """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
         rows = self.beam.displacements(np.asarray(stations, dtype=float))
-        displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (self.modal.mode_shapes / self.modal.natural_frequencies)
+        displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (
+            self.true_modal.mode_shapes / self.true_modal.natural_frequencies
+        )
         return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)
 
 

@@ -27,7 +27,7 @@ def build_bank(blade: Blade, design: Blade, variation: PlantVariation, steps: in
 def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
     """The bank that each episode draws its plant from; of one plant where nothing varies."""
     if not variation.varies:
-        return Bank.single(blade.plant, blade.config.speed, seen_from(blade, design))
+        return Bank.single(blade.truth, blade.config.speed, seen_from(blade, design))
     blades = list(varied_blades(blade, variation))
     views = [seen_from(each, design) for each in blades]
     to_design = None if any(view is None for view in views) else np.stack(views)  # type: ignore[arg-type]

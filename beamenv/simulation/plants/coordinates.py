@@ -17,7 +17,7 @@ def seen_from(blade: Blade, design: Blade) -> Array | None:
     """
     if blade.beam.space != design.beam.space:
         return None
-    true = blade.modal
+    true = blade.true_modal
     return coordinates(true.mode_shapes / true.natural_frequencies, true.mode_shapes, design)
 
 
