@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant, SampledPlant, sample, sample_all
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,10 +30,13 @@ class Operators:
     @classmethod
     def from_plant(cls, plant: Plant) -> Operators:
         """Operators of a plant held over its control interval, as float64 NumPy arrays."""
-        held = sample(plant)
-        step = np.hstack([held.A, held.B, held.disturbance_input])
-        fused = np.hstack([step.T, (plant.C @ step).T, (plant.tip_displacement @ step).T, held.cost])
-        return cls(fused=np.ascontiguousarray(fused), states=len(plant.A), outputs=len(plant.C))
+        return cls(_fused(plant, sample(plant)), states=len(plant.A), outputs=len(plant.C))
+
+    @classmethod
+    def from_plants(cls, plants: Sequence[Plant]) -> Operators:
+        """Those of several plants of one size and one control interval; ``fused`` has an axis for them."""
+        fused = np.stack([_fused(plant, held) for plant, held in zip(plants, sample_all(plants), strict=True)])
+        return cls(fused, states=len(plants[0].A), outputs=len(plants[0].C))
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
@@ -41,6 +45,12 @@ class Operators:
     def pick(self, index: Any) -> Operators:
         """The operators of one plant of several, or of one for each blade."""
         return Operators(self.fused[index], self.states, self.outputs)
+
+
+def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
+    step = np.hstack([held.A, held.B, held.disturbance_input])
+    fused = np.hstack([step.T, (plant.C @ step).T, (plant.tip_displacement @ step).T, held.cost])
+    return np.ascontiguousarray(fused)
 
 
 def advance(
