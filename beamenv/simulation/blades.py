@@ -82,12 +82,14 @@ class Blades:
     def _lay_out(self) -> None:
         """Column by column where blades of a group have one plant, blade by blade for a plant each: as BLAS likes it."""
         n, m = self.plant.B.shape
-        widths = n + m + 2, self.bank.operators.fused.shape[-1], m
+        widths = n + m + 2, self.bank.operators.fused.shape[-1], m, self.plant.blade_states
         if len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups):
-            self._joined, self._product, self._weighted = (self._lie.columns_first(width)[1] for width in widths)
+            arrays = [self._lie.columns_first(width)[1] for width in widths]
         else:
-            self._joined, self._product, self._weighted = (np.zeros((*self._shape, width)) for width in widths)
+            arrays = [np.zeros((*self._shape, width)) for width in widths]
+        self._joined, self._product, self._weighted, self._squares = arrays
         self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
+        self._energetic = self._state[..., : self.plant.blade_states]
 
     def __getstate__(self) -> tuple[Any, ...]:
         moving = self._joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
@@ -103,7 +105,14 @@ class Blades:
 
     @property
     def state(self) -> Array:
-        """(…, n) true states in energy coordinates: ½ xᵀx is the vibration energy in joules."""
+        """(…, n) true states in energy coordinates: ½ xᵀx of the blade's own is the vibration energy in joules."""
+        turned = np.atleast_2d(self.moving)
+        state = row_product(turned, self.bank.axes[0] if len(self.bank) == 1 else self.bank.axes[self.plants.index])
+        return np.asarray(state if self._shape else state[0])
+
+    @property
+    def moving(self) -> Array:
+        """(…, n) the true states in the axes of the bank, in which the kernel steps."""
         return self._by_blade(self._state)
 
     @property
@@ -123,7 +132,7 @@ class Blades:
         """(…, d) the true states as the design plant has its own: by displacements and velocities."""
         if self.bank.to_design is None:
             raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
-        state = self.state
+        state = self.moving
         if len(self.bank) == self.bank.groups and self._shape:
             views = self.bank.to_design if self._lie.runs else self.bank.to_design[0]
             return np.asarray(self._lie.product(state[None], views)[0])
@@ -166,7 +175,7 @@ class Blades:
         if self.bank.start is not None:
             state += self.bank.start[self.plants.group[rows]]
         if initial_state is not None:
-            state[...] = initial_state
+            state[...] = row_product(np.broadcast_to(initial_state, state.shape), self.bank.axes[index].swapaxes(-1, -2))
         at = self._lie.rows_of(rows)
         self._joined[at] = 0.0
         self._state[at] = state
@@ -190,7 +199,7 @@ class Blades:
     def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
         """Motion at the start of an episode, one row for each state (rows, n)."""
         count = len(state)
-        index = self.plants.index[rows]
+        index, energetic = self.plants.index[rows], state[:, : self.plant.blade_states]
         output, noise = row_product(state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
         if self.electronics is None:
             reading = np.clip(output + noise, -1.0, 1.0)
@@ -202,7 +211,7 @@ class Blades:
             failed=np.zeros(count, dtype=np.bool_),
             volts=np.zeros((count, self.plant.B.shape[1])),
             tip_displacement=row_product(state, self.bank.tip[index]),
-            energy=0.5 * row_dot(state, state),
+            energy=0.5 * row_dot(energetic, energetic),
             effort=np.zeros(count),
             cost_increment=np.zeros(count),
         )
@@ -218,10 +227,12 @@ class Blades:
         acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
         self._voltages[...] = acting.reshape(self._voltages.shape)
         self._disturbances.loads(self._loads)
-        following, reading, tip, increment = advance(self.plants.operators, self._joined, self._product, self._multiply)
+        following, reading, tip, increment = advance(
+            self.plants.operators, self._joined, self._product, self._multiply, self._squares
+        )
         self._state[...] = following
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
-        energy = 0.5 * row_dot(self._state, self._state)
+        energy = 0.5 * row_dot(self._energetic, self._energetic)
         effort = row_dot(self._multiply(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
         self.elapse()
         if self._shape:
@@ -287,6 +298,6 @@ class Blades:
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either
             rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
-            state = np.atleast_2d(self.state)[rows]
+            state = np.atleast_2d(self.moving)[rows]
             np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[self.plants.index[rows]], state)
         return failed
