@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
+from beamenv.configuration import Refused
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
@@ -145,21 +146,22 @@ class Blade:
 
 
 def _is_thesis(config: BladeConfig) -> bool:
-    return getattr(config, "model", "blade") == "thesis"
+    return config.model == "thesis"
 
 
+_BEAM = ("beam", "patches", "model")
 _MADE_OF = {
-    "beam": ("beam", "patches"),
-    "modal": ("beam", "patches", "speed", "modes", "gyroscopic"),
-    "true_modal": ("beam", "patches", "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
-    "full": ("beam", "patches"),
+    "beam": _BEAM,
+    "modal": (*_BEAM, "speed", "modes", "gyroscopic"),
+    "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
+    "full": _BEAM,
 }
 """The fields of a configuration that each part depends on."""
 
 
 def build_beam(config: BladeConfig) -> RotatingBeam:
     """The blade with its patches' passive effect."""
-    return config.beam.build(config.patches)
+    return config.beam.build(config.patches, config.model)
 
 
 def build_plant(config: BladeConfig) -> Plant:
@@ -168,7 +170,12 @@ def build_plant(config: BladeConfig) -> Plant:
 
 
 def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
-    """The plant of a beam that ``config.beam`` does not describe, of any section, say; it carries the inlays of passive patches."""
+    """The plant of a beam that ``config.beam`` does not describe, of any section, say; it carries the inlays of passive patches.
+
+    Raises ``ValueError`` for a beam of another model than the configuration's.
+    """
+    if beam.model != config.model:
+        raise Refused("beam.model", beam.model, f"the blade's, {config.model!r}")
     blade = Blade(config)
     vars(blade)["beam"] = beam
     return blade.plant

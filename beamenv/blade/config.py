@@ -15,7 +15,8 @@ from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.patches import PatchLayout
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
-from beamenv.structure.section.section import FLOW, THEORY, Metres
+from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
+from beamenv.structure.section.section import THEORY, Metres
 from beamenv.structure.walls.laminate import PLY_ANGLES
 
 MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6})
@@ -82,11 +83,14 @@ class BeamConfig:
     presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
     taper: Positive = 1.0
     shear: Annotated[str, THEORY] = "higher_order"
-    shear_flow: Annotated[str, FLOW] = "consistent"
+    shear_flow: Annotated[str | None, FLOW] = None
+    """Around the closed cell; None: that of the blade's model, "consistent", or "thesis" in the thesis'."""
+    steady_state: Annotated[str | None, STEADY_STATE] = None
+    """What the turning blade vibrates about; None: "nonlinear", or the blade at rest in the thesis' model, which has no other."""
     terms: Annotated[int, TERMS] = 10
 
-    def build(self, layout: PatchLayout | None = None) -> RotatingBeam:
-        """The blade, with the inlays of passive patches when a layout is given."""
+    def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
+        """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
         return RotatingBeam(
             section=BoxSection(self.width, self.depth, self.thickness),
             layup=self.layup(),
@@ -95,8 +99,10 @@ class BeamConfig:
             pretwist_deg=self.pretwist_deg,
             presetting_deg=self.presetting_deg,
             taper=self.taper,
+            model=model,
             shear=self.shear,
             shear_flow=self.shear_flow,
+            steady_state=self.steady_state,
             terms=self.terms,
             inlays=layout.inlays(self.length) if layout else (),
         )
@@ -116,6 +122,8 @@ class BladeConfig:
 
     beam: BeamConfig = field(default_factory=BeamConfig)
     patches: PatchLayout = field(default_factory=PatchLayout)
+    model: Annotated[str, MODEL] = "blade"
+    """"blade": the blade as it is; "thesis": the thesis' world whole, in which its tables and figures are reproduced."""
     speed: Annotated[float, Number(ge=0.0, unit="rad/s")] = 200.0
     """rad/s."""
     modes: Whole = 11
@@ -141,3 +149,7 @@ class BladeConfig:
     ``modes``; in the thesis' model ``modes``."""
     control_interval: Annotated[float, Number(ge=1e-6, le=1.0, unit="s")] = 0.5e-3
     """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
+
+    def __post_init__(self) -> None:
+        checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
+        check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")

@@ -137,7 +137,7 @@ class Choice(Kind):
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
         if self.own is None:
-            return self.json()
+            return Kind.__get_pydantic_json_schema__(self, schema, handler)
         return {"anyOf": [self.json(), handler(self.own.__pydantic_core_schema__)]}
 
 

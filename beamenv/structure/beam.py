@@ -11,8 +11,9 @@ from pydantic import InstanceOf
 
 from beamenv.configuration import Count, Number, Positive, Refused, checked, configuration
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
+from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
-from beamenv.structure.section.section import FLOW, THEORY, Metres, Section, SpanWalls
+from beamenv.structure.section.section import THEORY, Metres, Section, SpanWalls
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
 from beamenv.structure.walls.contour import Inlay
 from beamenv.structure.walls.laminate import Layup
@@ -37,8 +38,8 @@ class RotatingBeam:
     z runs along the span from the clamped root, x lies in the plane of rotation (lag), y along the spin axis (flap).
 
     Raises ``ValueError`` for a length, taper or number of terms that is not positive, a negative hub radius, an unknown
-    theory, a lay-up of other walls than the section's, walls that fill the tip, or inlays that leave the blade, overlap or do
-    not fit their wall.
+    theory, a shear flow or steady state that its model has not, a lay-up of other walls than the section's, walls that fill
+    the tip, or inlays that leave the blade, overlap or do not fit their wall.
     """
 
     section: InstanceOf[Section]
@@ -54,10 +55,14 @@ class RotatingBeam:
     """Angle of the root section's chord from the plane of rotation."""
     taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
+    model: Annotated[str, MODEL] = "blade"
+    """"blade": as it is; "thesis": as the thesis computes it."""
     shear: Annotated[str, THEORY] = "higher_order"
     """"higher_order", "first_order" or "rigid"."""
-    shear_flow: Annotated[str, FLOW] = "consistent"
-    """"consistent": constant around the cell; "thesis": without the couplings of off-axis plies."""
+    shear_flow: Annotated[str | None, FLOW] = None
+    """"consistent": constant around the cell; "thesis": without the couplings of off-axis plies. None: that of the model."""
+    steady_state: Annotated[str | None, STEADY_STATE] = None
+    """What the blade vibrates about when it turns, "nonlinear" or "linear". None: "nonlinear", the blade at rest in the thesis."""
     terms: Annotated[int, TERMS] = 10
     """Trial functions of each field."""
     inlays: tuple[InstanceOf[Inlay], ...] = ()
@@ -66,6 +71,8 @@ class RotatingBeam:
     def __post_init__(self) -> None:
         self.layup.check_walls(self.section.walls)
         self.section.check_thickness(min(1.0, 1.0 / self.taper), "section.thickness")
+        checked_flow(self.model, self.shear_flow)
+        check_steady_state(self.model, self.steady_state)
         check_inlays(self)
 
     @cached_property
@@ -99,7 +106,7 @@ class RotatingBeam:
             scale=tip + (1.0 - tip) * (1.0 - z / self.length),
             angle=np.radians(self.presetting_deg + self.pretwist_deg * z / self.length),
             shear=self.shear,
-            shear_flow=self.shear_flow,
+            shear_flow=checked_flow(self.model, self.shear_flow),
             inlays=self.inlays,
             cuts=cuts,
         )

@@ -20,6 +20,7 @@ CASES = {
     "at rest": ("thesis", {"speed": 0.0}),
     "without passive effect": ("thesis", {"patches": {"passive": False}}),
     "PZT": ("thesis", {"patches": {"material": "PZT"}}),
+    "thesis' shear flow": ("thesis", {"model": "thesis"}),
     "CAS box": ("chandra-chopra", {}),
 }
 SHARES = {"actuators": (0.01, 0.2, 0.4, 0.58), "sensors": (0.0, 0.12, 0.41, 0.595)}
@@ -32,7 +33,7 @@ def layout_of(config):
 
 def assembled(config, layout):
     """K, M, G, F and C_s of the blade with its patches, in the coordinates of the contributions."""
-    bare = config.beam.build()
+    bare = config.beam.build(model=config.model)
     omega, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / omega
     full = replace(config, patches=replace(config.patches, **layout))

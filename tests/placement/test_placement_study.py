@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from baselines.placement import PlacementProblem
-from beamenv.blade.presets import blade_config
+from train.reproduce.studies.chapter6_layouts import placed_blade
 from train.reproduce.studies.placement_study import (
-    UNTWISTED,
     convergence,
     dependence,
     depth,
@@ -18,11 +17,14 @@ from train.reproduce.studies.placement_study import (
     table_row,
     together_against_alone,
 )
+from train.reproduce.thesis import Model
+
+UNTWISTED = placed_blade(Model())
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return {(side, speed): table_row(side, 2, speed) for side in ("actuators", "sensors") for speed in (0.0, 200.0)}
+    return {(side, speed): table_row(side, 2, speed, UNTWISTED) for side in ("actuators", "sensors") for speed in (0.0, 200.0)}
 
 
 @pytest.fixture(scope="module")
@@ -48,11 +50,11 @@ def test_genetic_algorithm_then_sqp_is_never_dearer_than_either(rows):
 
 
 def test_sqp_depends_on_its_start():
-    assert starts_that_fail(PlacementProblem.of(blade_config(UNTWISTED), "actuators", 2), starts=8) > 0.0
+    assert starts_that_fail(PlacementProblem.of(UNTWISTED, "actuators", 2), starts=8) > 0.0
 
 
 def test_fitness_falls_from_generation_to_generation():
-    curves = convergence((6, 12), generations=5)
+    curves = convergence(UNTWISTED, (6, 12), generations=5)
     assert [len(curve) for curve in curves.values()] == [5, 5]
     for curve in curves.values():  # the best so far cannot rise; it must fall too
         assert np.all(np.diff(curve) <= 0.0)
@@ -67,6 +69,6 @@ def test_placed_patches_push_the_slowest_poles_deeper(layouts):
 
 @pytest.mark.slow
 def test_optimal_locations_depend_on_speed_twist_presetting_and_number():
-    found = dependence()
+    found = dependence(UNTWISTED)
     asis = np.array(found.pop("as it is"))
     assert all(np.abs(np.array(other[:2]) - asis).max() > 1e-3 for other in found.values())

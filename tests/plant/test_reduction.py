@@ -97,11 +97,12 @@ def test_half_the_squared_state_is_the_vibration_energy():
 
 
 def test_effort_is_the_energy_that_the_actuators_store_in_the_blade_at_rest():
-    """½ ∫ strain energy under held voltages: uᵀRu = ½ fᵀK⁻¹f for the default weight ½ (to the regularisation, 1e-6)."""
-    beam, plant = build_beam(CONFIG), build_plant(CONFIG)
+    """By the trial functions, as the thesis would: uᵀRu = ½ fᵀK⁻¹f for the default weight ½ (to the regularisation, 1e-6)."""
+    config = replace(CONFIG, model="thesis")
+    beam, plant = build_beam(config), build_plant(config)
     volts = np.array([1500.0, -300.0, 700.0, 100.0])
-    force = actuation(beam, CONFIG.patches) @ volts
-    stored = 0.5 * force @ np.linalg.solve(beam.matrices.stiffness(CONFIG.speed), force)
+    force = actuation(beam, config.patches) @ volts
+    stored = 0.5 * force @ np.linalg.solve(beam.matrices.stiffness(config.speed), force)
     assert volts @ plant.input_weight @ volts == pytest.approx(stored, rel=1e-5)
 
 

@@ -44,9 +44,10 @@ def test_thesis_prints_a_smaller_trace_by_ga_then_sqp_than_by_ga():
         assert all(float(row["sqp_cost"]) < float(row["ga_cost"]) for row in printed_table(f"table-6.{number}"))
 
 
-def test_chapter_6_is_computed_from_the_model_and_is_the_preset_of_the_placement():
-    assert placed_blade(Model()) == blade_config("thesis-untwisted")
-    assert placed_blade(Model(), 30.0) == blade_config("thesis")
+def test_chapter_6_is_computed_from_the_model_and_is_the_preset_of_the_placement_in_the_thesis_world():
+    world = {"model": "thesis", "beam": {"shear_flow": "consistent"}}
+    assert placed_blade(Model()) == blade_config("thesis-untwisted", world)
+    assert placed_blade(Model(), 30.0) == blade_config("thesis", world)
     longer = Model(box=replace(Model().box, length=2.1))
     assert placed_blade(longer).beam.length == 2.1 and source_fingerprint(longer) != source_fingerprint(Model())
 

@@ -8,6 +8,8 @@ from beamenv.structure import BoxSection, Lamina, Layup
 
 DATA = Path(__file__).parents[1] / "data"
 
+WORLDS = {"blade": {}, "thesis": {"model": "thesis", "shear_flow": "consistent"}}
+
 
 @pytest.fixture(scope="session")
 def table():
@@ -25,6 +27,18 @@ def as_number(text):
         return float(text)
     except ValueError:
         return text
+
+
+@pytest.fixture(scope="session", params=WORLDS.values(), ids=WORLDS)
+def world(request):
+    """What is true of any blade is asked of each model: arguments of beams and of ``section.stiffness``."""
+    return request.param
+
+
+@pytest.fixture(scope="session")
+def thesis_world():
+    """What is only said of the thesis' walls, or of vibration about the blade at rest, is asked of its model."""
+    return WORLDS["thesis"]
 
 
 @pytest.fixture(scope="session")

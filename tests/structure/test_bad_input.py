@@ -60,7 +60,24 @@ REFUSED = {
         lambda: blade(shear="timoshenko"),
         "beam.shear is 'timoshenko', but must be one of higher_order, first_order, rigid",
     ),
-    "unknown flow": (lambda: blade(shear_flow="open"), "beam.shear_flow is 'open', but must be one of consistent, thesis"),
+    "unknown model": (lambda: blade(model="shell"), "beam.model is 'shell', but must be one of blade, thesis"),
+    "unknown flow": (lambda: blade(shear_flow="open"), "beam.shear_flow is 'open', but must be None or one of consistent, thesis"),
+    "the thesis' flow in another model": (
+        lambda: blade(shear_flow="thesis"),
+        "beam.shear_flow is 'thesis', but must be None or consistent, or come with model = 'thesis'",
+    ),
+    "the thesis' flow in a section of another model": (
+        lambda: box(thickness=0.01).stiffness(OBLIQUE, shear_flow="thesis"),
+        "shear_flow is 'thesis', but must be None or consistent, or come with model = 'thesis'",
+    ),
+    "steady state in the thesis' model": (
+        lambda: blade(model="thesis", steady_state="linear"),
+        "beam.steady_state is 'linear', but must be None with model = 'thesis'",
+    ),
+    "unknown steady state": (
+        lambda: blade(steady_state="stalled"),
+        "beam.steady_state is 'stalled', but must be None or one of nonlinear, linear",
+    ),
     "unknown theory of a section": (lambda: box(thickness=0.01).stiffness(OBLIQUE, shear="stiff"), "shear is 'stiff', but must be"),
     "no plies for a wall": (
         lambda: blade(layup=graphite_walls(top=[0])),

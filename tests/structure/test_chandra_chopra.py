@@ -29,35 +29,35 @@ def hertz(beam):
     return np.array([beam.natural_frequencies(speed * RPM, 3) for speed in (0.0, 1000.0)]) / (2.0 * np.pi)
 
 
-def test_cas_beam_agrees_with_finite_elements_of_the_same_material(finite_elements, graphite_of_the_elements, deviation):
+def test_cas_beam_agrees_with_finite_elements_of_the_same_material(finite_elements, graphite_of_the_elements, deviation, world):
     """Ten terms: 19.93, 37.34, 124.40 Hz at rest and 27.63, 38.50, 132.20 Hz at 1000 rev/min, within 0.71 %."""
-    off = deviation(hertz(blade(graphite_of_the_elements)), finite_elements)
+    off = deviation(hertz(blade(graphite_of_the_elements, **world)), finite_elements)
     assert np.abs(off).max() < 0.71
 
 
-def test_cas_beam_of_the_thesis_material_agrees_too(finite_elements, deviation):
+def test_cas_beam_of_the_thesis_material_agrees_too(finite_elements, deviation, thesis_world):
     """G12 = 6.135 GPa, 2.3 % stiffer in twist, to which CAS couples flap: ten terms are within 1.47 %, sixteen within 1.16 %.
 
     What ten terms lack is the boundary layer in which the clamp restrains warping (φ' = 0): polynomials resolve it slowly,
     and Ritz values come from above.
     """
-    ten, sixteen = (deviation(hertz(blade(AS4_3501_6, terms=terms)), finite_elements) for terms in (10, 16))
+    ten, sixteen = (deviation(hertz(blade(AS4_3501_6, terms=terms, **thesis_world)), finite_elements) for terms in (10, 16))
     assert np.abs(ten).max() < 1.5
     assert np.abs(sixteen).max() < 1.2
     assert np.all(sixteen <= ten)
 
 
-def test_cas_beam_agrees_with_the_experiment_as_well_as_with_the_theory_of_its_authors(table, deviation):
+def test_cas_beam_agrees_with_the_experiment_as_well_as_with_the_theory_of_its_authors(table, deviation, thesis_world):
     """Measured flap 1, lag 1 and flap 2 lie up to 5 % above; above Chandra and Chopra's own theory they lie 1 to 6 %."""
     rows = {(row["mode"], row["speed_rpm"]): row for row in table("thesis_table_3_2.csv")}
     ordered = [[rows[mode, speed] for mode in MODES] for speed in (0.0, 1000.0)]
     measured, theirs = (
         np.array([[row[name] for row in line] for line in ordered]) for name in ("experiment_hz", "chandra_chopra_hz")
     )
-    ours = deviation(hertz(blade(AS4_3501_6)), measured)
+    ours = deviation(hertz(blade(AS4_3501_6, **thesis_world)), measured)
     assert np.all((ours > -5.0) & (ours < 0.0))
     assert np.abs(ours).max() < np.abs(deviation(theirs, measured)).max()
 
 
-def test_first_modes_of_the_cas_beam_are_flap_lag_flap(graphite_of_the_elements):
-    assert blade(graphite_of_the_elements).modes(1000.0 * RPM, 3).families == ("flap", "lag", "flap")
+def test_first_modes_of_the_cas_beam_are_flap_lag_flap(graphite_of_the_elements, world):
+    assert blade(graphite_of_the_elements, **world).modes(1000.0 * RPM, 3).families == ("flap", "lag", "flap")

@@ -11,16 +11,17 @@ HUBS = (0.0, 0.1, 0.2023)
 
 
 @pytest.fixture
-def blade(thesis_section):
+def blade(thesis_section, thesis_world):
     layup = Layup.uniform(GRAPHITE_EPOXY, angles_deg=[0] * 6)
-    return lambda hub_radius: RotatingBeam(thesis_section, layup, length=2.023, hub_radius=hub_radius)
+    return lambda hub_radius: RotatingBeam(thesis_section, layup, length=2.023, hub_radius=hub_radius, **thesis_world)
 
 
 def extension_frequency_at_rest(beam):
     """(π/2L) √(EA/m) of a clamped rod, rad/s."""
     walls = 2.0 * (beam.section.width + beam.section.depth)
     mass_per_length = GRAPHITE_EPOXY.density * walls * beam.section.thickness
-    return np.pi / (2.0 * beam.length) * np.sqrt(beam.section.stiffness(beam.layup)[0, 0] / mass_per_length)
+    section = beam.section.stiffness(beam.layup, shear_flow=beam.shear_flow, model=beam.model)
+    return np.pi / (2.0 * beam.length) * np.sqrt(section[0, 0] / mass_per_length)
 
 
 @pytest.mark.parametrize("hub_radius", HUBS)

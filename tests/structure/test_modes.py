@@ -13,8 +13,14 @@ SPEED = 200.0
 
 
 @pytest.fixture(scope="module")
-def blade(thesis_section):
-    return RotatingBeam(thesis_section, OBLIQUE, length=2.023, hub_radius=0.2023, pretwist_deg=30.0)
+def blade(thesis_section, world):
+    return RotatingBeam(thesis_section, OBLIQUE, length=2.023, hub_radius=0.2023, pretwist_deg=30.0, **world)
+
+
+@pytest.fixture(scope="module")
+def blade_at_rest(thesis_section, thesis_world):
+    """Which vibrates about its shape at rest at any speed."""
+    return RotatingBeam(thesis_section, OBLIQUE, length=2.023, hub_radius=0.2023, pretwist_deg=30.0, **thesis_world)
 
 
 def first_order_eigenvalues(beam, speed):
@@ -26,22 +32,22 @@ def first_order_eigenvalues(beam, speed):
 
 
 @pytest.mark.parametrize("speed", [1.0, SPEED, 1200.0])
-def test_whirling_frequencies_are_the_imaginary_parts_of_the_first_order_matrix(blade, speed):
-    eigenvalues = first_order_eigenvalues(blade, speed)
+def test_whirling_frequencies_are_the_imaginary_parts_of_the_first_order_matrix(blade_at_rest, speed):
+    eigenvalues = first_order_eigenvalues(blade_at_rest, speed)
     upper = np.sort(eigenvalues.imag[eigenvalues.imag > 0.0])
-    assert blade.natural_frequencies(speed, 30) == pytest.approx(upper[:30], rel=1e-6)
+    assert blade_at_rest.natural_frequencies(speed, 30) == pytest.approx(upper[:30], rel=1e-6)
 
 
-def test_whirling_is_not_the_root_of_the_stiffness(blade):
+def test_whirling_is_not_the_root_of_the_stiffness(blade_at_rest):
     """|Im λ|, not √λ of K: the coupling takes 3 % from the first frequency at 200 rad/s."""
-    with_it, without = (blade.natural_frequencies(SPEED, 1, gyroscopic=switch)[0] for switch in (True, False))
+    with_it, without = (blade_at_rest.natural_frequencies(SPEED, 1, gyroscopic=switch)[0] for switch in (True, False))
     assert with_it / without - 1.0 == pytest.approx(-0.032, abs=0.001)  # own output: guards, does not prove
 
 
 @pytest.mark.parametrize("gyroscopic", [True, False])
-def test_mode_shapes_leave_no_residual_and_have_unit_modal_mass(blade, gyroscopic):
+def test_mode_shapes_leave_no_residual_and_have_unit_modal_mass(blade_at_rest, gyroscopic):
     """(−ω²M + iωG + K) ψ = 0 for q = Re(ψ exp(iωt)), and ψᴴMψ = 1."""
-    modes, matrices = blade.modes(SPEED, 12, gyroscopic=gyroscopic), blade.matrices
+    modes, matrices = blade_at_rest.modes(SPEED, 12, gyroscopic=gyroscopic), blade_at_rest.matrices
     coupling = SPEED * matrices.gyroscopic if gyroscopic else np.zeros_like(matrices.mass)
     for frequency, shape in zip(modes.natural_frequencies, modes.mode_shapes.T, strict=True):
         inertia = frequency**2 * matrices.mass @ shape
@@ -65,9 +71,11 @@ def test_shapes_of_chosen_motions_stay_within_them(blade):
     assert modes.participation[:, 1] == pytest.approx(1.0)
 
 
-def test_isotropic_untwisted_blade_at_rest_has_pure_families_in_the_order_of_their_own_frequencies(thesis_section, isotropic):
+def test_isotropic_untwisted_blade_at_rest_has_pure_families_in_the_order_of_their_own_frequencies(
+    thesis_section, isotropic, world
+):
     """Nothing couples them: each mode is of one family alone, and the frequencies are those of the four motions, merged."""
-    beam = RotatingBeam(thesis_section, isotropic, length=2.023)
+    beam = RotatingBeam(thesis_section, isotropic, length=2.023, **world)
     modes = beam.modes(0.0, 9)
     motions = ("lag", "flap", "extension", "twist")
     alone = sorted((frequency, motion) for motion in motions for frequency in beam.natural_frequencies(0.0, 6, (motion,)))[:9]
@@ -77,27 +85,27 @@ def test_isotropic_untwisted_blade_at_rest_has_pure_families_in_the_order_of_the
     assert modes.participation.max(axis=1) == pytest.approx(1.0, abs=1e-9)
 
 
-def test_upright_chord_swaps_lag_and_flap(thesis_section, isotropic):
-    beam = RotatingBeam(thesis_section, isotropic, length=2.023, presetting_deg=90.0)
+def test_upright_chord_swaps_lag_and_flap(thesis_section, isotropic, world):
+    beam = RotatingBeam(thesis_section, isotropic, length=2.023, presetting_deg=90.0, **world)
     assert beam.modes(0.0, 5).families == ("lag", "flap", "lag", "twist", "lag")
 
 
-def test_each_freedom_of_the_section_lowers_the_frequencies(thesis_section):
+def test_each_freedom_of_the_section_lowers_the_frequencies(thesis_section, world):
     """Rigid theory is first-order shear theory with γ = 0 imposed: its frequencies cannot be lower."""
     rigid, first = (
-        RotatingBeam(thesis_section, OBLIQUE, 2.023, pretwist_deg=30.0, shear=shear).natural_frequencies(0.0, 20)
+        RotatingBeam(thesis_section, OBLIQUE, 2.023, pretwist_deg=30.0, shear=shear, **world).natural_frequencies(0.0, 20)
         for shear in ("rigid", "first_order")
     )
     assert np.all(first <= rigid * (1.0 + 1e-9))
     assert np.any(first < 0.99 * rigid)
 
 
-def test_past_the_critical_speed_modes_are_named_unstable_by_a_zero_not_by_an_error(blade):
-    speed = 1.2 * blade.critical_speed
-    assert blade.natural_frequencies(speed, 3)[0] == 0.0
-    assert blade.natural_frequencies(speed, 3, gyroscopic=False)[0] == 0.0
+def test_past_the_critical_speed_modes_are_named_unstable_by_a_zero_not_by_an_error(blade_at_rest):
+    speed = 1.2 * blade_at_rest.critical_speed
+    assert blade_at_rest.natural_frequencies(speed, 3)[0] == 0.0
+    assert blade_at_rest.natural_frequencies(speed, 3, gyroscopic=False)[0] == 0.0
     with pytest.raises(ValueError, match=r"speed is .*, but must be below the critical speed, 158"):
-        blade.modes(speed)
+        blade_at_rest.modes(speed)
 
 
 def test_one_oscillator_with_gyroscopic_coupling():
@@ -108,10 +116,10 @@ def test_one_oscillator_with_gyroscopic_coupling():
     assert found == pytest.approx(np.hypot(natural, spin) + spin * np.array([-1.0, 1.0]))
 
 
-def test_box_and_the_polygon_of_its_corners_give_one_blade(blade):
+def test_box_and_the_polygon_of_its_corners_give_one_blade(blade, world):
     corners = ((0.127, -0.0254), (0.127, 0.0254), (-0.127, 0.0254), (-0.127, -0.0254))
     polygon = PolygonSection(corners, ("right", "top", "left", "bottom"), 0.01016)
-    other = RotatingBeam(polygon, OBLIQUE, length=2.023, hub_radius=0.2023, pretwist_deg=30.0)
+    other = RotatingBeam(polygon, OBLIQUE, length=2.023, hub_radius=0.2023, pretwist_deg=30.0, **world)
     assert np.array_equal(other.natural_frequencies(SPEED), blade.natural_frequencies(SPEED))
 
 

@@ -13,8 +13,10 @@ LENGTH = 2.0
 PERIMETER = 2.0 * (SECTION.width + SECTION.depth)
 
 
-def cantilever(shear="rigid", **options):
-    return RotatingBeam(SECTION, ISOTROPIC, LENGTH, shear=shear, **options)
+@pytest.fixture
+def walled(thesis_world):
+    """A cantilever whose walls strain as the thesis has it: by hand to round-off."""
+    return lambda shear="rigid", **options: RotatingBeam(SECTION, ISOTROPIC, LENGTH, shear=shear, **thesis_world, **options)
 
 
 def deflection(beam, load):
@@ -26,16 +28,16 @@ def tip(beam, field):
 
 
 @pytest.mark.parametrize(("direction", "field", "entry"), [(0, "u", 2), (1, "v", 1)])
-def test_uniform_load_bends_the_tip_by_q_l4_over_8_ei(direction, field, entry):
+def test_uniform_load_bends_the_tip_by_q_l4_over_8_ei(direction, field, entry, world):
     """Exactly, since the quartic lies in the trial space of the rigid theory."""
-    beam = cantilever()
+    beam = RotatingBeam(SECTION, ISOTROPIC, LENGTH, shear="rigid", **world)
     q = 500.0
-    bending = SECTION.stiffness(ISOTROPIC, shear="rigid")[entry, entry]
+    bending = SECTION.stiffness(ISOTROPIC, shear="rigid", **world)[entry, entry]
     found = tip(beam, field) @ deflection(beam, q * beam.line_load()[:, direction])
     assert found == pytest.approx(q * LENGTH**4 / (8.0 * bending), rel=1e-10)
 
 
-def test_first_order_theory_adds_the_shear_deflection_of_timoshenko():
+def test_first_order_theory_adds_the_shear_deflection_of_timoshenko(walled):
     """qL⁴/8EI + qL²/2kGA with kGA = G h p: thin upright walls carry it, the lying ones in transverse shear.
 
     From below, and the more slowly the nearer: v leaves the clamp with z², which the higher-order theory asks for (v' = 0),
@@ -43,7 +45,7 @@ def test_first_order_theory_adds_the_shear_deflection_of_timoshenko():
     """
     missing = {}
     for terms in (5, 10, 20):
-        beam = cantilever(shear="first_order", terms=terms)
+        beam = walled(shear="first_order", terms=terms)
         full = beam.walls_at(np.zeros(1)).stiffness()[0]
         bending, shear = full[1, 1], full[4, 4]
         assert shear == pytest.approx(ALUMINIUM.G12 * PERIMETER * SECTION.thickness, rel=1e-12)
@@ -53,24 +55,24 @@ def test_first_order_theory_adds_the_shear_deflection_of_timoshenko():
     assert missing == pytest.approx({terms: 2.0 / (terms + 1) ** 2 for terms in missing}, rel=1e-3)
 
 
-def test_tip_load_strains_the_outer_face_by_moment_over_section_modulus():
+def test_tip_load_strains_the_outer_face_by_moment_over_section_modulus(walled, thesis_world):
     """ε = P(L − z)(d/2 + h/2)/EI at the face of the top wall: tension on top when the tip is pushed down."""
-    beam, load = cantilever(), -300.0
+    beam, load = walled(), -300.0
     bent = deflection(beam, load * tip(beam, "v"))
     z = np.array([0.1, 0.8, 1.9])
     on_top = [k for k, wall in enumerate(np.repeat(SECTION.walls, 2)) if wall == "top"]
     strain = beam.surface_strain(z)[:, on_top] @ bent
-    bending = SECTION.stiffness(ISOTROPIC, shear="rigid")[1, 1]
+    bending = SECTION.stiffness(ISOTROPIC, shear="rigid", **thesis_world)[1, 1]
     face = 0.5 * (SECTION.depth + SECTION.thickness)
     expected = -load * (LENGTH - z) * face / bending
     assert strain == pytest.approx(np.column_stack([expected, expected]), rel=1e-9)
 
 
 @pytest.mark.parametrize("length", [0.3, 0.6])
-def test_tip_torque_twists_a_clamped_box_as_vlasov_says(length):
+def test_tip_torque_twists_a_clamped_box_as_vlasov_says(length, thesis_world):
     """φ(L) = T (L − λ tanh(L/λ))/GJ with λ = √(EI_ω/GJ): the clamp holds warping within about λ of the root."""
     flat = BoxSection(width=0.2, depth=0.02, thickness=0.002)
-    beam = RotatingBeam(flat, ISOTROPIC, length, shear="rigid", terms=16)
+    beam = RotatingBeam(flat, ISOTROPIC, length, shear="rigid", terms=16, **thesis_world)
     full = beam.walls_at(np.zeros(1)).stiffness()[0]
     torsion, warping = full[7, 7], full[8, 8]
     reach = np.sqrt(warping / torsion)
@@ -86,9 +88,9 @@ def stretch_mass(beam):
 
 
 @pytest.mark.parametrize("taper", [1.0, 1.5, 2.0])
-def test_tapered_blade_weighs_what_its_shrinking_perimeter_says(taper):
+def test_tapered_blade_weighs_what_its_shrinking_perimeter_says(taper, walled):
     """m(z) = ρ h p [1 − (1 − 1/τ) z/L]: total ½ρhpL(1 + 1/τ), and ∫m(z/L)² = ρhpL[⅓ − ¼(1 − 1/τ)]."""
-    beam = cantilever(taper=taper)
+    beam = walled(taper=taper)
     root = ALUMINIUM.density * SECTION.thickness * PERIMETER
     stations = Stations.between(np.array([0.0, LENGTH]), 8)
     mass = beam.walls_at(stations.z).inertia().mass_per_length
@@ -120,10 +122,10 @@ def test_tension_of_a_tapered_blade_and_of_one_with_a_heavy_piece():
     assert jump == pytest.approx(np.where(z < 0.7, 9.0 * (0.7 - z) + 1.3, LENGTH - z), rel=1e-12)
 
 
-def test_tension_stiffens_flap_by_its_work():
+def test_tension_stiffens_flap_by_its_work(walled):
     """K_Ω of v = (z/L)²: ∫T v'² dz less the softening of rotary inertia, −∫ρy² v'²; hand integrals."""
     hub = 0.25
-    beam = cantilever(hub_radius=hub)
+    beam = walled(hub_radius=hub)
     column = beam.space.columns(("flap",))[0]
     mass = ALUMINIUM.density * SECTION.thickness * PERIMETER
     work = 4.0 * mass / LENGTH**4 * (hub * LENGTH**4 / 12.0 + 0.5 * LENGTH**5 * (1.0 / 3.0 - 1.0 / 5.0))
@@ -135,9 +137,9 @@ def test_tension_stiffens_flap_by_its_work():
     assert inertia == pytest.approx(about_chord, rel=1e-12)
 
 
-def test_chord_in_the_plane_of_rotation_is_stiffened_in_twist_by_the_tennis_racket_effect():
+def test_chord_in_the_plane_of_rotation_is_stiffened_in_twist_by_the_tennis_racket_effect(walled):
     """K_Ω of φ alone: Ω² ∫ρ(x² − y²)φ² turns its sign with a presetting of 90°; stretching and warping do not notice."""
-    flat, upright = (cantilever(presetting_deg=angle) for angle in (0.0, 90.0))
+    flat, upright = (walled(presetting_deg=angle) for angle in (0.0, 90.0))
     column = flat.space.columns(("twist",))[0]
     inertia = flat.walls_at(np.zeros(1)).inertia()
     excess = inertia.flap_flap[0, 5, 5] - inertia.lag_lag[0, 5, 5]

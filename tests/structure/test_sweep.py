@@ -20,7 +20,7 @@ def test_sweep_gives_each_speeds_own_frequencies(gyroscopic, motions):
 
 
 def test_sweep_goes_on_past_the_critical_speed():
-    box = BOX.build()
+    box = BOX.build(model="thesis")
     speeds = [0.5 * box.critical_speed, 1.05 * box.critical_speed]
     swept = frequency_sweep(box, speeds, 3, ("lag", "extension"))
     assert swept[1, 0] == pytest.approx(0.0, abs=1e-3)

@@ -57,7 +57,7 @@ def frequencies(
         from beamenv.blade.presets import blade_config
 
         config = blade_config(preset, load_config(blade) if blade else None)
-        beam = build_beam(config) if patches else config.beam.build()
+        beam = build_beam(config) if patches else config.beam.build(model=config.model)
         speeds = speed or sorted({0.0, config.speed})
         found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
     if as_json:

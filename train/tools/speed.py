@@ -146,12 +146,12 @@ def structure_times() -> dict[str, float]:
     from beamenv.blade.presets import blade_config
 
     config = blade_config()
-    beam = config.beam.build()
+    beam = config.beam.build(model=config.model)
     _ = beam.matrices
     speeds = iter(range(100, 200))
 
     return {
-        "assembly_ms": _best_ms(lambda: config.beam.build().matrices),
+        "assembly_ms": _best_ms(lambda: config.beam.build(model=config.model).matrices),
         "frequencies_ms": _best_ms(lambda: beam.natural_frequencies(speed=float(next(speeds)), count=6, gyroscopic=True)),
         "plant_ms": _best_ms(lambda: build_plant(config)),
     }

@@ -68,7 +68,7 @@ def contributions(config: BladeConfig) -> Contributions:
     """The contributions of a configuration's patches, for any position of them; takes about 0.1 s."""
     layout = config.patches
     span = ChebyshevSpan(OUTERMOST * config.beam.length, 2 * config.beam.terms + EXTRA_COEFFICIENTS)
-    bare = config.beam.build()
+    bare = config.beam.build(model=config.model)
     frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / frequencies
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
@@ -97,7 +97,7 @@ def contributions(config: BladeConfig) -> Contributions:
 
 def covered_blades(config: BladeConfig, span: ChebyshevSpan) -> list[RotatingBeam]:
     """The blade bare, and with its walls covered over the whole span of patches; all bare where patches are not passive."""
-    bare, layout = config.beam.build(), config.patches
+    bare, layout = config.beam.build(model=config.model), config.patches
     if not layout.passive:
         return [bare] * len(COVERED_WALLS)
     sheets = {wall: layout.patch.inlay(wall, 0.0, span.end, layout.width) for wall in (ACTUATOR_WALL, SENSOR_WALL)}

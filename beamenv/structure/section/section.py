@@ -13,6 +13,7 @@ from pydantic import BeforeValidator
 
 from beamenv.configuration import Choice, Number, Refused, checked, configuration
 from beamenv.configuration.kinds import plain
+from beamenv.structure.model import checked_flow
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
 from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
@@ -20,7 +21,6 @@ from beamenv.structure.walls.wall_kinematics import (
     GX,
     GY,
     PHI,
-    SHEAR_FLOWS,
     SHEAR_THEORIES,
     TX,
     TY,
@@ -38,7 +38,6 @@ Array = NDArray[np.float64]
 
 Metres = Annotated[float, Number(gt=0.0, unit="m")]
 THEORY = Choice(SHEAR_THEORIES)
-FLOW = Choice(SHEAR_FLOWS)
 
 
 class Section(ABC):
@@ -77,14 +76,17 @@ class Section(ABC):
         start, end = self.vertices[edges[0]], self.vertices[(edges[0] + 1) % len(self.walls)]
         return float(np.hypot(*(end - start)))
 
-    def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str = "consistent") -> Array:
+    def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:
         """Classical stiffness (4, 4) for (w', θx', θy', φ'): EA, EI_flap, EI_lag, GJ on the diagonal and the couplings.
 
         The transverse shear strains are condensed out (Berdichevsky, Armanios and Badir, Composites Engineering 2, 1992).
-        Units N, N m, N m². Raises ``ValueError`` for an unknown ``shear`` theory or ``shear_flow`` and for a lay-up of other walls.
+        Units N, N m, N m². ``model``, ``shear`` and ``shear_flow`` are those of a ``RotatingBeam``. Raises ``ValueError`` for one
+        that is unknown or not the model's, and for a lay-up of other walls.
         """
         layup.check_walls(self.walls)
-        walls = SpanWalls.build(self, layup, z=np.zeros(1), scale=np.ones(1), angle=np.zeros(1), shear=shear, shear_flow=shear_flow)
+        checked("shear", shear, THEORY)
+        flow = checked_flow(model, shear_flow)
+        walls = SpanWalls.build(self, layup, z=np.zeros(1), scale=np.ones(1), angle=np.zeros(1), shear=shear, shear_flow=flow)
         full = walls.stiffness()[0]
         kept = [W, TX, TY, PHI]
         if shear == "rigid":
@@ -196,7 +198,6 @@ class SpanWalls:
 
         ``cuts`` are further (wall, width) at which walls are split, so that a patch without passive effect can be integrated over.
         """
-        check_theory(shear, shear_flow)
         widths = [*cuts, *((inlay.wall, inlay.width) for inlay in inlays)]
         vertices, edges = split_walls(scale[:, None, None] * section.vertices, section.walls, widths)
         points = wall_points(rotated(vertices, angle), edges)
@@ -225,12 +226,6 @@ class SpanWalls:
         """Section inertia matrices."""
         motion = motion_rows(self.points, self.flow, self.laws.thickness, self.shear)
         return SectionInertia.integrate(motion, self.laws.density, self.points.ds)
-
-
-def check_theory(shear: str, shear_flow: str) -> None:
-    """``ValueError`` unless both names are known."""
-    checked("shear", shear, THEORY)
-    checked("shear_flow", shear_flow, FLOW)
 
 
 def lay_out_laws(

@@ -9,7 +9,7 @@ from beamenv.structure import RotatingBeam
 from train.reproduce.judging.study import Grid, Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Holds
 from train.reproduce.thesis import Model, printed_table
-from train.reproduce.thesis.configurations import antisymmetric
+from train.reproduce.thesis.configurations import antisymmetric, built
 from train.reproduce.thesis.couplings import KINDS, coupled_fields, subsystems
 
 Couplings = dict[tuple[str, str], frozenset[str]]
@@ -45,12 +45,12 @@ def cases(model: Model, pretwist_deg: float) -> dict[str, RotatingBeam]:
     """The lay-ups compared, by the name the table gives them."""
     cus = model.blade(30.0, pretwist_deg=pretwist_deg)
     return {
-        "arbitrary plies, thesis' shear flow": replace(
-            cus, ply_angles_deg=((ON_EVERY_WALL, UNSYMMETRIC),), shear_flow="thesis"
-        ).build(),
-        "CUS 30°, thesis' shear flow": replace(cus, shear_flow="thesis").build(),
-        "CUS 30°": cus.build(),
-        "CAS 30°": replace(cus, ply_angles_deg=antisymmetric(30.0)).build(),
+        "arbitrary plies, thesis' shear flow": built(
+            replace(cus, ply_angles_deg=((ON_EVERY_WALL, UNSYMMETRIC),), shear_flow="thesis")
+        ),
+        "CUS 30°, thesis' shear flow": built(replace(cus, shear_flow="thesis")),
+        "CUS 30°": built(cus),
+        "CAS 30°": built(replace(cus, ply_angles_deg=antisymmetric(30.0))),
     }
 
 
@@ -87,7 +87,7 @@ def untwisted(model: Model) -> Outcome:
         for angle in (0.0, 90.0)
         for blade in (model.blade(angle), replace(model.blade(angle), ply_angles_deg=antisymmetric(angle)))
     ]
-    decoupled = [set(subsystems(coupled_fields(blade.build()))) == DECOUPLED for blade in blades]
+    decoupled = [set(subsystems(coupled_fields(built(blade)))) == DECOUPLED for blade in blades]
     evidence = {
         "couplings": agreement("table-2.1", found["arbitrary plies, thesis' shear flow"]),
         "closed-cell": stiffness_agreement("table-2.1", found["CUS 30°"]),

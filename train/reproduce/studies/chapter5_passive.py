@@ -18,6 +18,7 @@ from train.reproduce.studies.parameter_studies import ORDINALS, PLY_ANGLES_DEG, 
 from train.reproduce.studies.study_patches import PRINTED_DENSITY, SheetLayout
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import shear_bending_stiffness
+from train.reproduce.thesis.configurations import built
 
 Array = NDArray[np.float64]
 
@@ -33,7 +34,7 @@ TAPERS = (1.0, 2.0, 3.0, 4.0)
 
 def frequencies_over_ply_angle(model: Model, speed: float) -> Array:
     """(sheets, angles, 4), rad/s."""
-    beams = [[model.blade(angle).build(layout) for angle in PLY_ANGLES_DEG] for layout in SHEETS.values()]
+    beams = [[built(model.blade(angle), layout) for angle in PLY_ANGLES_DEG] for layout in SHEETS.values()]
     return np.stack([frequency_sweep(row, [speed], 4)[:, 0] for row in beams])
 
 
@@ -84,7 +85,7 @@ def over_ply_angle(rotating: bool) -> Callable[[Model], Outcome]:
 
 def added_mass(model: Model) -> str:
     """What the patches add to the blade, in words."""
-    bare, patched = (mass(model.blade(0.0).build(SHEETS[name])) for name in ("no patches", "MFC"))
+    bare, patched = (mass(built(model.blade(0.0), SHEETS[name])) for name in ("no patches", "MFC"))
     return f"Twelve MFC in place of the plies there add {1e3 * (patched - bare):.0f} g to the blade's {bare:.1f} kg."
 
 
@@ -96,7 +97,7 @@ def mass(beam: RotatingBeam) -> float:
 
 def over_speed(model: Model) -> Outcome:
     """Figure 5.6."""
-    beams = [model.blade(0.0).build(layout) for layout in SHEETS.values()]
+    beams = [built(model.blade(0.0), layout) for layout in SHEETS.values()]
     found = frequency_sweep(beams, SPEEDS, 4)
     difference = np.abs(found[1] - found[0])
     evidence = {

@@ -46,7 +46,7 @@ def placed_blade(model: Model, pretwist_deg: float = 0.0) -> BladeConfig:
 def fitness(model: Model) -> Outcome:
     """Figure 6.4."""
     config = placed_blade(model)
-    runs = [convergence(POPULATIONS, seed=seed, blade=config) for seed in SEEDS]
+    runs = [convergence(config, POPULATIONS, seed=seed) for seed in SEEDS]
     mean = {size: np.mean([run[size] for run in runs], axis=0) for size in POPULATIONS}
     best = place(PlacementProblem.of(config, "actuators")).cost
     largest = np.array([run[POPULATIONS[-1]] for run in runs])

@@ -118,7 +118,7 @@ def costs_of(rows: Sequence[TableRow], side: Side) -> str:
 def one_to_four_patches(side: Side, model: Model) -> Outcome:
     """Table 6.3 or 6.4: one to four patches by GA, and by SQP from there."""
     config = placed_blade(model)
-    rows = placement_table(side, blade=config)
+    rows = placement_table(side, config)
     saved = 1.0 - 1.0 / (1.0 + np.array(together_against_alone(rows)))
     evidence: dict[str, object] = {
         "then": saved[:, 0] > 0.0,
@@ -133,7 +133,7 @@ def one_to_four_patches(side: Side, model: Model) -> Outcome:
     if side == "actuators":
         evidence["depends"] = depends_on(config)
     else:
-        others = placement_table("actuators", blade=config)
+        others = placement_table("actuators", config)
         edges = np.concatenate([row.both.positions for row in rows])
         evidence["near"] = edges < NEAR * model.box.length
         evidence["nearer"] = [sensor < actuator for _, _, sensor, actuator in gathering_at_the_root(rows, others)]
@@ -152,7 +152,7 @@ def depends_on(config: BladeConfig) -> list[bool]:
     """Whether an actuator or a sensor moves by more than 1 % of the span with speed, pretwist, presetting and number."""
     shifts = []
     for side in ("actuators", "sensors"):
-        found = dependence(side, blade=config)
+        found = dependence(config, side)
         before = np.array(found.pop("as it is"))
         shifts.append([float(np.abs(np.array(after[: len(before)]) - before).max()) for after in found.values()])
     return [bool(shift > MOVED * config.beam.length) for shift in np.max(shifts, axis=0)]

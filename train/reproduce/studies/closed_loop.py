@@ -16,6 +16,7 @@ from beamenv.patches import PatchLayout
 from beamenv.plant.plant import Plant, sample
 from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.configurations import WORLD
 from train.reproduce.thesis.response import settling_time
 
 Array = NDArray[np.float64]
@@ -39,7 +40,7 @@ def patches(**changes: object) -> PatchLayout:
 
 def blade(model: Model, beam: BeamConfig, layout: PatchLayout | None = None, **changes: object) -> BladeConfig:
     """A blade of chapter 5 at the model's speed and damping."""
-    config = BladeConfig(beam=beam, patches=layout or patches(), speed=model.speed, damping_ratio=model.damping_ratio)
+    config = BladeConfig(beam=beam, patches=layout or patches(), model=WORLD, speed=model.speed, damping_ratio=model.damping_ratio)
     return replace(config, **changes)  # type: ignore[arg-type]
 
 

@@ -16,15 +16,8 @@ from baselines.placement.search.placement import Recorder
 from baselines.placement.search.sqp import SequentialQuadratic
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
-from beamenv.blade.presets import blade_config
 
 Array = NDArray[np.float64]
-
-UNTWISTED = "thesis-untwisted"
-"""The blade of Tables 6.1 to 6.4: plies at 30°, no pretwist (§6.5)."""
-
-Blade = BladeConfig | str
-"""A blade, or the name of a preset."""
 
 SPEEDS = (0.0, 200.0)
 COUNTS = (1, 2, 3, 4)
@@ -46,22 +39,17 @@ class TableRow:
     uniform_cost: float
 
 
-def blade_of(blade: Blade) -> BladeConfig:
-    """The blade of that name."""
-    return blade_config(blade) if isinstance(blade, str) else blade
-
-
 @lru_cache(maxsize=64)
-def table_row(side: Side, count: int, speed: float, blade: Blade = UNTWISTED, seed: int = 0) -> TableRow:
+def table_row(side: Side, count: int, speed: float, blade: BladeConfig, seed: int = 0) -> TableRow:
     """A row of Table 6.1 or 6.3 (actuators), 6.2 or 6.4 (sensors); 6.1 and 6.2 are those of four patches."""
-    problem = PlacementProblem.of(replace(blade_of(blade), speed=speed), side, count)
+    problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
     ga = place(problem, Genetic(), seed)
     sqp = place(problem, SequentialQuadratic(), seed)
     both = place(problem, SequentialQuadratic(), seed, start=ga.positions)
     return TableRow(side, count, speed, ga, sqp, both, sqp.start_cost)
 
 
-def placement_table(side: Side, counts: Sequence[int] = COUNTS, blade: Blade = UNTWISTED, seed: int = 0) -> list[TableRow]:
+def placement_table(side: Side, blade: BladeConfig, counts: Sequence[int] = COUNTS, seed: int = 0) -> list[TableRow]:
     """Table 6.3 (actuators) or 6.4 (sensors) with the columns of 6.1 and 6.2 too: each count at rest and at 200 rad/s."""
     return [table_row(side, count, speed, blade, seed) for count in counts for speed in SPEEDS]
 
@@ -97,10 +85,10 @@ def starts_that_fail(
 
 
 def convergence(
-    populations: Sequence[int] = (10, 20, 30), generations: int = 50, seed: int = 0, blade: Blade = UNTWISTED
+    blade: BladeConfig, populations: Sequence[int] = (10, 20, 30), generations: int = 50, seed: int = 0
 ) -> dict[int, Array]:
     """Figure 6.4: least tr(P) (generations,) of four actuators at 200 rad/s after each generation, by the population's size."""
-    problem = PlacementProblem.of(blade_of(blade), "actuators")
+    problem = PlacementProblem.of(blade, "actuators")
     curves = {}
     for size in populations:
         recorder = Recorder(problem)
@@ -122,16 +110,15 @@ class Layouts:
 
 
 @lru_cache(maxsize=8)
-def initial_and_optimal(blade: Blade, seed: int = 0) -> Layouts:
+def initial_and_optimal(blade: BladeConfig, seed: int = 0) -> Layouts:
     """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare."""
-    config = blade_of(blade)
-    actuators = PlacementProblem.of(config, "actuators")
-    placed = with_positions(config, {"actuators": place(actuators, "ga+sqp", seed).positions})
+    actuators = PlacementProblem.of(blade, "actuators")
+    placed = with_positions(blade, {"actuators": place(actuators, "ga+sqp", seed).positions})
     sensors = PlacementProblem.of(placed, "sensors")
     optimal = replace(
         sensors.configuration(place(sensors, "ga+sqp", seed).positions), sensor_full_scale=actuators.config.sensor_full_scale
     )
-    return Layouts(replace(config, sensor_full_scale=actuators.config.sensor_full_scale), optimal, actuators, sensors)
+    return Layouts(replace(blade, sensor_full_scale=actuators.config.sensor_full_scale), optimal, actuators, sensors)
 
 
 def poles(layouts: Layouts) -> dict[tuple[Side, str], NDArray[np.complex128]]:
@@ -149,15 +136,14 @@ def depth(shown: NDArray[np.complex128]) -> tuple[float, float]:
     return float(-shown.real.max()), float(-shown.real.mean())
 
 
-def dependence(side: Side = "actuators", count: int = 2, seed: int = 0, blade: Blade = UNTWISTED) -> dict[str, tuple[float, ...]]:
+def dependence(blade: BladeConfig, side: Side = "actuators", count: int = 2, seed: int = 0) -> dict[str, tuple[float, ...]]:
     """Placed positions (m) on the untwisted blade at 200 rad/s, and as one thing after another is changed (§6.6)."""
-    config = blade_of(blade)
     configs = {
-        "as it is": config,
-        "at rest": replace(config, speed=0.0),
-        "pretwist 30°": replace(config, beam=replace(config.beam, pretwist_deg=30.0)),
-        "presetting 30°": replace(config, beam=replace(config.beam, presetting_deg=30.0)),
+        "as it is": blade,
+        "at rest": replace(blade, speed=0.0),
+        "pretwist 30°": replace(blade, beam=replace(blade.beam, pretwist_deg=30.0)),
+        "presetting 30°": replace(blade, beam=replace(blade.beam, presetting_deg=30.0)),
     }
     found = {name: place(PlacementProblem.of(each, side, count), "multistart", seed).positions for name, each in configs.items()}
-    more = PlacementProblem.of(config, side, count + 1)
+    more = PlacementProblem.of(blade, side, count + 1)
     return {**found, f"{count + 1} {side}": place(more, "multistart", seed).positions}

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.structure.sweep import frequency_sweep
-from train.reproduce.thesis.configurations import Model
+from train.reproduce.thesis.configurations import Model, built
 from train.reproduce.thesis.printed import numbers, printed_table
 
 Array = NDArray[np.float64]
@@ -34,14 +34,14 @@ def convergence_best_fit(model: Model) -> Array:
     blades = [
         model.blade(30.0, pretwist_deg=30.0, shear=shear, shear_flow=flow, hub_radius=hub) for shear, flow, hub in theories
     ] + [model.blade(angle, pretwist_deg=30.0) for angle in (0.0, 45.0, 60.0, 75.0, 90.0)]
-    beams = [blade.build() for blade in blades]
+    beams = [built(blade) for blade in blades]
     tried = np.concatenate([frequency_sweep(beam, [model.speed], 3, gyroscopic=g) for beam in beams for g in (True, False)])
     return np.asarray(tried[np.abs(tried / printed - 1.0).max(axis=1).argmin()])
 
 
 def chandra_chopra(model: Model) -> Array:
     """(6,), Hz: flap 1, lag 1 and flap 2, each at rest and at 1000 rev/min (Table 3.2), distinguished by their kinetic energy."""
-    beam = model.validation_box.build()
+    beam = built(model.validation_box)
     columns = []
     for speed in (0.0, 1000.0 * REV_PER_MIN):
         modes = beam.modes(speed, count=5)
