@@ -38,7 +38,8 @@ class Deformation:
             return self._running_operator(self._run_up, plant)
         blade = self._task.blade
         if self._varied is not None:
-            blade = blade.with_fixed_order().changed(changed_blade(blade.config, *self._varied[plant].tolist()))
+            blade = blade.with_fixed_order()
+            blade = blade.changed(changed_blade(blade.config, *self._varied[plant].tolist()))
         return blade.displacement_operator(self._stations)
 
     def _running_operator(self, run_up: RunUp, plant: int) -> Array:

@@ -32,9 +32,9 @@ class PlantVariation:
     damping_ratio: Annotated[Pair | None, Range(1e-6, 0.9)] = None
     """Of every mode, drawn on a logarithmic scale; None: the configured one."""
     modes: Annotated[int | None, Count()] = None
-    """Modes of the true plant; None: the configured number."""
+    """Modes of the true plant; None: the configured number, all up to the Nyquist frequency unless said otherwise."""
     design_modes: Annotated[int | None, Count()] = None
-    """Modes of the plant that controllers are designed for; None: the configured number."""
+    """Modes of the plant that controllers are designed for; None: the configured number, 11 unless said otherwise."""
     spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s")] = None
     """rad/s: Ω(t) runs from the first to the second over the episode (``spin_up`` of the simulation); nothing else varies then."""
     bank: Whole = 128
