@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from beamenv.envs.single import RotatingBeamEnv
     from beamenv.envs.stable_baselines import BladeVecEnv
     from beamenv.patches import PatchLayout
+    from beamenv.plant.files import load_plant, save_plant
+    from beamenv.plant.modal_plant import ModalPlant
     from beamenv.plant.plant import Plant, SampledPlant, sample
     from beamenv.scenarios.scenario import SCENARIOS, Scenario, scenario
     from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
@@ -48,6 +50,9 @@ _HOMES = {
     "RotatingBeamEnv": "envs.single",
     "PlacementWrapper": "envs.placement",
     "VectorPlacementWrapper": "envs.placement",
+    "ModalPlant": "plant.modal_plant",
+    "load_plant": "plant.files",
+    "save_plant": "plant.files",
     "Plant": "plant.plant",
     "SampledPlant": "plant.plant",
     "sample": "plant.plant",
@@ -71,6 +76,7 @@ __all__ = [
     "Design",
     "Lamina",
     "Layup",
+    "ModalPlant",
     "PatchLayout",
     "PlacementWrapper",
     "Plant",
@@ -84,7 +90,9 @@ __all__ = [
     "VectorSensorHistory",
     "blade_config",
     "build_plant",
+    "load_plant",
     "sample",
+    "save_plant",
     "scenario",
 ]
 

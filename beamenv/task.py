@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
+from beamenv.blade.given import given_blade
 from beamenv.blade.presets import blade_config
 from beamenv.configuration import Flag, Number, Refused, checked, checked_table, read
+from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario, with_load
 from beamenv.scenarios.scenario import scenario as as_scenario
@@ -78,6 +80,11 @@ class Task:
         """All that a controller may be built from."""
         return Design(self.design_plant, self.design_config)
 
+    @property
+    def true_design(self) -> Design:
+        """What a bound may be built from: the true plant in place of the design's, or the one that all drawn ones depart from."""
+        return Design(self.plant, self.config)
+
     @cached_property
     def bank(self) -> Bank:
         """The true plants that episodes draw from."""
@@ -113,10 +120,12 @@ def resolve_task(
     duration = checked("duration", duration, Number(gt=interval / 2, unit="s"))
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
+    truth, modes = chosen.plants.truth, chosen.plants.modes
     own = _driven(config if design is None else _design_config(preset, speed, design), chosen)
-    config = _with(_driven(config, chosen), truth_modes=chosen.plants.modes)
+    config = _with(_driven(config, chosen), truth_modes=modes if truth is None else None)
     designed = _with(own if design is not None else config, modes=chosen.plants.design_modes)
-    true = _alive(_BLADES, Blade(config))
+    true = Blade(config) if truth is None else given_blade(config, load_plant(truth), truth, modes)
+    true = _alive(_BLADES, true)
     _check_failures(chosen, true.plant)
     task = Task(
         blade=true,
@@ -175,7 +184,7 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
             raise Refused(f"design.{name}", getattr(design, name), f"the true blade's, {getattr(true.config, name)!r}")
     if design.sensor_full_scale is None:
         design = replace(design, sensor_full_scale=float(true.plant.sensor_full_scale[0]))
-    designed = true.changed(design)
+    designed = true.as_beam.changed(design)
     shapes = [(plant.B.shape[1], len(plant.C)) for plant in (designed.plant, true.plant)]
     if shapes[0] != shapes[1]:
         raise ValueError(f"design has {shapes[0]} voltages and sensors, but must have as many as the true blade, {shapes[1]}.")

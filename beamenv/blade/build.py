@@ -29,6 +29,11 @@ class Blade:
 
     config: BladeConfig
 
+    @property
+    def as_beam(self) -> Blade:
+        """The blade that the configuration describes: this one, unless it moves as a plant file says."""
+        return self
+
     @cached_property
     def beam(self) -> RotatingBeam:
         """The blade with its patches' passive effect."""
@@ -133,16 +138,11 @@ class Blade:
         displaced = lag_flap_twist @ (self.true_modal.mode_shapes / self.true_modal.natural_frequencies)
         still = np.zeros((*displaced.shape[:-1], len(truth.A) - displaced.shape[-1]))
         operator = np.concatenate([displaced, still], axis=-1)
-        if self.has_amplifiers:
+        if truth.electronic_states and self.config.electronics.amplifier_bandwidth is not None:
             m = truth.B.shape[1]
             residual = self._residual(lag_flap_twist.reshape(-1, lag_flap_twist.shape[-1]))
             operator[..., -m:] = (residual * drive_limit(truth)).reshape(*operator.shape[:-1], m)
         return operator
-
-    @property
-    def has_amplifiers(self) -> bool:
-        """Whether the last states of the true plant are those of amplifiers."""
-        return not _is_thesis(self.config) and self.config.electronics.amplifier_bandwidth is not None
 
 
 def _is_thesis(config: BladeConfig) -> bool:

@@ -6,6 +6,7 @@ Here is what they have in common, and those of flags, names and tables; ``number
 from __future__ import annotations
 
 import os
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -142,6 +143,34 @@ class Choice(Kind):
 
 
 @dataclass(frozen=True, slots=True)
+class NameOrFile(Kind):
+    """One of several names, or the path of a file with a certain ending; kept as a string."""
+
+    names: tuple[str, ...]
+    ending: str
+
+    @property
+    def allowed(self) -> str:
+        """Both."""
+        return f"one of {', '.join(self.names)}, or the path of a {self.ending} file"
+
+    def core(self) -> CoreSchema:
+        """A string."""
+        return core_schema.no_info_before_validator_function(
+            _as_text, core_schema.no_info_after_validator_function(self._known, core_schema.str_schema(strict=True))
+        )
+
+    def json(self) -> JsonSchema:
+        """A string."""
+        return {"anyOf": [{"enum": list(self.names)}, {"type": "string", "pattern": f"{re.escape(self.ending)}$"}]}
+
+    def _known(self, value: str) -> str:
+        if value not in self.names and not value.endswith(self.ending):
+            raise ValueError
+        return value
+
+
+@dataclass(frozen=True, slots=True)
 class Texts(Kind):
     """A sequence of strings; paths are taken for their names."""
 
@@ -178,11 +207,13 @@ class Table(Kind):
         return {"type": "object"}
 
 
+def _as_text(value: Any) -> Any:
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
 def _as_texts(value: Any) -> Any:
     value = plain(value)
-    return (
-        tuple(os.fspath(each) if isinstance(each, os.PathLike) else each for each in value) if isinstance(value, tuple) else value
-    )
+    return tuple(map(_as_text, value)) if isinstance(value, tuple) else value
 
 
 def _as_dict(value: Any) -> Any:

@@ -110,6 +110,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     | `failure`    | one actuator dead; one sensor dead (noise alone), or biased by 5 … 20 % of full scale                  |
     | `rotor`      | 6, 4, 2, 1 N/m, times 0.5 … 1.5, at 1 … 4 per revolution; turbulence of 5 N/m and 20 ms; pulses, releases |
     | `overload`   | steps of 500 N/m: the actuators saturate, the sensors clip                                             |
+    | `solid`      | the blade is a solid of three dimensions (finite elements, 11 modes), the design plant is the beam's   |
+    | `solid-20`   | the same solid with 20 modes                                                                           |
 
     A file of one's own (`scenario="gusts.toml"`) or a dictionary may depart from any of them by `preset`, table by table:
 
@@ -120,7 +122,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     ```
 
     Two attributes are for laws that know more than the sensors: `rotor_speed`, rad/s, what a tachometer shows now, and
-    `design_state`, the true state in the coordinates of the design plant, by displacements and velocities.
+    `design_state`, the true state in the coordinates of the design plant, by displacements and velocities. (Of a solid: mode by
+    mode, as far as the beam has a counterpart.)
 
     ## Episode End
 

@@ -120,7 +120,7 @@ def in_modes(
     charges: Array,
     line_load: Array,
     stored_energy: Array,
-    damping_ratio: float,
+    damping_ratio: float | Array,
     effort_weight: float,
 ) -> ReducedBlades:
     """Blades in given modes, from forces F (…, N, m), charges (…, p, N), loads (…, N, 2) and FᵀK⁻¹F (…, m, m)."""
@@ -141,7 +141,7 @@ def reduced_plant(
     full: FullModel,
     stiffness: Array,
     *,
-    damping_ratio: float,
+    damping_ratio: float | Array,
     effort_weight: float,
     white_load: float,
     sensor_noise_fraction: float,
@@ -149,7 +149,10 @@ def reduced_plant(
     voltage_limits: tuple[float, float],
     control_interval: float,
 ) -> Plant:
-    """The plant of one blade with the stiffness K (N, N) at its speed; other arguments as in ``BladeConfig``."""
+    """The plant of one blade with the stiffness K (N, N) at its speed; other arguments as in ``BladeConfig``.
+
+    The damping ratio may be one of each mode (r,).
+    """
     forces, omega, shapes = full.forces, modal.natural_frequencies, modal.mode_shapes
     blade = in_modes(
         modal,

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 
 from beamenv.configuration import Choice, Flag, Range, Refused, Share, checked, checked_table, configuration, read
 from beamenv.configuration.files import ENDINGS, of_file, parsed_table, read_table
+from beamenv.plant.named import ENDING
 from beamenv.scenarios import named
 from beamenv.scenarios.load_cases import CASES
 from beamenv.scenarios.named import NAMES
@@ -126,7 +127,16 @@ def load_scenario(path: str | Path) -> Scenario:
     """The scenario in a TOML or JSON file; ``ValueError`` names the file and what is wrong in it."""
     content = read_table(path)
     with of_file(path):
-        return scenario(content)
+        return scenario(_beside(Path(path), content))
+
+
+def _beside(path: Path, content: dict[str, Any]) -> dict[str, Any]:
+    """The content of a file with the plant file that it names taken to lie where it does itself."""
+    plants = content.get("plants")
+    truth = plants.get("truth") if isinstance(plants, dict) else None
+    if plants is None or not isinstance(truth, str) or not truth.endswith(ENDING):
+        return content
+    return {**content, "plants": {**plants, "truth": str(path.parent / truth)}}
 
 
 def scenario_schema() -> dict[str, Any]:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from beamenv.configuration import Count, Natural, Number, Numbers, Range, Refused, Share, Whole, configuration
+from beamenv.configuration import Count, NameOrFile, Natural, Number, Numbers, Range, Refused, Share, Whole, configuration
+from beamenv.plant.named import ENDING, NAMES
 
 Pair = tuple[float, float]
 
@@ -31,8 +32,11 @@ class PlantVariation:
     """Of the laminate's density."""
     damping_ratio: Annotated[Pair | None, Range(1e-6, 0.9)] = None
     """Of every mode, drawn on a logarithmic scale; None: the configured one."""
+    truth: Annotated[str | None, NameOrFile(NAMES, ENDING)] = None
+    """What moves in place of the beam, alone: a plant file (``beamenv.plant.files``), or the name of one that ships."""
     modes: Annotated[int | None, Count()] = None
-    """Modes of the true plant; None: the configured number, all up to the Nyquist frequency unless said otherwise."""
+    """Modes of the true plant; None: the configured number, all up to the Nyquist frequency unless said otherwise, or all that a plant
+    file has."""
     design_modes: Annotated[int | None, Count()] = None
     """Modes of the plant that controllers are designed for; None: the configured number, 11 unless said otherwise."""
     spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s")] = None
@@ -45,6 +49,8 @@ class PlantVariation:
     def __post_init__(self) -> None:
         if self.spin_up is not None and self.varies:
             raise Refused("spin_up", self.spin_up, "None where other plants are drawn")
+        if self.truth is not None and (self.varies or self.spin_up is not None):
+            raise Refused("truth", self.truth, "None where other plants are drawn or the rotor runs up")
 
     @property
     def varies(self) -> bool:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import fields, is_dataclass
 from importlib.resources import files
 
@@ -19,6 +20,7 @@ from train.cli.app import app
 KNOWN = {
     "$schema", "$defs", "$ref", "title", "description", "default", "type", "enum", "anyOf", "properties", "additionalProperties",
     "items", "prefixItems", "minItems", "maxItems", "minProperties", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum",
+    "pattern",
 }  # fmt: skip
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None), "number": (int, float), "integer": int}
 
@@ -52,7 +54,7 @@ def holds(value, schema, root):
         low, high = schema.get("minimum", value), schema.get("maximum", value)
         above, below = schema.get("exclusiveMinimum", -math.inf), schema.get("exclusiveMaximum", math.inf)
         return low <= value <= high and above < value < below
-    return True
+    return not isinstance(value, str) or re.search(schema.get("pattern", ""), value) is not None
 
 
 @pytest.mark.parametrize("name", named.NAMES)
@@ -78,6 +80,7 @@ def test_every_preset_keeps_to_the_schema(name):
         ({"patches": {"passive": "no"}}, blade_schema),
         ({"modes": 1.5}, blade_schema),
         ({"preset": "storm"}, scenario_schema),
+        ({"plants": {"truth": "beam"}}, scenario_schema),
         ({"plants": {"speed_ratio": [0.9, 1.0, 1.1]}}, scenario_schema),
         ({"rotor": {"harmonics": 3.0}}, scenario_schema),
     ],
@@ -121,7 +124,7 @@ def test_the_command_writes_what_the_functions_say(tmp_path):
 VALUES = [
     None, True, "", "no", "MFC", "graphite-epoxy", "higher_order", 0, -0.0, 1, 3, 1.0, 11.0, 0.5, 1.5, -1, 1e6, [], [1], [0.9, 1.1],
     [-1, 1], [1, 2], [0, 0], [1, 2, 3], ["1", "2"], [True, False], [[0, 1]], [["all", [30, 30]]], {}, {"all": [30]}, {"a": 1},
-    {"E1": 1e11}, {"E1": "x"}, {"turbulence": 1}, {"delay": [0, 1.5]}, {"length": 1.0},
+    "solid-blade", "blade.npz", {"E1": 1e11}, {"E1": "x"}, {"turbulence": 1}, {"delay": [0, 1.5]}, {"length": 1.0},
 ]  # fmt: skip
 """What somebody may write for a field."""
 

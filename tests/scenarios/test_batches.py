@@ -108,9 +108,10 @@ def test_a_copy_in_the_middle_of_an_episode_goes_on_alike(name, kind, duplicate)
 
 @pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
 def test_the_reward_is_minus_the_cost_whatever_the_plant(name):
-    """J adds up from steps whose cost is at least the actuators' effort, over the nominal plant's scale."""
+    """J adds up from steps whose cost is at least the actuators' effort, over the scale of the plant that all depart from."""
     env = RotatingBeamEnv(scenario=SMALL.get(name, name))
-    nominal = RotatingBeamEnv()
+    plants = env.task.scenario.plants
+    nominal = RotatingBeamEnv(scenario={"plants": {"modes": plants.modes, "truth": plants.truth}})
     env.reset(seed=1)
     nominal.reset(seed=1)
     _, reward, _, _, info = nominal.step(np.full(4, 0.1))

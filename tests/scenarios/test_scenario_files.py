@@ -31,9 +31,10 @@ turbulence = 8.0
 """
 
 
-def test_the_benchmark_has_ten_scenarios():
+def test_the_benchmark_has_twelve_scenarios():
     assert BENCHMARK_SCENARIOS == (
-        "delay", "failure", "hysteresis", "nominal", "off-model", "off-speed", "overload", "rotor", "spillover", "spin-up",
+        "delay", "failure", "hysteresis", "nominal", "off-model", "off-speed", "overload", "rotor", "solid", "solid-20",
+        "spillover", "spin-up",
     )  # fmt: skip
     assert SCENARIOS["nominal"] == SCENARIOS["default"]
 
@@ -103,6 +104,21 @@ WRONG = [
     ({"plants": {"modulus_ratio": [0.9, float("nan")]}}, "scenario.plants.modulus_ratio"),
     ({"plants": {"mass_ratio": "heavy"}}, "scenario.plants.mass_ratio is 'heavy'"),
     ({"plants": {"damping_ratio": [0.0, 0.1]}}, "scenario.plants.damping_ratio"),
+    (
+        {"plants": {"truth": "liquid"}},
+        "scenario.plants.truth is 'liquid', but must be None or one of solid-blade, or the path of a .npz",
+    ),
+    ({"plants": {"truth": 3}}, "scenario.plants.truth is 3, but must be None or one of solid-blade, or the path of a .npz file"),
+    ({"plants": {"truth": "nowhere.npz"}}, "file 'nowhere.npz' cannot be read: No such file or directory"),
+    (
+        {"preset": "solid", "plants": {"speed_ratio": [0.9, 1.1]}},
+        "scenario.plants.truth is 'solid-blade', but must be None where other plants are drawn or the rotor runs up",
+    ),
+    ({"preset": "solid", "plants": {"spin_up": [100.0, 300.0]}}, "scenario.plants.truth is 'solid-blade', but must be None where"),
+    (
+        {"preset": "solid", "plants": {"modes": 21}},
+        "scenario.plants.modes is 21, but must be None or at most the 20 that the plant 's",
+    ),
     ({"plants": {"modes": 0}}, "scenario.plants.modes is 0, but must be .*a whole number not below 1"),
     ({"plants": {"design_modes": 2.5}}, "scenario.plants.design_modes is 2.5, but must be None or a whole number"),
     ({"plants": {"bank": 0}}, "scenario.plants.bank is 0, but must be .*a whole number not below 1"),

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import beamenv
-from baselines import evaluate, lqg
+from baselines import evaluate, lqg, stationary_cost
 from beamenv.plant.fingerprint import fingerprint
 from train.benchmark import benchmark
 from train.benchmark.listed import agents
 from train.benchmark.targets import findings
 from train.controllers import named as named_controllers
-from train.controllers.named import discover, named
+from train.controllers.named import NamedController, discover, named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 from train.shared.held_out import HELD_OUT
@@ -212,7 +212,7 @@ class Unseen:
         return getattr(self._task, name)
 
 
-@pytest.mark.parametrize("name", sorted(discover()))
+@pytest.mark.parametrize("name", sorted(name for name, each in discover().items() if not each.told_the_truth))
 def test_a_controller_is_built_without_a_look_at_the_true_blade(name):
     """Nor does another true blade behind the same design change what it does."""
     electronics = {"sensor_full_scale": 2e-5}
@@ -227,6 +227,17 @@ def test_a_controller_is_built_without_a_look_at_the_true_blade(name):
         actions.append(law.predict(seen[law.observes])[0])
     assert np.array_equal(*actions)
     assert name == "none" or np.abs(actions[0]).max() > 0.0
+
+
+def test_only_a_bound_is_told_the_truth_and_then_designed_for_it():
+    assert [name for name, each in discover().items() if each.told_the_truth] == ["lqg-truth"]
+    assert discover()["lqg-truth"].kind == "bound"
+    with pytest.raises(ValueError, match="rival.TOLD_THE_TRUTH is True, but must be False for what is no bound"):
+        NamedController("rival", "fixed", lqg, told_the_truth=True)
+    task = gymnasium.make("beamenv/RotatingBeam-solid-20-v0", **SHORT).unwrapped.task
+    law = named("lqg-truth").build_for(task)
+    assert stationary_cost(task.plant, law) == stationary_cost(task.plant, lqg(task.plant))
+    assert np.array_equal(named("lqg").build_for(task).transition, lqg(task.design_plant).transition)
 
 
 def test_a_task_that_lets_nobody_see_its_true_blade_notices_who_looks():

@@ -53,6 +53,15 @@ def test_a_file_in_the_folder_s_place_is_told_at_once(command, tmp_path):
     assert (tmp_path / "note").read_text() == "kept"
 
 
+def test_what_is_told_the_truth_is_evaluated_on_the_solid():
+    costs = {}
+    for controller in ("lqg", "lqg-truth"):
+        result = run("evaluate", controller, "--scenario", "solid-20", "--seeds", "2", "--json")
+        assert result.exit_code == 0, result.stderr
+        costs[controller] = json.loads(result.stdout)["estimates"]["relative_cost"]["value"]
+    assert costs["lqg-truth"] < min(costs["lqg"], 0.8)
+
+
 @pytest.mark.parametrize("controller", ["none", "lqg"])
 def test_a_classical_law_is_evaluated_by_name(controller):
     result = run("evaluate", controller, "--seeds", "2", "--json")

@@ -14,13 +14,12 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, no_control
-from beamenv.blade.build import build_plant
 from beamenv.blade.shape import magnification
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
-from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, write_page
+from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record_episode, write_page
 from train.page.blade import ROUND, SHOWN_DEFLECTION, blade_figures, frame_times, motions
 from train.page.page import plots, render
 from train.page.plots import amplitude_density
@@ -112,7 +111,7 @@ def test_the_drawn_tip_moves_by_the_magnified_tip_displacement_and_the_root_stay
     times = frame_times(episode)
     for motion, figure in zip(moved, blade_figures(episode), strict=True):
         recording = motion.recording
-        at = np.rint(times / episode.blade.control_interval).astype(int)
+        at = np.rint(times / episode.blade.config.control_interval).astype(int)
         np.testing.assert_allclose(motion.displacement[:, :2, -1], factor * recording.tip[at], atol=1e-9)
         assert len(figure.frames) == len(times)
         lag = np.stack([frame.data[0].x for frame in figure.frames])
@@ -140,7 +139,7 @@ def test_both_blades_are_drawn_to_one_scale_and_coloured_on_one(page_content):
 def test_actuators_are_coloured_by_the_voltage_of_the_frame(page_content):
     episode = page_content.episode
     _, figure = blade_figures(episode)
-    at = np.rint(frame_times(episode) / episode.blade.control_interval).astype(int)
+    at = np.rint(frame_times(episode) / episode.blade.config.control_interval).astype(int)
     shades = np.stack([frame.data[1].intensity for frame in figure.frames]).reshape(len(at), 4, -1)
     np.testing.assert_allclose(shades[:, :, 0], episode.pair[1].volts[at], rtol=1e-6)
     assert np.all(shades == shades[:, :, :1])
@@ -246,5 +245,15 @@ def test_configuration_and_versions_are_told_without_the_name_of_the_host(page, 
 
 def test_natural_frequencies_are_marked_in_the_spectra(page_content):
     (figure,) = [plot.figure for plot in plots(page_content) if plot.name == "spectra"]
-    modes = build_plant(page_content.episode.blade).natural_frequencies / (2.0 * np.pi)
+    modes = page_content.episode.blade.truth.natural_frequencies / (2.0 * np.pi)
     np.testing.assert_allclose([shape.x0 for shape in figure.layout.shapes], modes)
+
+
+def test_the_solid_is_shown_as_far_as_the_beam_has_its_modes():
+    idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
+    episode = record_episode({"duration": 0.05, "scenario": "solid-20"}, 3, (idle, idle))
+    assert episode.without_control.states.shape[1] == 40
+    pair, factor = motions(episode)
+    shown = pair[0].displacement[:, :2, -1] / factor
+    true = episode.without_control.tip[pair[0].rows]
+    assert np.abs(shown - true).max() < 0.05 * np.abs(true).max()

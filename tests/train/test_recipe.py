@@ -4,9 +4,12 @@ from dataclasses import fields, is_dataclass
 
 import pytest
 
+from beamenv import BENCHMARK_SCENARIOS
 from train.learning.agents import AGENTS
+from train.learning.job import GENERALIST, Job
 from train.learning.recipe import load_recipe, named_recipe, parsed
 from train.learning.recipes import NAMES
+from train.learning.session import Budget
 
 WHOLE = 'agent = "ppo"\ntitle = "Brief"\nupdates = 3\n[settings]\nunits = 32\nlearning_rate = 1\n'
 
@@ -69,3 +72,10 @@ def test_unknown_names_and_files_are_told(tmp_path):
         named_recipe("dreamer")
     with pytest.raises(ValueError, match="absent.toml"):
         load_recipe(tmp_path / "absent.toml")
+
+
+def test_generalists_train_on_every_named_scenario_but_where_a_plant_file_moves():
+    recipe = named_recipe("gradient")
+    tasks = Job("gradient", recipe, GENERALIST, 0, Budget(updates=1), {}).tasks()
+    assert set(tasks) == set(BENCHMARK_SCENARIOS) - {"solid", "solid-20"}
+    assert set(Job("gradient", recipe, "solid", 0, Budget(updates=1), {}).tasks()) == {"solid"}

@@ -108,7 +108,7 @@ def measured(job: Job) -> Cell:
 
 def _measured(job: Job) -> Cell:
     blades = opened(job.setting)
-    controller = job.source.build(blades.envs.unwrapped.task.design)
+    controller = job.source.build(blades.envs.unwrapped.task)
     uncontrolled = np.nansum(blades.reference.cost, axis=0)
     if not uncontrolled.all():
         raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")

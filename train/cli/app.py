@@ -105,7 +105,7 @@ def evaluate(
 
         arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
-        law = chosen(controller, envs.unwrapped.task.design, scenario, trained_seed)
+        law = chosen(controller, envs.unwrapped.task, scenario, trained_seed)
         evaluation = baselines.evaluate(law, envs, held_out(seeds))
     if as_json:
         print_json(evaluation.to_dict())

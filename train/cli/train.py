@@ -15,7 +15,7 @@ from train.learning.recipes import NAMES
 
 def train(
     agent: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe.")],
-    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all named ones at once.")] = "nominal",
+    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all named ones but the solids.")] = "nominal",
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
     updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of the training.")] = 0,

@@ -85,7 +85,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
         plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)
         agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
-        laws: dict[str, Any] = {name: named(name).build(envs.unwrapped.task.design) for name in CLASSICAL}
+        laws: dict[str, Any] = {name: named(name).build_for(envs.unwrapped.task) for name in CLASSICAL}
         evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
     finally:
         envs.close()

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from baselines import Controller
-from beamenv import Design
+from beamenv.task import Task
 from train.controllers.models import fitted, load_model
 from train.controllers.named import NamedController
 from train.controllers.policy_files import load_policy
@@ -18,8 +18,8 @@ from train.shared.digests import digest
 class Source(Protocol):
     """What a controller is made from, in whichever process."""
 
-    def build(self, design: Design) -> Controller:
-        """The controller for a design; ``ValueError`` says why there is none."""
+    def build(self, task: Task) -> Controller:
+        """The controller for a task; ``ValueError`` says why there is none."""
         ...
 
     def fingerprint(self) -> str:
@@ -33,9 +33,9 @@ class Classical:
 
     controller: NamedController
 
-    def build(self, design: Design) -> Controller:
-        """From the design plant."""
-        return self.controller.build(design)
+    def build(self, task: Task) -> Controller:
+        """From the design plant; a bound that is told the truth, from the true one."""
+        return self.controller.build_for(task)
 
     def fingerprint(self) -> str:
         """Of its file."""
@@ -48,9 +48,9 @@ class Trained:
 
     folder: Path
 
-    def build(self, design: Design) -> Controller:
+    def build(self, task: Task) -> Controller:
         """The agent, within the drive limits of this design; refused if it was trained on other plants."""
-        return load_policy(self.folder, design.plant)
+        return load_policy(self.folder, task.design_plant)
 
     def fingerprint(self) -> str:
         """Of its weights and what is said of them."""
@@ -63,9 +63,9 @@ class ModelFile:
 
     path: Path
 
-    def build(self, design: Design) -> Controller:
+    def build(self, task: Task) -> Controller:
         """The model, shown what it was trained to see."""
-        return fitted(load_model(self.path), design.plant)
+        return fitted(load_model(self.path), task.design_plant)
 
     def fingerprint(self) -> str:
         """Of the file."""
@@ -78,9 +78,9 @@ class Given:
 
     controller: Any
 
-    def build(self, design: Design) -> Controller:
+    def build(self, task: Task) -> Controller:
         """The object itself, or a model of Stable-Baselines3 shown what it was trained to see."""
-        return fitted(self.controller, design.plant)
+        return fitted(self.controller, task.design_plant)
 
     def fingerprint(self) -> str:
         """Empty: what an object will do nobody knows beforehand, so its cells are measured anew."""

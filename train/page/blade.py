@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import NDArray
 
-from beamenv.blade.build import build_beam, displacement_operator
+from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.shape import Skin, body, edges, end_triangles, magnification, patch, side_triangles
 from beamenv.patches.layout import ACTUATOR_WALL
@@ -55,8 +55,8 @@ def frame_times(episode: RecordedEpisode) -> Array:
 
 def motions(episode: RecordedEpisode) -> tuple[list[Motion], float]:
     """The pair with the displacements that are drawn, and their common magnification."""
-    blade, times = episode.blade, frame_times(episode)
-    operator = displacement_operator(blade, _stations(blade))
+    blade, times = episode.blade.config, frame_times(episode)
+    operator = episode.blade.displacement_operator(_stations(blade))
     rows = [np.searchsorted(recording.time, times).clip(max=len(recording.time) - 1) for recording in episode.pair]
     true = [np.einsum("dkn,fn->fdk", operator, each.states[row]) for each, row in zip(episode.pair, rows, strict=True)]
     factor = magnification(
@@ -69,8 +69,8 @@ def blade_figures(episode: RecordedEpisode) -> tuple[go.Figure, go.Figure]:
     """The pair, each with one frame for each of ``frame_times``, named "0", "1", …; same axes, same magnification."""
     pair, _ = motions(episode)
     reach = max(float(np.abs(motion.displacement[:, :2]).max()) for motion in pair)
-    limit = float(np.abs(episode.blade.voltage_limits).max())
-    left, right = (_figure(episode.blade, motion, reach, limit) for motion in pair)
+    limit = float(np.abs(episode.blade.config.voltage_limits).max())
+    left, right = (_figure(episode.blade.config, motion, reach, limit) for motion in pair)
     return left, right
 
 

@@ -9,7 +9,6 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from scipy.signal import periodogram
 
-from beamenv.blade.build import build_plant
 from train.figures import screen
 from train.figures.figure import Curve, Look, Panel
 from train.figures.palette import NEUTRAL, PALETTE
@@ -28,7 +27,7 @@ def time_series(episode: RecordedEpisode) -> go.Figure:
         for row, displacement in enumerate(recording.tip.T):
             tips[row].append(Curve(1e3 * recording.time, 1e6 * displacement, recording.name, look=look, listed=row == 0))
     panels = [Panel(title, "", "µm", curves) for title, curves in zip(TIP_PANELS, tips, strict=True)]
-    low, high = (1.08 * limit for limit in episode.blade.voltage_limits)
+    low, high = (1.08 * limit for limit in episode.blade.config.voltage_limits)
     for recording in episode.controlled:
         curves = voltage_curves(1e3 * recording.time, recording.volts)
         panels.append(Panel(f"voltages, {recording.name}", "", "V", curves, y_limits=(low, high)))
@@ -38,13 +37,13 @@ def time_series(episode: RecordedEpisode) -> go.Figure:
 
 def spectra(episode: RecordedEpisode) -> go.Figure:
     """Amplitude spectral density of the tip in lag and flap, before and after; dotted: natural frequencies of the blade."""
-    modes = build_plant(episode.blade).natural_frequencies / (2.0 * np.pi)
+    modes = episode.blade.truth.natural_frequencies / (2.0 * np.pi)
     highest = 1.1 * float(modes[-1])
     tips: list[list[Curve]] = [[], []]
     for recording, look in _coloured(episode):
         name = f"{recording.name} ({'before' if recording is episode.without_control else 'after'})"
         for row, displacement in enumerate(recording.tip.T):
-            frequency, density = amplitude_density(displacement, episode.blade.control_interval)
+            frequency, density = amplitude_density(displacement, episode.blade.config.control_interval)
             shown = frequency <= highest
             tips[row].append(Curve(frequency[shown], 1e6 * density[shown], name, look=look, listed=row == 0))
     panels = [

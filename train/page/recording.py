@@ -14,7 +14,7 @@ import beamenv
 from baselines import Controller, no_control
 from baselines.design.controller import ControllerArgument, as_controller, name_of
 from baselines.evaluation.loop import instants
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.build import Blade
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,8 @@ class Recording:
 class RecordedEpisode:
     """One blade under the same loads and noise: without control, and under the two controllers that are shown side by side."""
 
-    blade: BladeConfig
+    blade: Blade
+    """The one that moves."""
     without_control: Recording
     pair: tuple[Recording, Recording]
     """Either may be ``without_control`` itself."""
@@ -82,6 +83,6 @@ def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controll
         idle = no_control(inner.plant)
         without = record(idle, env, seed)
         left, right = (without if getattr(law, "name", None) == idle.name else record(law, env, seed) for law in pair)
-        return RecordedEpisode(inner.task.config, without, (left, right))
+        return RecordedEpisode(inner.task.blade, without, (left, right))
     finally:
         env.close()

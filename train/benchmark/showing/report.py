@@ -117,5 +117,5 @@ def legend(table: BenchmarkTable) -> str:
         f"run by run. Brackets: {100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
         "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails, which makes J infinite, "
         f"or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort are means over episodes. Controllers of the kind "
-        "“bound” see the true state, which no sensor shows."
+        "“bound” see the true state, which no sensor shows, or are told the true plant."
     )

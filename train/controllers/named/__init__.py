@@ -2,6 +2,8 @@
 
 Such a module has a ``KIND``, one of ``KINDS``, and ``build(design)``, which returns the controller. A ``beamenv.Design`` is the
 design plant and its configuration: no controller knows what the true blade is like. ``lqg_load.py`` is called "lqg-load".
+
+A bound may say ``TOLD_THE_TRUTH = True``: its ``build`` is given the true plant and its configuration instead.
 """
 
 from __future__ import annotations
@@ -15,23 +17,32 @@ from types import MappingProxyType
 from baselines import Controller
 from beamenv import Design
 from beamenv.configuration import Refused
+from beamenv.task import Task
 
 KINDS = ("fixed", "scheduled", "predictive", "bound")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
-and those that see the true state, which no real blade offers: bounds, not rivals."""
+and those that see the true state or know the true plant, which no real blade offers: bounds, not rivals."""
 
 
 @dataclass(frozen=True, slots=True)
 class NamedController:
-    """A controller by its short name. Raises ValueError for another kind than those in ``KINDS``."""
+    """A controller by its short name. Raises ValueError for a kind that is not in ``KINDS`` and for a rival told the truth."""
 
     name: str
     kind: str
     build: Callable[[Design], Controller]
+    told_the_truth: bool = False
+    """Whether it is built from the true plant."""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise Refused(f"{self.name}.KIND", self.kind, f"one of {', '.join(KINDS)}")
+        if self.told_the_truth and self.kind != "bound":
+            raise Refused(f"{self.name}.TOLD_THE_TRUTH", True, "False for what is no bound")
+
+    def build_for(self, task: Task) -> Controller:
+        """The controller for a task: from its design, unless it is told the truth."""
+        return self.build(task.true_design if self.told_the_truth else task.design)
 
 
 def discover() -> Mapping[str, NamedController]:
@@ -42,7 +53,7 @@ def discover() -> Mapping[str, NamedController]:
         content = import_module(f"{__name__}.{module.name}")
         if missing := [wanted for wanted in ("KIND", "build") if not hasattr(content, wanted)]:
             raise ValueError(f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND and build(design).")
-        found[name] = NamedController(name, content.KIND, content.build)
+        found[name] = NamedController(name, content.KIND, content.build, getattr(content, "TOLD_THE_TRUTH", False))
     return MappingProxyType(found)
 
 

@@ -1,0 +1,136 @@
+"""A blade that moves as the modes of a plant file say, in place of the beam's.
+
+Damping (unless the file has its own), noise, drive limits, the sensors' range and the control interval are the configuration's. So
+is the weight of effort R: it is the energy that the patches store in the beam of the configuration, for a file has no stiffness to
+compute it from, and costs on both compare.
+
+A file has no mode shapes along the span either. What needs them is told by the beam's: pictures, the strain where the file has no
+rows for it, and the state in the coordinates of a design. Each mode of the file is taken for the one mode of the beam that answers
+like it (``counterparts``); one without such a counterpart is not seen in pictures, strains nothing, and no design has it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from beamenv.blade.build import Blade
+from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Refused
+from beamenv.plant.modal_plant import ModalPlant
+from beamenv.plant.plant import Plant
+from beamenv.plant.read_only import sealed
+from beamenv.plant.reduction import FullModel, ModalModel, reduced_plant
+
+Array = NDArray[np.float64]
+
+ALIKE = 0.8
+"""Least modal assurance criterion of a mode and its counterpart."""
+
+NEAR = 0.25
+"""Largest difference between their frequencies, relative to the beam's."""
+
+
+@dataclass(frozen=True)
+class GivenBlade(Blade):
+    """A blade of the configuration's electronics and patches that moves as ``model`` says; its design plant is the beam's."""
+
+    model: ModalPlant
+
+    @cached_property
+    def as_beam(self) -> Blade:
+        """The blade that the configuration describes."""
+        beam = Blade(self.config)
+        vars(beam).update(beam=self.beam, modal=self.modal, full=self.full)
+        return beam
+
+    @cached_property
+    def true_modal(self) -> ModalModel:
+        """The model's modes; the shapes, by the beam's trial functions, are those of their counterparts."""
+        gyroscopic = self.model.gyroscopic if self.config.gyroscopic else np.zeros_like(self.model.gyroscopic)
+        return ModalModel(self.model.natural_frequencies, self._shapes(), gyroscopic)
+
+    @cached_property
+    def truth(self) -> Plant:
+        """The plant that moves."""
+        config, model, omega = self.config, self.model, self.model.natural_frequencies
+        strain = self.full.strain @ self.true_modal.mode_shapes if model.strain is None else model.strain
+        plant = reduced_plant(
+            ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic),  # its trial functions are its modes
+            FullModel(model.actuation, model.charges, model.line_load, model.tip, strain),
+            np.diag(omega**2),
+            damping_ratio=config.damping_ratio if model.damping_ratio is None else model.damping_ratio,
+            effort_weight=config.effort_weight,
+            white_load=config.white_load,
+            sensor_noise_fraction=config.sensor_noise_fraction,
+            sensor_full_scale=float(self.plant.sensor_full_scale[0]),
+            voltage_limits=config.voltage_limits,
+            control_interval=config.control_interval,
+        )
+        return replace(plant, input_weight=self.plant.input_weight)
+
+    def changed(self, config: BladeConfig) -> GivenBlade:
+        """The same modes behind other electronics; ``ValueError`` for another beam, model, speed or other patches."""
+        for name in ("beam", "patches", "model", "speed"):
+            if getattr(config, name) != getattr(self.config, name):
+                raise ValueError(f"blade.{name} cannot be changed where a plant file says how the blade moves.")
+        beam, other = self.as_beam.changed(config), GivenBlade(config, self.model)
+        vars(other).update(beam=beam.beam, modal=beam.modal, full=beam.full)
+        return other
+
+    def _shapes(self) -> Array:
+        """(N, r)."""
+        modes = min(self.beam.space.size, max(self.config.modes, len(self.model.natural_frequencies)))
+        beam, full, model = self.as_beam.changed(replace(self.config, modes=modes)).modal, self.full, self.model
+        shapes = beam.mode_shapes
+        own = shapes.T @ full.forces, (full.charges @ shapes).T, shapes.T @ full.line_load, (full.tip @ shapes).T
+        given = model.actuation, model.charges.T, model.line_load, model.tip.T
+        signs = counterparts(_answers(given, own), model.natural_frequencies, _answers(own, own), beam.natural_frequencies)
+        return sealed(shapes @ signs)
+
+
+def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int | None) -> GivenBlade:
+    """The blade of a configuration that moves as the first modes of a model do.
+
+    Raises ``ValueError`` of one sentence, which names the ``source``, where they have not equally many patches or not the same
+    speed, and for more modes than the model has.
+    """
+    there = len(model.natural_frequencies)
+    if modes is not None and modes > there:
+        raise Refused("scenario.plants.modes", modes, f"None or at most the {there} that the plant {source!r} has")
+    patches, length = config.patches, config.beam.length
+    wanted = 1 if patches.ganged else len(patches.actuator_positions(length)), len(patches.sensor_positions(length))
+    has = model.actuation.shape[1], len(model.charges)
+    if has != wanted:
+        raise ValueError(
+            f"scenario.plants.truth is {source!r}, of {has[0]} voltages and {has[1]} sensors, but must have as many as the blade, "
+            f"{wanted[0]} and {wanted[1]}."
+        )
+    if model.speed is not None and model.speed != config.speed:
+        raise Refused("blade.speed", config.speed, f"that of the plant {source!r}, {model.speed:g} rad/s")
+    return GivenBlade(config, model.first(modes))
+
+
+def counterparts(given: Array, given_frequencies: Array, own: Array, own_frequencies: Array) -> Array:
+    """(d, r): ±1 where one of d modes is the counterpart of one of r given ones, which answer with the same or the opposite sign.
+
+    ``own`` (k, d) and ``given`` (k, r) are their answers. Pairs are those of the greatest sum of modal assurance criteria
+    (aᵀb)²/(aᵀa bᵀb) (Allemang and Brown 1982), each at least ``ALIKE``, of frequencies (d,) and (r,) that are ``NEAR``.
+    """
+    lengths = np.linalg.norm(own, axis=0)[:, None] * np.linalg.norm(given, axis=0)
+    likeness = np.divide(own.T @ given, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
+    near = np.abs(given_frequencies - own_frequencies[:, None]) <= NEAR * own_frequencies[:, None]
+    assurance = np.where(near & (likeness**2 >= ALIKE), likeness**2, 0.0)
+    pairs = linear_sum_assignment(assurance, maximize=True)
+    signs = np.zeros_like(assurance)
+    signs[pairs] = np.where(assurance[pairs] > 0.0, np.sign(likeness[pairs]), 0.0)
+    return signs
+
+
+def _answers(parts: tuple[Array, ...], like: tuple[Array, ...]) -> Array:
+    """(k, r): what modes do with voltages and loads, and what is seen of them, each over the largest of ``like``."""
+    return np.hstack([part / np.abs(other).max() for part, other in zip(parts, like, strict=True)]).T

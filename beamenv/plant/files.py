@@ -1,0 +1,92 @@
+"""Plant files: NumPy's ``.npz`` with an array for each field of a ``ModalPlant``, in its units; and those that ship, by name.
+
+A file needs ``natural_frequencies``, ``gyroscopic``, ``actuation``, ``charges``, ``line_load`` and ``tip``; it may have ``strain``,
+``damping_ratio``, ``speed`` and ``origin``.
+"""
+
+from __future__ import annotations
+
+import io
+import zlib
+from dataclasses import MISSING, fields
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from beamenv.configuration import Refused
+from beamenv.configuration.files import of_file
+from beamenv.configuration.sentence import unknown_field
+from beamenv.configuration.writing import write_whole
+from beamenv.plant import named
+from beamenv.plant.modal_plant import ModalPlant
+from beamenv.plant.named import ENDING, NAMES
+
+_FIELDS = [each.name for each in fields(ModalPlant)]
+_NEEDED = [each.name for each in fields(ModalPlant) if each.default is MISSING]
+
+
+def load_plant(source: str | Path) -> ModalPlant:
+    """The plant in a file, or the one that ships under a name.
+
+    Raises ``ValueError`` of one sentence, with the file's name in it, for a name that is none, a file that cannot be read, a key
+    that is missing or unknown, and whatever ``ModalPlant`` refuses.
+    """
+    if not isinstance(source, (str, Path)):
+        raise Refused("plant", source, f"one of {', '.join(NAMES)}, or the path of a {ENDING} file")
+    return _shipped(source) if isinstance(source, str) and source in NAMES else _read(Path(source))
+
+
+def save_plant(plant: ModalPlant, path: str | Path) -> None:
+    """Write a plant to a file, whole or not at all; ``ValueError`` for a name that does not end in ``.npz``."""
+    path = Path(path)
+    if path.suffix != ENDING:
+        raise Refused("path", str(path), f"a file that ends in {ENDING}")
+    content = {name: value for name in _FIELDS if (value := getattr(plant, name)) is not None and not _is_empty(value)}
+    file = io.BytesIO()
+    np.savez_compressed(file, **content)
+    write_whole(path, file.getvalue())
+
+
+def _is_empty(value: Any) -> bool:
+    return isinstance(value, str) and not value
+
+
+@lru_cache
+def _shipped(name: str) -> ModalPlant:
+    return _of_bytes(files(named).joinpath(f"{name}{ENDING}").read_bytes(), name)
+
+
+def _read(path: Path) -> ModalPlant:
+    if path.suffix != ENDING:
+        raise Refused("plant", str(path), f"one of {', '.join(NAMES)}, or the path of a {ENDING} file")
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+    return _of_bytes(content, str(path))
+
+
+def _of_bytes(content: bytes, name: str) -> ModalPlant:
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:  # which a single array is not
+            arrays = {key: archive[key] for key in archive.files}
+    except (ValueError, TypeError, EOFError, OSError, RuntimeError, BadZipFile, zlib.error) as error:
+        objects = "Object arrays" in str(error)
+        why = "it holds Python objects" if objects else "it is no .npz archive of arrays"
+        raise ValueError(f"file {name!r} cannot be read: {why}.") from None
+    with of_file(name):
+        return _of_arrays(arrays)
+
+
+def _of_arrays(arrays: dict[str, Any]) -> ModalPlant:
+    for key in arrays:
+        if key not in _FIELDS:
+            raise unknown_field("plant", key, _FIELDS)
+    for key in _NEEDED:
+        if key not in arrays:
+            raise ValueError(f"plant.{key} is missing.")
+    return ModalPlant(**{key: value.item() if value.ndim == 0 else value for key, value in arrays.items()})

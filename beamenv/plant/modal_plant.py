@@ -1,0 +1,147 @@
+"""A plant by its modes alone: what a finite-element program or a modal test of a blade can hand over, and what files hold.
+
+With the modal coordinates η, in √kg m, of r undamped modes of unit modal mass, at one rotor speed,
+
+    η̈ + (G + 2ζω) η̇ + ω² η = F u + P d,        q = C η,        tip = T η
+
+with u the actuator voltages (V), d the uniform line loads in lag and flap (N/m), q the charges of the sensors (C), whose rates
+are the sensed currents, and the tip displacement in lag and flap (m). Signs of modes are free.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.configuration import Count, Number, Refused, Text, checked
+from beamenv.plant.read_only import ReadOnly
+
+Array = NDArray[np.float64]
+
+SKEW_WITHIN = 1e-9
+"""Largest |G + Gᵀ| over the largest |G| or the first frequency: what is left of a skew matrix that a program has rounded."""
+
+_DAMPING = Number(ge=0.0, lt=1.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalPlant(ReadOnly):
+    """r modes, m actuators, p sensors. Raises ``ValueError`` of one sentence for a part that is missing or cannot be."""
+
+    natural_frequencies: Array
+    """ω (r,), rad/s, ascending: of the undamped modes without gyroscopic coupling."""
+    gyroscopic: Array
+    """G = ΨᵀGΨ (r, r), 1/s, skew."""
+    actuation: Array
+    """F = ΨᵀF (r, m), √kg m/s² per V."""
+    charges: Array
+    """C = C_sΨ (p, r), C per √kg m."""
+    line_load: Array
+    """P = ΨᵀP (r, 2), √kg m/s² per N/m: lag, flap."""
+    tip: Array
+    """T (2, r), m per √kg m: lag, flap."""
+    strain: Array | None = None
+    """(k, r), spanwise strain per √kg m at points of the outer face; None: not known."""
+    damping_ratio: Array | None = None
+    """ζ (r,), or one number for all; None: the blade's configuration says."""
+    speed: float | None = None
+    """rad/s: the rotor speed at which the modes were found; None: any."""
+    origin: str = ""
+    """Where the numbers come from, in words."""
+
+    def __post_init__(self) -> None:
+        r = _checked_frequencies(self)
+        for name, shape, what in (
+            ("gyroscopic", (r, r), "a row and a column for each mode"),
+            ("actuation", (r, None), "a row for each mode, a column for each actuator"),
+            ("charges", (None, r), "a row for each sensor, a column for each mode"),
+            ("line_load", (r, 2), "a row for each mode, columns for lag and flap"),
+            ("tip", (2, r), "rows for lag and flap, a column for each mode"),
+            ("strain", (None, r), "a row for each point, a column for each mode"),
+        ):
+            if name != "strain" or self.strain is not None:
+                _keep(self, name, _matrix(name, getattr(self, name), shape, what))
+        skew, largest = (np.abs(part).max() for part in (self.gyroscopic + self.gyroscopic.T, self.gyroscopic))
+        if skew > SKEW_WITHIN * max(largest, self.natural_frequencies[0]):
+            raise ValueError(
+                f"plant.gyroscopic differs from minus its transpose by {skew:.3g}, but must be skew: such forces do no work."
+            )
+        if self.damping_ratio is not None:
+            _keep(self, "damping_ratio", _checked_damping(self.damping_ratio, r))
+        if self.speed is not None:
+            _keep(self, "speed", checked("plant.speed", self.speed, Number(ge=0.0, unit="rad/s")))
+        _keep(self, "origin", checked("plant.origin", self.origin, Text()))
+        ReadOnly.__post_init__(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Of the same numbers and words."""
+        if not isinstance(other, ModalPlant):
+            return NotImplemented
+        return all(np.array_equal(getattr(self, each.name), getattr(other, each.name)) for each in fields(self))
+
+    def __hash__(self) -> int:
+        return hash(self.natural_frequencies.tobytes())
+
+    def first(self, modes: int | None) -> ModalPlant:
+        """The plant of the first modes alone; None: of all. ``ValueError`` for more than there are."""
+        if modes is None:
+            return self
+        modes = checked("modes", modes, Count(1, len(self.natural_frequencies)))
+        damping = self.damping_ratio
+        return replace(
+            self,
+            natural_frequencies=self.natural_frequencies[:modes],
+            gyroscopic=self.gyroscopic[:modes, :modes],
+            actuation=self.actuation[:modes],
+            charges=self.charges[:, :modes],
+            line_load=self.line_load[:modes],
+            tip=self.tip[:, :modes],
+            strain=None if self.strain is None else self.strain[:, :modes],
+            damping_ratio=None if damping is None else damping[:modes],
+        )
+
+
+def _keep(plant: ModalPlant, name: str, value: Any) -> None:
+    object.__setattr__(plant, name, value)
+
+
+def _checked_frequencies(plant: ModalPlant) -> int:
+    """How many there are."""
+    omega = _matrix("natural_frequencies", plant.natural_frequencies, (None,), "one for each mode")
+    if np.any(omega <= 0.0) or np.any(np.diff(omega) < 0.0):
+        raise Refused("plant.natural_frequencies", omega.tolist(), "positive numbers (rad/s) that ascend")
+    _keep(plant, "natural_frequencies", omega)
+    return len(omega)
+
+
+def _checked_damping(given: Any, modes: int) -> Array:
+    ratios = np.asarray(given)
+    if ratios.ndim == 0:
+        return np.full(modes, checked("plant.damping_ratio", ratios.item(), _DAMPING))
+    ratios = _matrix("damping_ratio", ratios, (modes,), "one for each mode, or be one number")
+    if np.any((ratios < 0.0) | (ratios >= 1.0)):
+        raise Refused("plant.damping_ratio", ratios.tolist(), f"each {_DAMPING.allowed}")
+    return ratios
+
+
+def _matrix(name: str, given: Any, shape: tuple[int | None, ...], what: str) -> Array:
+    """The numbers as float64, of the shape (None: one or more); ``ValueError`` for any others."""
+    try:
+        values = np.asarray(given)
+    except ValueError:  # rows of different lengths
+        values = np.asarray(None)
+    if values.dtype.kind not in "fiu":
+        raise Refused(f"plant.{name}", given, "an array of real numbers")
+    fits = values.ndim == len(shape) and all(
+        has > 0 and has == (want or has) for has, want in zip(values.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted = ", ".join("any" if want is None else str(want) for want in shape)
+        raise ValueError(f"plant.{name} has shape {values.shape}, but must have shape ({wanted}): {what}.")
+    if not np.isfinite(values).all():
+        wrong = np.argwhere(~np.isfinite(values))[0].tolist()
+        raise ValueError(f"plant.{name}{wrong} is {values[tuple(wrong)]}, but every number must be finite.")
+    return np.asarray(values, dtype=np.float64)

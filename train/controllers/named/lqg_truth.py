@@ -1,0 +1,14 @@
+"""LQG of the plant that really moves: what no rival can know. Where plants are drawn, of the one that they depart from."""
+
+from dataclasses import replace
+
+from baselines import Controller, lqg
+from beamenv import Design
+
+KIND = "bound"
+TOLD_THE_TRUTH = True
+
+
+def build(truth: Design) -> Controller:
+    """Filter and regulator from two discrete Riccati equations of the true plant."""
+    return replace(lqg(truth.plant), name="LQG (told the truth)")
