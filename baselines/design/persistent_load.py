@@ -27,8 +27,8 @@ class PersistentLoad:
 
     def model(self, interval: float) -> LoadModel:
         """Two states, the loads themselves in N/m, over a control interval in s."""
-        decay = float(np.exp(-interval / self.duration))
-        return LoadModel(decay * np.eye(2), np.eye(2), (1.0 - decay**2) * self.magnitude**2 * np.eye(2))
+        decay, forgotten = np.exp(-interval / self.duration), -np.expm1(-2.0 * interval / self.duration)
+        return LoadModel(decay * np.eye(2), np.eye(2), forgotten * self.magnitude**2 * np.eye(2))
 
 
 def with_persistent_load(held: SampledPlant, load: PersistentLoad) -> SampledPlant:

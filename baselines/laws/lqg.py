@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import expm
 
 from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController
@@ -16,7 +15,8 @@ from baselines.design.load_model import Load, with_load
 from baselines.design.persistent_load import PersistentLoad
 from baselines.design.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
 from baselines.design.weights import weighted
-from beamenv.plant.plant import Plant, SampledPlant, drive_limit, sample
+from beamenv.plant.hold import hold
+from beamenv.plant.plant import Plant, SampledPlant, sample
 
 _CONVERTER_STEP = 2.0**-15
 """Of full scale: a 16-bit converter's."""
@@ -82,13 +82,11 @@ def sampled_design(plant: Plant, *loads: Load | None) -> tuple[SampledPlant, Arr
 
 
 def _continuous(plant: Plant) -> LinearController:
-    E, n, p = plant.disturbance_input, len(plant.A), len(plant.C)
+    E, p = plant.disturbance_input, len(plant.C)
     _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
     _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
-    dynamics = np.zeros((n + p + plant.B.shape[1],) * 2)
-    scale = np.concatenate([np.ones(n), plant.sensor_full_scale, drive_limit(plant)])  # keeps the exponential well scaled
-    dynamics[:n] = np.hstack([plant.A - plant.B @ K - L @ plant.C, L, plant.B]) * scale
-    F, G, H = np.split(expm(dynamics * plant.control_interval)[:n] / scale, [n, n + p], axis=1)
+    F, inputs = hold(plant.A - plant.B @ K - L @ plant.C, np.hstack([L, plant.B]), plant.control_interval)
+    G, H = inputs[:, :p], inputs[:, p:]
     onward = F + H @ K
     return observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
 

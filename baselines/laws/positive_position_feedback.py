@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import block_diag, expm
+from scipy.linalg import block_diag
 from scipy.optimize import minimize
 
 from baselines.analysis.stationary import stationary_cost
@@ -17,6 +17,7 @@ from baselines.design.matrix import one_or_each
 from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
 from beamenv.configuration import Count, Number, checked
+from beamenv.plant.hold import hold
 from beamenv.plant.plant import Plant
 
 POSITIVE = Number(gt=0.0)
@@ -64,14 +65,14 @@ def positive_position_feedback(
 def _held_filters(frequencies: Array, damping: float, corner: float, interval: float) -> tuple[Array, Array]:
     """Transition (s, s) and input (s,) of one pair's states [charge; q_k, q̇_k/ω_k of each filter] under a held current."""
     size = 1 + 2 * len(frequencies)
-    dynamics = np.zeros((size + 1, size + 1))
-    dynamics[0, 0], dynamics[0, -1] = -corner, 1.0
+    dynamics = np.zeros((size, size))
+    dynamics[0, 0] = -corner
     for k, omega in enumerate(frequencies):
         at = 1 + 2 * k
         dynamics[at, at + 1] = dynamics[at + 1, 0] = omega
         dynamics[at + 1, at : at + 2] = -omega, -2.0 * damping * omega
-    held = expm(dynamics * interval)
-    return held[:size, :size], held[:size, -1]
+    transition, held_input = hold(dynamics, np.eye(size, 1), interval)
+    return transition, held_input[:, 0]
 
 
 def _law(plant: Plant, pairs: Array, filters: tuple[Array, Array], gains: Array) -> LinearController:

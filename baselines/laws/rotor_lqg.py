@@ -49,9 +49,9 @@ class RotorHarmonics:
         return reduce(add, (self._oscillator(order * self.speed * interval, interval) for order in self.orders))
 
     def _oscillator(self, angle: float, interval: float) -> LoadModel:
-        decay = float(np.exp(-interval / self.duration))
+        decay, forgotten = np.exp(-interval / self.duration), -np.expm1(-2.0 * interval / self.duration)
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        noise = (1.0 - decay**2) * self.magnitude**2 * np.eye(4)
+        noise = forgotten * self.magnitude**2 * np.eye(4)
         return LoadModel(decay * block_diag(turn, turn), block_diag(np.eye(1, 2), np.eye(1, 2)), noise)
 
 

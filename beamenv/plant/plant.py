@@ -11,13 +11,15 @@ with u the actuator voltages (V), d the uniform line loads in lag and flap (N/m)
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
+from beamenv.configuration import Number, checked
+from beamenv.plant.hold import hold_all_with_cost, hold_with_cost
 from beamenv.plant.poles import poles_of_sampled
 from beamenv.plant.read_only import ReadOnly, sealed
 
@@ -156,33 +158,49 @@ def _range(first: float, last: float) -> str:
 
 
 def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
-    """Discretise exactly under zero-order hold, cost included (Van Loan, IEEE Trans. Automatic Control 23, 1978).
+    """Discretise exactly under zero-order hold, cost included, over any interval (``beamenv.plant.hold``).
 
-    ``interval`` in s defaults to the plant's own control interval.
+    ``interval`` in s defaults to the plant's own control interval. Raises ValueError for one that is not positive and finite, and
+    where what is unstable in the plant, or no number, leaves no finite state at its end.
     """
-    interval = plant.control_interval if interval is None else interval
-    n, m = plant.B.shape
-    drive = drive_limit(plant)  # voltages in units of their limit keep the exponential well scaled
-    scale = np.concatenate([np.ones(n), drive, np.ones(plant.disturbance_input.shape[1])])
-    size = len(scale)
-    dynamics = np.zeros((size, size))
-    dynamics[:n] = np.hstack([plant.A, plant.B, plant.disturbance_input]) * scale
-    weight = np.zeros((size, size))
-    weight[:n, :n] = plant.state_weight
-    weight[n : n + m, n : n + m] = plant.input_weight * np.outer(drive, drive)
-    blocks = np.zeros((2 * size, 2 * size))
-    blocks[:size, :size], blocks[:size, size:], blocks[size:, size:] = -dynamics.T, weight, dynamics
-    exponential = expm(blocks * interval)
-    transition = exponential[size:, size:]
-    cost = transition.T @ exponential[:size, size:] / np.outer(scale, scale)
-    held = transition[:n] / scale
+    interval = _checked_interval(plant, interval)
+    with np.errstate(over="ignore", invalid="ignore"):  # said below
+        return _sampled(plant, hold_with_cost(*_problem(plant), interval), interval)
+
+
+def sample_all(plants: Sequence[Plant], interval: float | None = None) -> list[SampledPlant]:
+    """As ``sample`` each plant, to the last bit, of plants of one size that have one control interval or are given one."""
+    interval = _checked_interval(plants[0], interval)
+    A, inputs, weight = (np.array(parts) for parts in zip(*map(_problem, plants), strict=True))
+    with np.errstate(over="ignore", invalid="ignore"):
+        held = hold_all_with_cost(A, inputs, weight, interval)
+    return [_sampled(plant, each, interval) for plant, *each in zip(plants, *held, strict=True)]
+
+
+def _checked_interval(plant: Plant, interval: float | None) -> float:
+    return checked("interval", plant.control_interval if interval is None else interval, Number(gt=0.0, unit="s"))
+
+
+def _problem(plant: Plant) -> tuple[Array, Array, Array]:
+    """A, [B E] and the running cost as a form in [x; u; d]: what is to be held over an interval."""
+    (n, m), inputs = plant.B.shape, np.hstack([plant.B, plant.disturbance_input])
+    weight = np.zeros((n + inputs.shape[1],) * 2)
+    weight[:n, :n], weight[n : n + m, n : n + m] = plant.state_weight, plant.input_weight
+    return plant.A, inputs, weight
+
+
+def _sampled(plant: Plant, held: Sequence[Array], interval: float) -> SampledPlant:
+    A, B, cost = held
+    m = plant.B.shape[1]
+    if not all(np.isfinite(part).all() for part in held):
+        raise ValueError(f"interval = {interval!r} s leaves the plant without a finite state: it is unstable, or holds no numbers")
     return SampledPlant(
-        A=held[:, :n],
-        B=held[:, n : n + m],
+        A=A,
+        B=B[:, :m],
         C=plant.C,
         D=plant.D,
-        disturbance_input=held[:, n + m :],
-        cost=sealed(0.5 * (cost + cost.T)),
+        disturbance_input=B[:, m:],
+        cost=cost,
         process_noise=sealed(plant.process_noise / interval),
         sensor_noise=sealed(plant.sensor_noise / interval),
         interval=interval,

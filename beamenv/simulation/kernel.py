@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant, SampledPlant, sample, sample_all
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,13 +43,18 @@ class Operators:
     @classmethod
     def from_plant(cls, plant: Plant) -> Operators:
         """Operators of a plant held over its control interval, in its own coordinates, as float64 NumPy arrays."""
-        held = sample(plant)
+        return cls._plain(plant, _fused(plant, sample(plant)), ())
+
+    @classmethod
+    def from_plants(cls, plants: Sequence[Plant]) -> Operators:
+        """Those of several plants of one size and one control interval; the arrays have an axis for them."""
+        fused = np.stack([_fused(plant, held) for plant, held in zip(plants, sample_all(plants), strict=True)])
+        return cls._plain(plants[0], fused, (len(plants),))
+
+    @classmethod
+    def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
         n, p = len(plant.A), len(plant.C)
-        step = np.hstack([held.A, held.B, held.disturbance_input])
-        output = plant.C @ step
-        output[:, n : n + plant.B.shape[1]] += plant.D  # read while the voltage is still held
-        fused = np.hstack([step.T, output.T, (plant.tip_displacement @ step).T, held.cost])
-        return cls(np.ascontiguousarray(fused), np.zeros(0), states=n, outputs=p, reads=n, tips=n + p, crossing=0)
+        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, reads=n, tips=n + p, crossing=0)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
@@ -58,6 +64,15 @@ class Operators:
     def pick(self, index: Any) -> Operators:
         """The operators of one plant of several, or of one for each blade."""
         return replace(self, fused=self.fused[index], weights=self.weights[index])
+
+
+def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
+    step = np.hstack([held.A, held.B, held.disturbance_input])
+    n, m = plant.B.shape
+    output = plant.C @ step
+    output[:, n : n + m] += plant.D  # read while the voltages are still held
+    fused = np.hstack([step.T, output.T, (plant.tip_displacement @ step).T, held.cost])
+    return np.ascontiguousarray(fused)
 
 
 def advance(

@@ -88,14 +88,10 @@ class Bank(ReadOnly):
     def gather(cls, plant: Plant, plants: Sequence[Plant], speeds: Array, to_design: Array | None) -> Bank:
         """The bank of several plants, in their own coordinates."""
         units = [normalised(each) for each in plants]
-        parts = [Operators.from_plant(unit) for unit in units]
+        operators = Operators.from_plants(units)
         return cls(
             plant=plant,
-            operators=replace(
-                parts[0],
-                fused=sealed(np.stack([part.fused for part in parts])),
-                weights=sealed(np.stack([part.weights for part in parts])),
-            ),
+            operators=replace(operators, fused=sealed(operators.fused), weights=sealed(operators.weights)),
             axes=sealed(np.tile(np.eye(len(plant.A)), (len(plants), 1, 1))),
             readout=sealed(np.stack([unit.C.T for unit in units])),
             tip=sealed(np.stack([each.tip_displacement.T for each in plants])),
