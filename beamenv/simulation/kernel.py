@@ -68,10 +68,7 @@ class Operators:
 
 def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
     step = np.hstack([held.A, held.B, held.disturbance_input])
-    n, m = plant.B.shape
-    output = plant.C @ step
-    output[:, n : n + m] += plant.D  # read while the voltages are still held
-    fused = np.hstack([step.T, output.T, (plant.tip_displacement @ step).T, held.cost])
+    fused = np.hstack([step.T, (plant.C @ step).T, (plant.tip_displacement @ step).T, held.cost])
     return np.ascontiguousarray(fused)
 
 

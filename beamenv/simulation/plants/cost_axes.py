@@ -38,14 +38,10 @@ def without_cost(plant: Plant) -> int:
 def output_states(plant: Plant) -> int | None:
     """The first of neighbouring states that the outputs are, one each; None where outputs are others."""
     (p, n), b = plant.C.shape, plant.blade_states
-    if np.any(plant.D):
-        return None
     return next((k for k in range(b, n - p + 1) if np.array_equal(plant.C, np.eye(p, n, k))), None)
 
 
-def in_axes(
-    operators: Operators, axes: Array, following: Array, blade_states: int, costless: int, reads: int | None
-) -> Operators:
+def in_axes(operators: Operators, axes: Array, following: Array, blade_states: int, costless: int, reads: int | None) -> Operators:
     """Operators of ``Operators.from_plant`` from states in ``axes`` (…, n, n) to states in the ``following`` axes.
 
     ``blade_states`` of them are the blade's, so many after them are ``costless``, and outputs are the states from ``reads`` on, if
