@@ -151,7 +151,9 @@ def test_the_residual_current_is_the_rate_of_the_voltage_through_the_filter():
     plant, blade = TRUE.truth, TRUE
     full, stiffness, modal = blade.full, blade.beam.matrices.stiffness(200.0), blade.true_modal
     static = full.charges @ np.linalg.solve(stiffness, full.forces)
-    residual = static_residual(static, full.charges @ modal.mode_shapes, modal.mode_shapes.T @ full.forces, modal.natural_frequencies)
+    residual = static_residual(
+        static, full.charges @ modal.mode_shapes, modal.mode_shapes.T @ full.forces, modal.natural_frequencies
+    )
     time, pole, cutoff = 20e-6, 2.0 * np.pi * 7500.0, 2.0 * np.pi * 800.0
     n, m = plant.B.shape
     shown = plant.C @ expm(time * np.block([[plant.A, plant.B], [np.zeros((m, n + m))]]))[:n, n:]
