@@ -85,7 +85,9 @@ WALLS_OFF = {60: (-9.5, -4.3), 75: (-10.6, -6.5)}
 
 @pytest.mark.parametrize("angle", WALLS_OFF)
 def test_thick_box_has_the_bending_stiffness_of_finite_elements(angle):
-    ours, walls = (np.diag(THICK_BOX.stiffness(cus(angle), **world)) for world in ({}, {"model": "thesis", "shear_flow": "consistent"}))
+    ours, walls = (
+        np.diag(THICK_BOX.stiffness(cus(angle), **world)) for world in ({}, {"model": "thesis", "shear_flow": "consistent"})
+    )
     assert 100.0 * (walls / ours - 1.0)[[2, 1]] == pytest.approx(WALLS_OFF[angle], abs=0.2)
 
 
