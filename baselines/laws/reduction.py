@@ -18,8 +18,8 @@ def reduced(plant: Plant, law: LinearController, order: int) -> LinearController
 
     In the closed loop under the plant's white loads and sensor noise the memory has a covariance, and each direction of it a say in
     the cost that follows. Directions in which the product of the two is least are left out (Wortelboer and Bosgra 1994; what
-    Moore's balanced truncation is to a plant by itself). Raises ``ValueError`` for an order that is not below the law's, for a law whose
-    loop is unstable, and where the loop of the result is.
+    Moore's balanced truncation is to a plant by itself). Raises ``ValueError`` for an order that is not below the law's, for a law
+    whose loop is unstable, and where the loop of the result is.
     """
     if not 0 < order < law.order:
         raise ValueError(f"order = {order!r} must be a whole number from 1 to {law.order - 1}, below that of {law.name}.")
