@@ -22,7 +22,17 @@ from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.simulation.motion import Motion
-from beamenv.task import INFO, Task, checked_action, checked_task, information, reset_options, resolve_task, steady_information
+from beamenv.task import (
+    INFO,
+    STEADY_INFO,
+    Task,
+    checked_action,
+    checked_task,
+    information,
+    reset_options,
+    resolve_task,
+    steady_information,
+)
 
 if TYPE_CHECKING:
     from beamenv.rendering import BatchRenderer
@@ -180,9 +190,10 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     def _begun(self, rows: Rows) -> dict[str, Any]:
         """What info tells besides of ``rows`` whose episode begins, with Gymnasium's masks."""
-        told = steady_information(self._blades.steady, self._notes.copy())
+        steady, notes = np.zeros((self.num_envs, len(STEADY_INFO))), np.full(self.num_envs, None, dtype=object)
         mask = np.zeros(self.num_envs, dtype=np.bool_)
-        mask[rows] = True
+        steady[rows], notes[rows], mask[rows] = self._blades.steady[rows], self._notes[rows], True
+        told = steady_information(steady, notes)
         return {**told, **{f"_{name}": mask.copy() for name in told}}
 
     def _seed(self, seed: int | Sequence[int] | None) -> None:

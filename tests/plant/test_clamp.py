@@ -48,8 +48,8 @@ def test_in_the_thesis_model_it_is_not():
 
 def test_a_blade_with_patches_nearer_than_its_depth_says_so():
     assert clamp_note(PRESETS["thesis"]) == (
-        "Nearer to the clamp than the section is deep (0.0508 m): actuator at 0 m, sensor at 0 m; what patches do there differs from "
-        "solid elements by up to 9 %, mode by mode."
+        "Nearer to the clamp than the section is deep (0.0508 m): actuator at 0 m, sensor at 0 m; what patches do there differs "
+        "from solid elements by up to 9 %, mode by mode."
     )
     assert "110 %" in clamp_note(blade_config("thesis", {"model": "thesis"}))
     assert clamp_note(PRESETS["sound-blade"]) == ""

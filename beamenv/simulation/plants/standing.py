@@ -25,12 +25,11 @@ def about_steady_states(bank: Bank, blades: Sequence[Blade]) -> Bank:
 
     ``ValueError`` for a blade whose steady state alone is beyond its strain limit.
     """
-    bank = replace(bank, steady=np.array([astuple(blade.full.steady) for blade in blades]))
-    if blades[0].config.strain_limit == "vibration":
-        return bank
     for blade in blades:
-        check_strain(blade.full.steady.strain, blade.config.speed)
-    return replace(bank, standing=np.stack([blade.full.steady_strain for blade in blades]))
+        if blade.config.strain_limit == "total":
+            check_strain(blade.full.steady.strain, blade.config.speed)
+    steady = np.array([astuple(blade.full.steady) for blade in blades])
+    return replace(bank, steady=steady, standing=np.stack([blade.standing_strain for blade in blades]))
 
 
 def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
