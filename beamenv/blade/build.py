@@ -73,7 +73,11 @@ class Blade:
         config, plant = self.config, self.plant
         if _is_thesis(config) and config.truth_modes in (None, config.modes):
             return plant
-        bare = self._reduced(self.true_modal, float(plant.sensor_full_scale[0]))
+        return self._behind_electronics(self._reduced(self.true_modal, float(plant.sensor_full_scale[0])))
+
+    def _behind_electronics(self, bare: Plant) -> Plant:
+        """The plant with what the modes that it leaves out bring about at once, behind amplifiers and filters; the thesis has none."""
+        config = self.config
         if _is_thesis(config):
             return bare
         electronics, rate = config.electronics, 2.0 * np.pi / config.control_interval

@@ -1,8 +1,8 @@
 """A blade that moves as the modes of a plant file say, in place of the beam's.
 
-Damping (unless the file has its own), noise, drive limits, the sensors' range and the control interval are the configuration's. So
-is the weight of effort R: it is the energy that the patches store in the beam of the configuration, for a file has no stiffness to
-compute it from, and costs on both compare.
+Damping (unless the file has its own), noise, amplifiers and filters, drive limits, the sensors' range and the control interval are
+the configuration's. So is the weight of effort R: it is the energy that the patches store in the beam of the configuration, for a
+file has no stiffness to compute it from, and costs on both compare. Nor is there a static share of modes that are not in the file.
 
 A file has no mode shapes along the span either. What needs them is told by the beam's: pictures, the strain where the file has no
 rows for it, and the state in the coordinates of a design. Each mode of the file is taken for the one mode of the beam that answers
@@ -71,7 +71,11 @@ class GivenBlade(Blade):
             voltage_limits=config.voltage_limits,
             control_interval=config.control_interval,
         )
-        return replace(plant, input_weight=self.plant.input_weight)
+        return self._behind_electronics(replace(plant, input_weight=self.plant.input_weight))
+
+    def _residual(self, rows: Array) -> Array:
+        """(k, m) per V: nothing, for a file does not tell what its further modes would bring about."""
+        return np.zeros((len(rows), self.model.actuation.shape[1]))
 
     def changed(self, config: BladeConfig) -> GivenBlade:
         """The same modes behind other electronics; ``ValueError`` for another beam, model, speed or other patches."""

@@ -135,9 +135,7 @@ class Bank(ReadOnly):
         return cls(
             plant=first.plant,
             others=tuple(bank.plant for bank in banks[1:]),
-            operators=replace(
-                first.operators, fused=sealed(np.concatenate(fused)), weights=sealed(np.concatenate(weights))
-            ),
+            operators=replace(first.operators, fused=sealed(np.concatenate(fused)), weights=sealed(np.concatenate(weights))),
             to_design=None if any(view is None for view in views) else np.concatenate(views),  # type: ignore[arg-type]
             start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
             runs=first.runs,

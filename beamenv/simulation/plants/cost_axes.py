@@ -43,9 +43,7 @@ def output_states(plant: Plant) -> int | None:
     return next((k for k in range(b, n - p + 1) if np.array_equal(plant.C, np.eye(p, n, k))), None)
 
 
-def in_axes(
-    operators: Operators, axes: Array, following: Array, blade_states: int, costless: int, reads: int | None
-) -> Operators:
+def in_axes(operators: Operators, axes: Array, following: Array, blade_states: int, costless: int, reads: int | None) -> Operators:
     """Operators of ``Operators.from_plant`` from states in ``axes`` (…, n, n) to states in the ``following`` axes.
 
     ``blade_states`` of them are the blade's, so many after them are ``costless``, and outputs are the states from ``reads`` on, if
