@@ -37,9 +37,9 @@ NEAR = 0.25
 
 @dataclass(frozen=True)
 class GivenBlade(Blade):
-    """A blade of the configuration's electronics and patches that moves as ``model`` says; its design plant is the beam's."""
+    """A blade of the configuration's electronics and patches that moves as the plant ``given`` says; its design plant is the beam's."""
 
-    model: ModalPlant
+    given: ModalPlant
 
     @cached_property
     def as_beam(self) -> Blade:
@@ -50,14 +50,14 @@ class GivenBlade(Blade):
 
     @cached_property
     def true_modal(self) -> ModalModel:
-        """The model's modes; the shapes, by the beam's trial functions, are those of their counterparts."""
-        gyroscopic = self.model.gyroscopic if self.config.gyroscopic else np.zeros_like(self.model.gyroscopic)
-        return ModalModel(self.model.natural_frequencies, self._shapes(), gyroscopic)
+        """The modes of the file; the shapes, by the beam's trial functions, are those of their counterparts."""
+        gyroscopic = self.given.gyroscopic if self.config.gyroscopic else np.zeros_like(self.given.gyroscopic)
+        return ModalModel(self.given.natural_frequencies, self._shapes(), gyroscopic)
 
     @cached_property
     def truth(self) -> Plant:
         """The plant that moves."""
-        config, model, omega = self.config, self.model, self.model.natural_frequencies
+        config, model, omega = self.config, self.given, self.given.natural_frequencies
         strain = self.full.strain @ self.true_modal.mode_shapes if model.strain is None else model.strain
         plant = reduced_plant(
             ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic),  # its trial functions are its modes
@@ -75,21 +75,21 @@ class GivenBlade(Blade):
 
     def _residual(self, rows: Array) -> Array:
         """(k, m) per V: nothing, for a file does not tell what its further modes would bring about."""
-        return np.zeros((len(rows), self.model.actuation.shape[1]))
+        return np.zeros((len(rows), self.given.actuation.shape[1]))
 
     def changed(self, config: BladeConfig) -> GivenBlade:
         """The same modes behind other electronics; ``ValueError`` for another beam, model, speed or other patches."""
         for name in ("beam", "patches", "model", "speed"):
             if getattr(config, name) != getattr(self.config, name):
                 raise ValueError(f"blade.{name} cannot be changed where a plant file says how the blade moves.")
-        beam, other = self.as_beam.changed(config), GivenBlade(config, self.model)
+        beam, other = self.as_beam.changed(config), GivenBlade(config, self.given)
         vars(other).update(beam=beam.beam, modal=beam.modal, full=beam.full)
         return other
 
     def _shapes(self) -> Array:
         """(N, r)."""
-        modes = min(self.beam.space.size, max(self.config.modes, len(self.model.natural_frequencies)))
-        beam, full, model = self.as_beam.changed(replace(self.config, modes=modes)).modal, self.full, self.model
+        modes = min(self.beam.space.size, max(self.config.modes, len(self.given.natural_frequencies)))
+        beam, full, model = self.as_beam.changed(replace(self.config, modes=modes)).modal, self.full, self.given
         shapes = beam.mode_shapes
         own = shapes.T @ full.forces, (full.charges @ shapes).T, shapes.T @ full.line_load, (full.tip @ shapes).T
         given = model.actuation, model.charges.T, model.line_load, model.tip.T
