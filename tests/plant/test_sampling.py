@@ -1,6 +1,7 @@
 """The sampled plant against exponentials in eighty digits, an ODE solver and Lyapunov's equation."""
 
 from dataclasses import replace
+from itertools import product
 
 import mpmath
 import numpy as np
@@ -116,25 +117,26 @@ def check(held, step, cost):
     np.testing.assert_array_equal(held.cost, held.cost.T)
 
 
-@pytest.mark.parametrize("exponent", EXPONENTS)
-@pytest.mark.parametrize(("modes", "interval"), [*((modes, interval) for modes in (1, 4) for interval in INTERVALS), (60, 1e-3)])
-def test_step_and_cost_are_exact_for_any_damping_over_an_interval(plant, exponent, modes, interval):
+@pytest.mark.parametrize(
+    ("modes", "interval", "exponent"),
+    [*product((1, 4), INTERVALS, EXPONENTS), *product((60,), (1e-3,), EXPONENTS[::2])],
+)
+def test_step_and_cost_are_exact_for_any_damping_over_an_interval(plant, modes, interval, exponent):
     modal, sets = coupled_modes(plant, modes, 0.005, exponent / 0.005 / interval)
     check(sample(modal, interval), *exact(modal, sets, interval))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("exponent", [10.0**k for k in range(-6, 4)])
-@pytest.mark.parametrize("damping_ratio", [1e-4, 0.005, 0.3, 3.0])
-@pytest.mark.parametrize("modes", [2, 7, 22, 60])
+@pytest.mark.parametrize("damping_ratio", [1e-4, 0.005, 3.0])
+@pytest.mark.parametrize("modes", [7, 60])
 def test_step_and_cost_are_exact_for_any_modes_damping_and_interval(plant, exponent, damping_ratio, modes):
     for interval in INTERVALS:
         modal, sets = coupled_modes(plant, modes, damping_ratio, exponent / damping_ratio / interval)
         check(sample(modal, interval), *exact(modal, sets, interval))
 
 
-@pytest.mark.parametrize("interval", [1e-6, 5e-4, 1.0])
-@pytest.mark.parametrize("time_constant", [1e-4, 1e-6])
+@pytest.mark.parametrize(("interval", "time_constant"), [(1e-6, 1e-6), (5e-4, 1e-4), (5e-4, 1e-6), (1.0, 1e-6)])
 def test_amplifiers_and_filters_far_faster_than_the_blade_do_no_harm(plant, interval, time_constant):
     """Two lagging amplifiers drive the modes, a second-order filter in companion form reads them, with numbers up to 10¹²."""
     modal, [states] = coupled_modes(plant, 4, 0.005, 2700.0)
