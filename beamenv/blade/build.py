@@ -76,7 +76,7 @@ class Blade:
         return self._behind_electronics(self._reduced(self.true_modal, float(plant.sensor_full_scale[0])))
 
     def _behind_electronics(self, bare: Plant) -> Plant:
-        """The plant with what the modes that it leaves out bring about at once, behind amplifiers and filters; the thesis has none."""
+        """The plant behind amplifiers and filters, with the static share of modes that it leaves out; none of it in the thesis."""
         config = self.config
         if _is_thesis(config):
             return bare

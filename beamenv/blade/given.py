@@ -37,7 +37,7 @@ NEAR = 0.25
 
 @dataclass(frozen=True)
 class GivenBlade(Blade):
-    """A blade of the configuration's electronics and patches that moves as the plant ``given`` says; its design plant is the beam's."""
+    """A blade of the configuration that moves as the plant ``given`` says; its design plant is the beam's."""
 
     given: ModalPlant
 

@@ -5,8 +5,9 @@
 Each voltage u passes an amplifier of one pole a; each current i passes an anti-aliasing filter. C_r is the charge per volt that the
 modes left out take up, C_s K⁻¹ F less the share of those retained: they follow the voltage at once, and their current is its rate.
 The tip is displaced by T_r v likewise. Where the amplifier is switched off the voltage jumps, its rate is no function, and the
-charge would pass in no time: there is then no residual at all. Loads are left without one: the modes beyond the retained ones
-follow them as well, but uniform loads hardly reach these.
+charge would pass in no time: there is then no residual at all. Where the filter is switched off the residual current, over after
+some 1/a, is not shown: a reading at the end of an interval has e^{−aΔt} of it, 6·10⁻¹¹ at the default. Loads are left without a
+residual: the modes beyond the retained ones follow them as well, but uniform loads hardly reach these.
 
 States are [blade; filters, sensor by sensor; amplifiers], filters in units of the sensors' full scale, amplifiers in units of the
 drive limit.
@@ -57,26 +58,26 @@ def behind_electronics(
     """The plant of a blade alone with its amplifiers of the pole ``amplifier`` (rad/s) and its anti-aliasing filters, −3 dB at
     ``filter_cutoff`` (rad/s); None leaves either out. Residuals (p, m), C per V, and (2, m), m per V.
     """
+    residual = np.zeros_like(charge_residual) if filter_cutoff is None or amplifier is None else amplifier * charge_residual
     if amplifier is not None:
-        plant = _behind_amplifiers(plant, charge_residual, tip_residual, amplifier)
-    return plant if filter_cutoff is None else _behind_filters(plant, *butterworth(filter_order, filter_cutoff))
+        plant = _behind_amplifiers(plant, residual, tip_residual, amplifier)
+    return plant if filter_cutoff is None else _behind_filters(plant, residual, *butterworth(filter_order, filter_cutoff))
 
 
-def _behind_amplifiers(plant: Plant, charge_residual: Array, tip_residual: Array, pole: float) -> Plant:
+def _behind_amplifiers(plant: Plant, residual: Array, tip_residual: Array, pole: float) -> Plant:
+    """Currents are C x + C_r a (u − v): the output here is without its part of u, which an output that is sampled must not have."""
     m, drive = plant.B.shape[1], drive_limit(plant)
-    rate = pole * charge_residual  # i = C x + C_r a (u − v)
     return _enlarged(
         plant,
         len(plant.A),
         dynamics=np.block([[plant.A, plant.B * drive], [np.zeros((m, len(plant.A))), -pole * np.eye(m)]]),
         inputs=np.vstack([np.zeros_like(plant.B), pole * np.diag(1.0 / drive)]),
-        outputs=np.hstack([plant.C, -rate * drive]),
-        feedthrough=rate,
+        outputs=np.hstack([plant.C, -residual * drive]),
         tip=tip_residual * drive,
     )
 
 
-def _behind_filters(plant: Plant, dynamics: Array, gain: Array) -> Plant:
+def _behind_filters(plant: Plant, residual: Array, dynamics: Array, gain: Array) -> Plant:
     n, p, order, b = len(plant.A), len(plant.C), len(gain), plant.blade_states
     full_scale = plant.sensor_full_scale
     entered = np.kron(np.diag(1.0 / full_scale), gain[:, None])
@@ -87,14 +88,13 @@ def _behind_filters(plant: Plant, dynamics: Array, gain: Array) -> Plant:
         plant,
         b,
         dynamics=whole[np.ix_(lying, lying)],
-        inputs=np.vstack([plant.B, entered @ plant.D])[lying],
+        inputs=np.vstack([plant.B, entered @ residual])[lying],
         outputs=np.hstack([np.zeros_like(plant.C), shown])[:, lying],
-        feedthrough=np.zeros_like(plant.D),
         tip=np.zeros((2, p * order)),
     )
 
 
-def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs: Array, feedthrough: Array, tip: Array) -> Plant:
+def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs: Array, tip: Array) -> Plant:
     """The plant with further states, put before its own state ``at``, that are ``tip`` (2, k) displaced by and have no cost."""
     more, b = len(dynamics) - len(plant.A), plant.blade_states
     weight = np.zeros_like(dynamics)
@@ -109,7 +109,6 @@ def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs:
         A=sealed(dynamics),
         B=sealed(inputs),
         C=sealed(outputs),
-        D=sealed(feedthrough),
         disturbance_input=sealed(np.vstack([loads[:at], np.zeros((more, loads.shape[1])), loads[at:]])),
         tip_displacement=widened(plant.tip_displacement, tip),
         strain=widened(plant.strain, np.zeros((len(plant.strain), more))),

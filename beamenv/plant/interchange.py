@@ -39,8 +39,8 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
     """The plant whose system ``plant_to_control`` would give: dynamics from ``system``, all else from ``like`` and ``changes``.
 
     ``system`` has the inputs and outputs of ``like.to_control()`` and its states in energy coordinates, ½ xᵀx being joules; if it
-    has another number of them than ``like``, ``changes`` must give the ``strain`` rows (k, n), and the cost is again the energy; it then
-    has no ``electronic_states`` unless ``changes`` say how many of the last ones are such. Natural frequencies are taken to be the
+    has another number of them than ``like``, ``changes`` must give the ``strain`` rows (k, n), and the cost is again the energy. It
+    then has no ``electronic_states``, unless ``changes`` say how many of the last are such. Natural frequencies are taken to be the
     magnitudes of the blade's own poles, one of each pair. Raises ``ValueError`` for a sampled system,
     other numbers of inputs or outputs, a feedthrough that is not from voltages to currents, or strain rows of another length.
     """

@@ -43,7 +43,7 @@ class Plant(ReadOnly):
     C: Array
     """(p, n), A per √J."""
     D: Array
-    """(p, m), A/V; zero for current sensing, but for what patches take over at once where no filter follows."""
+    """(p, m), A/V; zero for current sensing."""
     disturbance_input: Array
     """E (n, 2), √J/s per N/m of uniform line load: lag, flap."""
     tip_displacement: Array

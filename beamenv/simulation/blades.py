@@ -104,7 +104,14 @@ class Blades:
             arrays = [np.zeros((*self._shape, width)) for width in widths]
         *memories, self._weighted, self._squares = arrays
         self._now, self._then = (
-            _Instant(each[..., :size], *np.split(each[..., :size], [n, n + m], axis=-1), each[..., :b], each[..., :width])
+            _Instant(
+                joined=each[..., :size],
+                state=each[..., :n],
+                voltages=each[..., n : n + m],
+                loads=each[..., n + m : size],
+                energetic=each[..., :b],
+                product=each[..., :width],
+            )
             for each in memories
         )
 
@@ -299,10 +306,9 @@ class Blades:
         if self.electronics is not None:
             flat = self.electronics.acquire(np.atleast_2d(self._by_blade(output)), np.atleast_2d(self._by_blade(noise)))
             return self._in_units(flat if self._shape else flat[0])
-        reading = np.empty(output.shape)  # the output may be part of the state
-        np.add(output, noise[..., : output.shape[-1]], out=reading)
-        if self._shape:
-            reading = reading.reshape(self.count or 1, -1)
+        noisy = np.empty(output.shape)  # the output may be part of the state
+        np.add(output, noise[..., : output.shape[-1]], out=noisy)
+        reading: Array = noisy.reshape(self.count or 1, -1) if self._shape else noisy
         np.minimum(reading, _FULL, out=reading)
         np.maximum(reading, _MINUS_FULL, out=reading)
         return self._in_units(reading)

@@ -20,6 +20,7 @@ class Operators:
     One plant for all blades, for each block of them, or for each: the arrays then have their leading axes. With
     z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
     [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost, columns from ``crossing`` on].
+    What need not be multiplied is left out: outputs that are states, and the states of amplifiers, v⁺ = u + decay (v − u).
 
     The increment of J is zᵀ cost z. In axes of the state in which the cost of its first b numbers is diagonal
     (``plants.cost_axes``) these are the ``weights``, and the product needs few other columns of the cost.
@@ -36,9 +37,15 @@ class Operators:
     reads: int
     """Column of the product in which the outputs begin: among the next states where filters show them."""
     tips: int
-    """Column in which the tip displacement begins; the columns of the cost follow."""
+    """Column in which the tip displacement begins."""
+    costs: int
+    """Column in which those of the cost begin."""
     crossing: int
     """Numbers of z before this one have no cost but ``weights`` and that with later ones."""
+    lagging: int = 0
+    """How many of the states, the last, are the voltages that amplifiers give, and not in the product."""
+    decay: float = 0.0
+    """What is left after an interval of their distance from the voltages held."""
 
     @classmethod
     def from_plant(cls, plant: Plant) -> Operators:
@@ -54,7 +61,7 @@ class Operators:
     @classmethod
     def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
         n, p = len(plant.A), len(plant.C)
-        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, reads=n, tips=n + p, crossing=0)
+        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, reads=n, tips=n + p, costs=n + p + 2, crossing=0)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
@@ -68,10 +75,7 @@ class Operators:
 
 def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
     step = np.hstack([held.A, held.B, held.disturbance_input])
-    n, m = plant.B.shape
-    output = plant.C @ step
-    output[:, n : n + m] += plant.D  # read while the voltages are still held
-    fused = np.hstack([step.T, output.T, (plant.tip_displacement @ step).T, held.cost])
+    fused = np.hstack([step.T, (plant.C @ step).T, (plant.tip_displacement @ step).T, held.cost])
     return np.ascontiguousarray(fused)
 
 
@@ -86,12 +90,25 @@ def advance(
     three arrays are then views of it, and ``squares`` (..., b) to hold squares of the state. ``multiply`` stands in for
     ``row_product``.
     """
-    read, tip, diagonal = operators.reads, operators.tips, operators.weights.shape[-1]
+    read, tip, cost, diagonal = operators.reads, operators.tips, operators.costs, operators.weights.shape[-1]
     product = (multiply or row_product)(joined, operators.fused, out)
-    increment = row_dot(product[..., tip + 2 :], joined[..., operators.crossing :])
+    crossing = joined[..., operators.crossing :]
+    increment = row_dot(product[..., cost : cost + crossing.shape[-1]], crossing)
     if diagonal:
         increment = increment + weighted_squares(joined[..., :diagonal], operators.weights, squares)
-    return product[..., : operators.states], product[..., read : read + operators.outputs], product[..., tip : tip + 2], increment
+    state = product[..., : operators.states] if not operators.lagging else _with_amplifiers(operators, joined, product, out)
+    return state, product[..., read : read + operators.outputs], product[..., tip : tip + 2], increment
+
+
+def _with_amplifiers(operators: Operators, joined: Any, product: Any, out: Any) -> Any:
+    """The next state (..., n): that of blade and filters from the product, and the voltages that amplifiers then give."""
+    n, first = operators.states, operators.states - operators.lagging
+    held = joined[..., n : n + operators.lagging]
+    given = held + operators.decay * (joined[..., first:n] - held) if operators.decay else held
+    if out is None:
+        return namespace(product).concatenate([product[..., :first], given], -1)
+    product[..., first:n] = given  # in the place of what the cost no longer needs
+    return product[..., :n]
 
 
 def weighted_squares(rows: Any, weights: Any, out: Any = None) -> Any:

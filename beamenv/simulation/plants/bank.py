@@ -12,7 +12,7 @@ from beamenv.plant.plant import Plant, normalised
 from beamenv.plant.read_only import ReadOnly, read_only, sealed
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
-from beamenv.simulation.plants.cost_axes import cost_axes, in_axes, output_states, without_cost
+from beamenv.simulation.plants.cost_axes import cost_axes, in_axes
 
 Array = NDArray[np.float64]
 
@@ -105,14 +105,12 @@ class Bank(ReadOnly):
     def in_cost_axes(self) -> Bank:
         """This bank, as ``gather`` made it, in the axes in which its steps are cheap."""
         fused, plant = self.operators.fused, self.plant
-        axes = cost_axes(fused[..., self.operators.tips + 2 :], len(plant.A), plant.blade_states)
+        axes = cost_axes(fused[..., self.operators.costs :], len(plant.A), plant.blade_states)
         following = np.concatenate([axes[1:], axes[-1:]]) if self.runs else axes
         back = axes.swapaxes(-1, -2)
         return replace(
             self,
-            operators=in_axes(
-                self.operators, axes, following, plant.blade_states, without_cost(plant), output_states(normalised(plant))
-            ),
+            operators=in_axes(self.operators, axes, following, normalised(plant)),
             axes=sealed(axes),
             readout=sealed(axes @ self.readout),
             tip=sealed(axes @ self.tip),

@@ -14,9 +14,9 @@ Speed follows a cycloid, Ω = Ω₀ + ΔΩ (τ − sin(2πτ)/2π) with τ = t/T
 t = 0⁺, where the blade still stands in the static equilibrium of Ω₀. The difference is the vibration that the start excites: from
 100 to 300 rad/s in 0.5 s it is about that of a sudden 56 N/m in lag.
 
-The motion is expanded in the modes of the true plant at the configured speed, 200 rad/s: at 100 and 300 rad/s the frequencies of the first six
-are then 0.16 % too high at most, those of all eleven 0.6 %. The plant of an interval is that of the speed at its middle, held
-over the interval; coordinates are energy coordinates at every instant.
+The motion is expanded in the modes of the true plant at the configured speed, 200 rad/s. With eleven of them the frequencies of the
+first six are 0.16 % too high at most at 100 and 300 rad/s, those of all eleven 0.6 %. The plant of an interval is that of the
+speed at its middle, held over the interval; coordinates are energy coordinates at every instant.
 """
 
 from __future__ import annotations
