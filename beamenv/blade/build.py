@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.configuration import Refused
+from beamenv.patches import actuation, sensing
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
@@ -47,7 +48,7 @@ class Blade:
     @cached_property
     def full(self) -> FullModel:
         """What acts on it and what is seen of it."""
-        return full_model(self.beam, self.config.patches)
+        return full_model(self.beam, self.config.patches, self.config.speed)
 
     @cached_property
     def plant(self) -> Plant:
@@ -84,19 +85,31 @@ class Blade:
         bandwidth, cutoff = electronics.amplifier_bandwidth, electronics.filter_cutoff
         return behind_electronics(
             bare,
-            charge_residual=self._residual(self.full.charges),
-            tip_residual=self._residual(self.full.tip),
+            charge_residual=self._residual(self._static_charges(), self.full.charges),
+            tip_residual=self._residual(self.full.tip @ self._static, self.full.tip),
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
             filter_cutoff=None if cutoff is None else cutoff * rate,
         )
 
-    def _residual(self, rows: Array) -> Array:
-        """(k, m) per V: what rows (k, N) of the trial functions show of the modes that the true plant leaves out."""
-        modal, forces = self.true_modal, self.full.forces
-        static = rows @ np.linalg.solve(self.beam.matrices.stiffness(self.config.speed), forces)
+    @cached_property
+    def _static(self) -> Array:
+        """K⁻¹F (N, m): the coefficients of the trial functions under each volt, at its speed."""
+        return np.asarray(np.linalg.solve(self.beam.at(self.config.speed).stiffness, self.full.forces))
+
+    def _static_charges(self) -> Array:
+        """(p, m), C per V: exactly at rest, where patches so short raise strains beneath them alone, and by the trial functions
+        what the rotation changes, which they can follow.
+        """
+        beam, layout = self.beam, self.config.patches
+        at_rest = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
+        return np.asarray(self.full.response.charges + self.full.charges @ self._static - at_rest)
+
+    def _residual(self, static: Array, rows: Array) -> Array:
+        """(k, m) per V: of what is there at rest, what the modes of the true plant do not show by rows (k, N)."""
+        modal = self.true_modal
         shapes = modal.mode_shapes
-        return static_residual(static, rows @ shapes, shapes.T @ forces, modal.natural_frequencies)
+        return static_residual(static, rows @ shapes, shapes.T @ self.full.forces, modal.natural_frequencies)
 
     def _reduced(self, modal: ModalModel, sensor_full_scale: float | None) -> Plant:
         config = self.config
@@ -104,7 +117,6 @@ class Blade:
             plant = reduced_plant(
                 modal,
                 self.full,
-                self.beam.matrices.stiffness(config.speed),
                 damping_ratio=config.damping_ratio,
                 effort_weight=config.effort_weight,
                 white_load=config.white_load,
@@ -144,7 +156,8 @@ class Blade:
         operator = np.concatenate([displaced, still], axis=-1)
         if truth.electronic_states and self.config.electronics.amplifier_bandwidth is not None:
             m = truth.B.shape[1]
-            residual = self._residual(lag_flap_twist.reshape(-1, lag_flap_twist.shape[-1]))
+            flat = lag_flap_twist.reshape(-1, lag_flap_twist.shape[-1])
+            residual = self._residual(flat @ self._static, flat)
             operator[..., -m:] = (residual * drive_limit(truth)).reshape(*operator.shape[:-1], m)
         return operator
 
@@ -158,7 +171,7 @@ _MADE_OF = {
     "beam": _BEAM,
     "modal": (*_BEAM, "speed", "modes", "gyroscopic"),
     "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
-    "full": _BEAM,
+    "full": (*_BEAM, "speed"),
 }
 """The fields of a configuration that each part depends on."""
 

@@ -79,6 +79,8 @@ def test_every_preset_keeps_to_the_schema(name):
         ({"beam": {"ply_angles_deg": []}}, blade_schema),
         ({"patches": {"passive": "no"}}, blade_schema),
         ({"modes": 1.5}, blade_schema),
+        ({"model": "shell"}, blade_schema),
+        ({"beam": {"steady_state": "stalled"}}, blade_schema),
         ({"preset": "storm"}, scenario_schema),
         ({"plants": {"truth": "beam"}}, scenario_schema),
         ({"plants": {"speed_ratio": [0.9, 1.0, 1.1]}}, scenario_schema),

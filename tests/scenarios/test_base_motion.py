@@ -17,7 +17,7 @@ ACROSS = 2.0 * DENSITY * (WALL * DEPTH**3 / 12.0 + WIDTH * (WALL * DEPTH**2 / 4.
 
 
 def box(**changes):
-    arguments = {"length": LENGTH, "hub_radius": HUB, "shear": "first_order", "terms": 6} | changes
+    arguments = {"length": LENGTH, "hub_radius": HUB, "model": "thesis", "shear": "first_order", "terms": 6} | changes
     return RotatingBeam(section=BoxSection(WIDTH, DEPTH, WALL), layup=Layup.uniform(METAL, [0.0]), **arguments)
 
 

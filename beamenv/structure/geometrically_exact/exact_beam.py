@@ -1,0 +1,134 @@
+"""The blade's model: M, K and G at a speed, about the steady state there, and what its sections are strained by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.configuration import Refused
+from beamenv.structure.assembly import BeamMatrices, symmetric
+from beamenv.structure.geometrically_exact.at_stations import BladeAtStations, increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
+from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
+from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.section.solid_sections import AMPLITUDES
+from beamenv.structure.trial_functions import Stations, TrialSpace
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 30
+"""Most Newton steps to the steady state; five or six do."""
+
+CONVERGED = 1e-4
+"""Largest increment, m or rad, after which no further step is made: steps shrink as their squares, so the next were of 1e-9."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExactBeam:
+    """A blade, its sections along the span, and the stations at which it is integrated."""
+
+    space: TrialSpace
+    stations: Stations
+    sections: SectionsAlong
+    hub_radius: float
+    nonlinear: bool
+    """Whether vibration is about the non-linear steady state, or about the blade at rest under the stresses of a linear one."""
+
+    def placement(self, z: Array, coefficients: Array) -> Placement:
+        """Where the blade is at stations z."""
+        return Placement.of(increment_rows(self.space, z) @ coefficients, self.sections.planform.frames(z))
+
+    def section_strains(self, z: Array, point: OperatingPoint) -> Array:
+        """(S, STRAINS, N): strains of the sections at stations z (m) per coefficient, of vibration about the steady state."""
+        at = self.at_stations
+        coefficients = self._about(point)
+        beam = self.placement(z, coefficients).strain_rows @ increment_rows(self.space, z)
+        follow = at.amplitudes(self.placement(self.stations.z, coefficients).strain_rows @ at.rows)
+        return self._with_shapes(z, beam, follow)
+
+    def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
+        """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
+        assert point.steady is not None
+        if self._about(point).any():
+            beam = self.placement(z, point.steady.coefficients).strain
+        else:
+            beam = (
+                self.placement(z, np.zeros(self.space.size)).strain_rows @ increment_rows(self.space, z) @ point.steady.coefficients
+            )
+        return self._with_shapes(z, beam[..., None], point.steady.amplitudes[:, None])[..., 0]
+
+    def _about(self, point: OperatingPoint) -> Array:
+        """Coefficients (N,) of the placement that vibration is about: that at rest where the steady state is linear."""
+        if self.nonlinear and point.steady is not None:
+            return point.steady.coefficients
+        return np.zeros(self.space.size)
+
+    def _with_shapes(self, z: Array, beam: Array, amplitudes: Array) -> Array:
+        """(S, STRAINS, c) from beam strains (S, 6, c) and amplitudes (AMPLITUDES × terms, c)."""
+        value, slope = shape_tables(self.space, z)
+        by_shape = amplitudes.reshape(AMPLITUDES, self.space.terms, -1)
+        shapes = [np.einsum("st,jtc->sjc", table, by_shape, optimize=True) for table in (value, slope)]
+        return np.concatenate([beam, *shapes], axis=1)
+
+    def cut_for(self, wall: str, width: float) -> SectionsAlong:
+        """The sections with the wall's elements cut where a strip of some width in its middle begins and ends."""
+        edges = self.sections.solid.ring.edges
+        if any(edge.wall == wall and abs(edge.reach - 0.5 * width) <= 1e-9 * width for edge in edges):
+            return self.sections
+        return self.sections.cut_for(wall, width)
+
+    @cached_property
+    def at_stations(self) -> BladeAtStations:
+        """The blade where it is integrated."""
+        return BladeAtStations.of(self.space, self.stations, self.sections, self.hub_radius)
+
+    @cached_property
+    def matrices(self) -> BeamMatrices:
+        """M, K_e, K_Ω and G₁ with the linear steady state's stresses, K_e alone at rest."""
+        at = self.at_stations
+        placement = at.unloaded
+        elastic = at.elastic(at.strain_rows)
+        inertia = at.inertia(placement)
+        push = at.force(inertia.centrifugal)
+        coefficients = np.linalg.solve(elastic, push)
+        resultants, _ = at.resultants(at.strain_rows @ coefficients)
+        moments = np.einsum("sfi,si->sf", at.stress_moments, at.strain_rows @ coefficients)
+        spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening)
+        spin += at.strain_form(under_stress(moments), at.strain_rows)
+        return BeamMatrices(
+            mass=at.mass(inertia, at.strain_rows),
+            elastic_stiffness=elastic,
+            spin_stiffness=symmetric(spin),
+            gyroscopic=at.form(inertia.gyroscopic),
+        )
+
+    @cached_property
+    def linear_steady_state(self) -> SteadyState:
+        """Per Ω²."""
+        at = self.at_stations
+        coefficients = np.linalg.solve(self.matrices.elastic_stiffness, at.force(at.inertia(at.unloaded).centrifugal))
+        return SteadyState(np.asarray(coefficients), at.resultants(at.strain_rows @ coefficients)[1])
+
+    def at(self, speed: float, near: SteadyState | None = None) -> OperatingPoint:
+        """The blade at a speed, rad/s; ``near`` is a steady state to start from. ``ValueError`` where there is no stable one."""
+        if not self.nonlinear or speed == 0.0:
+            linear, matrices = self.linear_steady_state, self.matrices
+            steady = SteadyState(speed**2 * linear.coefficients, speed**2 * linear.amplitudes)
+            return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, steady)
+        return self.at_stations.about(self._steady_state(speed, near), speed)
+
+    def _steady_state(self, speed: float, near: SteadyState | None) -> Array:
+        """Newton's method from a steady state nearby, or from the linear one."""
+        at = self.at_stations
+        q = speed**2 * self.linear_steady_state.coefficients if near is None else near.coefficients
+        for _ in range(ITERATIONS):
+            step = at.newton_step(q, speed)
+            if not np.all(np.isfinite(step)):
+                break
+            q = at.moved(q, step)
+            if np.abs(at.rows[:, : SPIN.stop] @ step).max() <= CONVERGED:
+                return q
+        raise Refused("speed", speed, "a speed at which the blade has a steady state")
