@@ -123,7 +123,8 @@ def resolve_task(
     truth, modes = chosen.plants.truth, chosen.plants.modes
     own = _driven(config if design is None else _design_config(preset, speed, design), chosen)
     config = _with(_driven(config, chosen), truth_modes=modes if truth is None else None)
-    designed = _with(own if design is not None else config, modes=chosen.plants.design_modes)
+    known = chosen.plants.design_modes
+    designed = _with(own if design is not None else config, modes=known, truth_modes=known)  # designers know no further mode
     true = Blade(config) if truth is None else given_blade(config, load_plant(truth), truth, modes)
     true = _alive(_BLADES, true)
     _check_failures(chosen, true.plant)
