@@ -85,8 +85,8 @@ class Blade:
         bandwidth, cutoff = electronics.amplifier_bandwidth, electronics.filter_cutoff
         return behind_electronics(
             bare,
-            charge_residual=self._residual(self._static_charges(), self.full.charges),
-            tip_residual=self._residual(self.full.tip @ self._static, self.full.tip),
+            charge_residual=self._charge_residual(),
+            tip_residual=self._residual(self.full.tip),
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
             filter_cutoff=None if cutoff is None else cutoff * rate,
@@ -105,8 +105,15 @@ class Blade:
         at_rest = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
         return np.asarray(self.full.response.charges + self.full.charges @ self._static - at_rest)
 
-    def _residual(self, static: Array, rows: Array) -> Array:
-        """(k, m) per V: of what is there at rest, what the modes of the true plant do not show by rows (k, N)."""
+    def _charge_residual(self) -> Array:
+        """(p, m), C per V: static charges that the modes of the true plant do not show."""
+        return self._less_modes(self._static_charges(), self.full.charges)
+
+    def _residual(self, rows: Array) -> Array:
+        """(k, m) per V: what rows (k, N) show of the static displacement, and not of the modes of the true plant."""
+        return self._less_modes(rows @ self._static, rows)
+
+    def _less_modes(self, static: Array, rows: Array) -> Array:
         modal = self.true_modal
         shapes = modal.mode_shapes
         return static_residual(static, rows @ shapes, shapes.T @ self.full.forces, modal.natural_frequencies)
@@ -157,8 +164,7 @@ class Blade:
         if truth.electronic_states and self.config.electronics.amplifier_bandwidth is not None:
             m = truth.B.shape[1]
             flat = lag_flap_twist.reshape(-1, lag_flap_twist.shape[-1])
-            residual = self._residual(flat @ self._static, flat)
-            operator[..., -m:] = (residual * drive_limit(truth)).reshape(*operator.shape[:-1], m)
+            operator[..., -m:] = (self._residual(flat) * drive_limit(truth)).reshape(*operator.shape[:-1], m)
         return operator
 
 

@@ -2,7 +2,8 @@
 
 Damping (unless the file has its own), noise, amplifiers and filters, drive limits, the sensors' range and the control interval are
 the configuration's. So is the weight of effort R: it is the energy that the patches store in the beam of the configuration, for a
-file has no stiffness to compute it from, and costs on both compare. Nor is there a static share of modes that are not in the file.
+file has no stiffness to compute it from, and costs on both compare. Charges that modes beyond the file take up at once are those of
+the beam's patches, less the share of the file's modes; they hardly displace the blade, and how is not known.
 
 A file has no mode shapes along the span either. What needs them is told by the beam's: pictures, the strain where the file has no
 rows for it, and the state in the coordinates of a design. Each mode of the file is taken for the one mode of the beam that answers
@@ -21,6 +22,7 @@ from scipy.optimize import linear_sum_assignment
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Refused
+from beamenv.plant.electronics import static_residual
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant
 from beamenv.plant.read_only import sealed
@@ -80,8 +82,13 @@ class GivenBlade(Blade):
         )
         return self._behind_electronics(replace(plant, input_weight=self.plant.input_weight))
 
+    def _charge_residual(self) -> Array:
+        """(p, m), C per V: the beam's static charges, strains beneath the patches above all, less what the file's modes show."""
+        model = self.given
+        return static_residual(self._static_charges(), model.charges, model.actuation, model.natural_frequencies)
+
     def _residual(self, rows: Array) -> Array:
-        """(k, m) per V: nothing, for a file does not tell what its further modes would bring about."""
+        """(k, m) per V: nothing, for a file does not tell how its further modes would displace the blade."""
         return np.zeros((len(rows), self.given.actuation.shape[1]))
 
     def changed(self, config: BladeConfig) -> GivenBlade:
