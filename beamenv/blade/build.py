@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.configuration import Refused
-from beamenv.patches import actuation, sensing
+from beamenv.patches import PatchResponse, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
@@ -46,9 +46,14 @@ class Blade:
         return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
 
     @cached_property
+    def at_rest(self) -> PatchResponse | None:
+        """What voltages on its patches do to it at rest; None in the thesis' model."""
+        return None if _is_thesis(self.config) else local_response(self.beam, self.config.patches)
+
+    @cached_property
     def full(self) -> FullModel:
         """What acts on it and what is seen of it."""
-        return full_model(self.beam, self.config.patches, self.config.speed)
+        return full_model(self.beam, self.config.patches, self.config.speed, self.at_rest)
 
     @cached_property
     def plant(self) -> Plant:
@@ -97,9 +102,8 @@ class Blade:
         """(p, m), C per V: exactly at rest, where patches so short raise strains beneath them alone, and by the trial functions
         what the rotation changes, which they can follow.
         """
-        beam, layout = self.beam, self.config.patches
-        at_rest = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
-        return np.asarray(self.full.response.charges + self.full.charges @ self._static - at_rest)
+        response = self.full.response
+        return np.asarray(response.charges + self.full.charges @ self._static - response.smooth_charges)
 
     def _residual(self, static: Array, rows: Array) -> Array:
         """(k, m) per V: of what is there at rest, what the modes of the true plant do not show by rows (k, N)."""
@@ -165,6 +169,7 @@ def _is_thesis(config: BladeConfig) -> bool:
 _BEAM = ("beam", "patches", "model")
 _MADE_OF = {
     "beam": _BEAM,
+    "at_rest": _BEAM,
     "modal": (*_BEAM, "speed", "modes", "gyroscopic"),
     "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
     "full": (*_BEAM, "speed"),

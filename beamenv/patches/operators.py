@@ -45,10 +45,9 @@ def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: f
 def work_on_section(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float) -> tuple[SectionsAlong, Array]:
     """The sections of a blade, and the work (V, STRAINS) per volt and metre that a patch does on the strains of each of them."""
     sections = beam.exact.cut_for(wall, width)
-    under = np.array([edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in sections.solid.ring.edges])
     outer = 0.5 * beam.section.thickness
-    stress = patch.stress_in_wall()[[0, 1, 2]] / patch.electrode_spacing
-    return sections, sections.solid.layer_force(under, outer - patch.thickness, outer, stress)
+    hoop, span, shear = (patch.stress_in_wall() / patch.electrode_spacing).tolist()
+    return sections, sections.solid.layer_force(wall, width, outer - patch.thickness, outer, (hoop, span, shear))
 
 
 def patch_force(
@@ -114,6 +113,8 @@ class PatchResponse:
     """(m, m), J/V²: twice the energy that the actuators store."""
     charges: Array
     """(p, m), C/V: what the sensors show of it."""
+    smooth_charges: Array
+    """(p, m), C/V: what the trial functions can follow of that, C_s K_e⁻¹F."""
 
 
 def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
@@ -137,4 +138,5 @@ def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
     whole = np.einsum("s,ski,skl,slj->ij", stations.weight, each, stiffness, each, optimize=True)
     m = len(sides[0][1])
     gang = np.ones((m, 1)) if layout.ganged else np.eye(m)
-    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang)
+    smooth = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
+    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang, smooth)

@@ -43,11 +43,10 @@ class ExactBeam:
 
     def section_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS, N): strains of the sections at stations z (m) per coefficient, of vibration about the steady state."""
-        at = self.at_stations
-        coefficients = self._about(point)
-        beam = self.placement(z, coefficients).strain_rows @ increment_rows(self.space, z)
-        follow = at.amplitudes(self.placement(self.stations.z, coefficients).strain_rows @ at.rows)
-        return self._with_shapes(z, beam, follow)
+        assert point.following is not None
+        rows = increment_rows(self.space, z)
+        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        return self._with_shapes(z, placement.strain_rows @ rows, point.following)
 
     def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
@@ -99,11 +98,15 @@ class ExactBeam:
         spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening)
         spin += at.strain_form(under_stress(moments), at.strain_rows)
         return BeamMatrices(
-            mass=at.mass(inertia, at.strain_rows),
+            mass=at.mass(inertia, self._following_at_rest),
             elastic_stiffness=elastic,
             spin_stiffness=symmetric(spin),
             gyroscopic=at.form(inertia.gyroscopic),
         )
+
+    @cached_property
+    def _following_at_rest(self) -> Array:
+        return self.at_stations.amplitudes(self.at_stations.strain_rows)
 
     @cached_property
     def linear_steady_state(self) -> SteadyState:
@@ -117,7 +120,14 @@ class ExactBeam:
         if not self.nonlinear or speed == 0.0:
             linear, matrices = self.linear_steady_state, self.matrices
             steady = SteadyState(speed**2 * linear.coefficients, speed**2 * linear.amplitudes)
-            return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, steady)
+            return OperatingPoint(
+                speed,
+                matrices.mass,
+                matrices.stiffness(speed),
+                speed * matrices.gyroscopic,
+                steady,
+                self._following_at_rest,
+            )
         return self.at_stations.about(self._steady_state(speed, near), speed)
 
     def _steady_state(self, speed: float, near: SteadyState | None) -> Array:
