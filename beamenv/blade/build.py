@@ -43,7 +43,13 @@ class Blade:
     @cached_property
     def modal(self) -> ModalModel:
         """The modes of its design plant."""
-        return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
+        if _is_thesis(self.config) or self.config.modes > self.beam.space.size:
+            return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
+        return self._every_mode.first(self.config.modes)
+
+    @cached_property
+    def _every_mode(self) -> ModalModel:
+        return truncate(self.beam, self.config.speed, self.beam.space.size, self.config.gyroscopic)
 
     @cached_property
     def at_rest(self) -> PatchResponse | None:
@@ -66,7 +72,7 @@ class Blade:
         config = self.config
         if config.truth_modes is not None or _is_thesis(config):
             return truncate(self.beam, config.speed, config.truth_modes or config.modes, config.gyroscopic)
-        every = truncate(self.beam, config.speed, self.beam.space.size, config.gyroscopic)
+        every = self._every_mode
         below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
         return every.first(max(below, min(config.modes, self.beam.space.size)))
 

@@ -13,7 +13,7 @@ from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam, check_fit
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.trial_functions import LEAST, Stations
 
 Array = NDArray[np.float64]
 
@@ -76,6 +76,12 @@ def patch_forces(
     for start in starts:
         check_fit(beam, patch.inlay(wall, start, length, width))
     under = [stations_under(beam, start, start + length) for start in starts]
+    if beam.model == "blade":
+        sections, work = work_on_section(beam, patch, wall, width)
+        z, weight = (np.concatenate([getattr(stations, name) for stations in under]) for name in ("z", "weight"))
+        each = np.repeat(np.eye(len(under)), [len(stations.z) for stations in under], axis=0)
+        works = (weight[:, None] * sections.at(z, work))[..., None] * each[:, None]
+        return beam.exact.generalised_force(z, beam.at(speed), works)
     per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]), speed)
     ends = np.cumsum([len(stations.z) for stations in under])
     return np.column_stack([stations.weight @ part for stations, part in zip(under, np.split(per_span, ends[:-1]), strict=True)])
@@ -86,7 +92,8 @@ def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length) if start < edge < end]
     breakpoints = np.unique([start, *edges, end])  # a patch on the opposite wall changes the shear flow where it ends
     apart = np.append(True, np.diff(breakpoints) > 1e-9 * beam.length)
-    return Stations.between(breakpoints[apart], beam.space.terms + EXTRA_STATIONS)
+    few = int(np.ceil(LEAST + (beam.space.terms + EXTRA_STATIONS) * (end - start) / beam.length))
+    return Stations.between(breakpoints[apart], few if beam.model == "blade" else beam.space.terms + EXTRA_STATIONS)
 
 
 def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:

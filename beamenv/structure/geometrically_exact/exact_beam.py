@@ -14,6 +14,7 @@ from beamenv.structure.geometrically_exact.at_stations import BladeAtStations, i
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES
 from beamenv.structure.trial_functions import Stations, TrialSpace
 
@@ -47,6 +48,19 @@ class ExactBeam:
         rows = increment_rows(self.space, z)
         placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
         return self._with_shapes(z, placement.strain_rows @ rows, point.following)
+
+    def generalised_force(self, z: Array, point: OperatingPoint, work: Array) -> Array:
+        """(N, k): force of k actions that do ``work`` (S, STRAINS, k) per strain of the sections at stations z (m)."""
+        assert point.following is not None
+        rows = increment_rows(self.space, z)
+        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        on_increments = placement.strain_rows.swapaxes(-1, -2) @ work[:, :RIGID]
+        actions = work.shape[-1]
+        force = rows.reshape(-1, self.space.size).T @ on_increments.reshape(-1, actions)
+        for table, part in zip(shape_tables(self.space, z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
+            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.terms, AMPLITUDES, actions)
+            force += point.following.T @ on_shapes.swapaxes(0, 1).reshape(-1, actions)
+        return np.asarray(force)
 
     def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
