@@ -22,7 +22,7 @@ from beamenv.structure.geometrically_exact.rotations import rotation, rotation_v
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES, STRAINS
-from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, polynomial_table
+from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clamped_table, polynomial_table
 
 Array = NDArray[np.float64]
 
@@ -220,7 +220,7 @@ def increment_rows(space: TrialSpace, z: Array) -> Array:
         tables = space.evaluate(z)
         return np.stack([tables[name, derivative] for derivative in (0, 1) for name in FIELDS], axis=1)
     rows = np.zeros((len(z), INCREMENT, space.size))
-    for order, table in enumerate(shape_tables(space, z)):
+    for order, table in enumerate(polynomial_table(z / space.length, 1, space.terms, space.length)[:2]):
         for k in range(len(FIELDS)):
             rows[:, len(FIELDS) * order + k, space.terms * k : space.terms * (k + 1)] = table
     return rows
@@ -228,8 +228,7 @@ def increment_rows(space: TrialSpace, z: Array) -> Array:
 
 def shape_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
     """Values and slopes (S, terms) of the amplitudes' trial functions."""
-    value, slope, _ = polynomial_table(z / space.length, 1, space.terms, space.length)
-    return value, slope
+    return clamped_table(z / space.length, space.terms, space.length, space.clamp_reach)
 
 
 def without_shear(energy: Array) -> Array:
