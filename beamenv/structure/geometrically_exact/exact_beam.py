@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 ITERATIONS = 30
 """Most Newton steps to the steady state; five or six do."""
 
+HALVINGS = 5
+"""Most halvings of a step in Ω² towards a steady state that Newton's method does not find from the linear one."""
+
 CONVERGED = 1e-4
 """Largest increment, m or rad, after which no further step is made: steps shrink as their squares, so the next were of 1e-9."""
 
@@ -145,14 +148,32 @@ class ExactBeam:
         return self.at_stations.about(self._steady_state(speed, near), speed)
 
     def _steady_state(self, speed: float, near: SteadyState | None) -> Array:
-        """Newton's method from a steady state nearby, or from the linear one."""
+        """Newton's method from a steady state nearby, or from the linear one, by way of those at lower speeds where it must be."""
+        found = None if near is None else self._newton(near.coefficients, speed)
+        if found is None:
+            found = self._by_steps(None, 0.0, speed, HALVINGS)
+        if found is None:
+            raise Refused("speed", speed, "a speed at which the blade has a steady state")
+        return found
+
+    def _by_steps(self, state: Array | None, low: float, high: float, halvings: int) -> Array | None:
+        """From the steady state at one speed (None: at rest) to that at a higher one, halving the step in Ω² where Newton fails."""
+        found = self._newton(high**2 * self.linear_steady_state.coefficients if state is None else state, high)
+        if found is not None or halvings == 0:
+            return found
+        middle = float(np.sqrt(0.5 * (low**2 + high**2)))
+        between = self._by_steps(state, low, middle, halvings - 1)
+        return None if between is None else self._by_steps(between, middle, high, halvings - 1)
+
+    def _newton(self, q: Array, speed: float) -> Array | None:
+        """Coefficients of the steady state, or None where it is not found."""
         at = self.at_stations
-        q = speed**2 * self.linear_steady_state.coefficients if near is None else near.coefficients
         for _ in range(ITERATIONS):
             step = at.newton_step(q, speed)
-            if not np.all(np.isfinite(step)):
-                break
+            largest = np.abs(at.rows[:, : SPIN.stop] @ step).max()
+            if not np.isfinite(largest):
+                return None
             q = at.moved(q, step)
-            if np.abs(at.rows[:, : SPIN.stop] @ step).max() <= CONVERGED:
+            if largest <= CONVERGED:
                 return q
-        raise Refused("speed", speed, "a speed at which the blade has a steady state")
+        return None
