@@ -12,7 +12,7 @@ from beamenv.structure.beam import RotatingBeam
 Array = NDArray[np.float64]
 
 INTERVALS = 40
-"""Of the span, at whose ends strains are looked at: the largest strain is within 0.1 % of that of five times as many."""
+"""Of the span, at whose ends strains are looked at: the largest strain is within 0.5 % of that of five times as many."""
 
 AT_CLAMP = 1e-6
 """Of the span: where the clamp's strains are taken."""

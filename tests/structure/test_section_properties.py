@@ -195,8 +195,8 @@ def test_pretwist_means_nothing_to_a_circular_tube(layup):
 
 @pytest.mark.parametrize("rate", [-0.02, 0.05])
 def test_tube_wound_into_a_helix_twists_as_it_is_stretched(rate):
-    """A tube at the distance c from the axis runs along (k c, 1) and is cut obliquely: to first order in the pretwist k a stretch of
-    the axis stretches it and shears it by −2 k c, half of it because oblique cuts turn by k c w′ where its own sections do not;
+    """A tube at the distance c from the axis runs along (k c, 1) and is cut obliquely: to first order in the pretwist k a stretch
+    of the axis stretches it and shears it by −2 k c, half of it because oblique cuts turn by k c w′ where its own sections do not;
     a twist stretches it by k c² and shears it by c. Hence N = k c² (EA − 2 GA) φ′, GA being its shear stiffness.
     """
     c, radius = 0.3, 0.03

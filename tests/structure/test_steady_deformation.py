@@ -71,6 +71,6 @@ def test_the_sound_blade_stays_below_three_parts_in_a_thousand_everywhere(speed)
     beam = config.beam.build(config.patches)
     strain = beam.steady_strain(np.linspace(1e-6, 1.0, 5 * INTERVALS + 1) * beam.length, speed)
     assert np.abs(strain).max() < 3e-3
-    assert np.abs(strain).max() == pytest.approx(np.abs(face_strain(beam, speed)).max(), rel=1e-3)
+    assert np.abs(strain).max() == pytest.approx(np.abs(face_strain(beam, speed)).max(), rel=5e-3)
     if speed == config.speed:
         assert np.abs(strain).max() < 4e-4
