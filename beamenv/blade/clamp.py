@@ -8,16 +8,18 @@ much; in the thesis' model by up to 110 %.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.layouts import SIDES, positions_of
+from beamenv.blade.layouts import SIDES, Side, positions_of
 
 _SOLID = {"blade": "by up to 7 %", "thesis": "by up to 110 %"}
 
 
-def clamp_note(config: BladeConfig) -> str:
-    """One sentence on the patches that begin nearer to the clamp than the section is deep; empty where there are none."""
+def clamp_note(config: BladeConfig, sides: Sequence[Side] = SIDES) -> str:
+    """One sentence on the patches, on some sides, that begin nearer to the clamp than the section is deep; empty where there are none."""
     depth = config.beam.depth
-    near = [f"{side[:-1]} at {z:.4g} m" for side in SIDES for z in positions_of(config, side) if z < depth * (1.0 - 1e-9)]
+    near = [f"{side[:-1]} at {z:.4g} m" for side in sides for z in positions_of(config, side) if z < depth * (1.0 - 1e-9)]
     if not near:
         return ""
     return (
