@@ -217,7 +217,7 @@ class RotatingBeam:
     def surface_strain(self, z: Array, speed: float = 0.0) -> Array:
         """Rows (stations, points, N): spanwise strain at points of the outer face, at z (m), of vibration at a speed in rad/s."""
         if self.model == "blade":
-            face = self.exact.sections.at(z, self.exact.sections.solid.face_strain())
+            face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
             return np.asarray(face @ self.exact.section_strains(z, self.at(speed)))
         walls = self.walls_at(z)
         outer = 0.5 * walls.laws.thickness[..., None]
@@ -231,7 +231,7 @@ class RotatingBeam:
         """
         if self.model == "thesis":
             return np.zeros(self.surface_strain(z).shape[:2])
-        face = self.exact.sections.at(z, self.exact.sections.solid.face_strain())
+        face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
         return np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
 
     def line_load(self) -> Array:

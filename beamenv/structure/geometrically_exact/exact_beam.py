@@ -14,6 +14,7 @@ from beamenv.structure.geometrically_exact.at_stations import BladeAtStations, i
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES
 from beamenv.structure.trial_functions import Stations, TrialSpace
 
@@ -46,11 +47,23 @@ class ExactBeam:
 
     def section_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS, N): strains of the sections at stations z (m) per coefficient, of vibration about the steady state."""
-        at = self.at_stations
-        coefficients = self._about(point)
-        beam = self.placement(z, coefficients).strain_rows @ increment_rows(self.space, z)
-        follow = at.amplitudes(self.placement(self.stations.z, coefficients).strain_rows @ at.rows)
-        return self._with_shapes(z, beam, follow)
+        assert point.following is not None
+        rows = increment_rows(self.space, z)
+        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        return self._with_shapes(z, placement.strain_rows @ rows, point.following)
+
+    def generalised_force(self, z: Array, point: OperatingPoint, work: Array) -> Array:
+        """(N, k): force of k actions that do ``work`` (S, STRAINS, k) per strain of the sections at stations z (m)."""
+        assert point.following is not None
+        rows = increment_rows(self.space, z)
+        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        on_increments = placement.strain_rows.swapaxes(-1, -2) @ work[:, :RIGID]
+        actions = work.shape[-1]
+        force = rows.reshape(-1, self.space.size).T @ on_increments.reshape(-1, actions)
+        for table, part in zip(shape_tables(self.space, z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
+            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.terms, AMPLITUDES, actions)
+            force += point.following.T @ on_shapes.swapaxes(0, 1).reshape(-1, actions)
+        return np.asarray(force)
 
     def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
@@ -102,11 +115,15 @@ class ExactBeam:
         spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening)
         spin += at.strain_form(under_stress(moments), at.strain_rows)
         return BeamMatrices(
-            mass=at.mass(inertia, at.strain_rows),
+            mass=at.mass(inertia, self._following_at_rest),
             elastic_stiffness=elastic,
             spin_stiffness=symmetric(spin),
             gyroscopic=at.form(inertia.gyroscopic),
         )
+
+    @cached_property
+    def _following_at_rest(self) -> Array:
+        return self.at_stations.amplitudes(self.at_stations.strain_rows)
 
     @cached_property
     def linear_steady_state(self) -> SteadyState:
@@ -120,7 +137,14 @@ class ExactBeam:
         if not self.nonlinear or speed == 0.0:
             linear, matrices = self.linear_steady_state, self.matrices
             steady = SteadyState(speed**2 * linear.coefficients, speed**2 * linear.amplitudes)
-            return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, steady)
+            return OperatingPoint(
+                speed,
+                matrices.mass,
+                matrices.stiffness(speed),
+                speed * matrices.gyroscopic,
+                steady,
+                self._following_at_rest,
+            )
         return self.at_stations.about(self._steady_state(speed, near), speed)
 
     def _steady_state(self, speed: float, near: SteadyState | None) -> Array:
