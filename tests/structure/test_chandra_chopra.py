@@ -40,9 +40,7 @@ def test_cas_walls_agree_with_finite_elements_of_the_same_material(
     assert np.abs(off).max() < 0.71
 
 
-def test_cas_beam_agrees_with_finite_elements_but_for_its_clamp(
-    finite_elements, graphite_of_the_elements, deviation, monkeypatch
-):
+def test_cas_beam_agrees_with_finite_elements_but_for_its_clamp(finite_elements, graphite_of_the_elements, deviation, monkeypatch):
     """The elements are of a section far from its ends. A section of the beam cannot warp at the clamp, which is worth 1.2 %; one
     that warps there too has their frequencies within 0.35 %.
     """
