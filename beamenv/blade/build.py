@@ -46,7 +46,7 @@ class Blade:
     @cached_property
     def full(self) -> FullModel:
         """What acts on it and what is seen of it."""
-        return full_model(self.beam, self.config.patches)
+        return full_model(self.beam, self.config.patches, self.config.speed)
 
     @cached_property
     def plant(self) -> Plant:
@@ -56,7 +56,6 @@ class Blade:
             plant = reduced_plant(
                 modal,
                 self.full,
-                self.beam.matrices.stiffness(config.speed),
                 damping_ratio=config.damping_ratio,
                 effort_weight=config.effort_weight,
                 white_load=config.white_load,
@@ -103,7 +102,7 @@ class Blade:
 
 
 _BEAM = ("beam", "patches", "model")
-_MADE_OF = {"beam": _BEAM, "modal": (*_BEAM, "speed", "modes", "gyroscopic"), "full": _BEAM}
+_MADE_OF = {"beam": _BEAM, "modal": (*_BEAM, "speed", "modes", "gyroscopic"), "full": (*_BEAM, "speed")}
 """The fields of a configuration that each part depends on."""
 
 

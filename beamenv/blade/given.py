@@ -61,8 +61,15 @@ class GivenBlade(Blade):
         strain = self.full.strain @ self.true_modal.mode_shapes if model.strain is None else model.strain
         plant = reduced_plant(
             ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic),  # its trial functions are its modes
-            FullModel(model.actuation, model.charges, model.line_load, model.tip, strain),
-            np.diag(omega**2),
+            FullModel(
+                forces=model.actuation,
+                charges=model.charges,
+                line_load=model.line_load,
+                tip=model.tip,
+                strain=strain,
+                steady_strain=self.full.steady_strain,
+                response=self.full.response,
+            ),
             damping_ratio=config.damping_ratio if model.damping_ratio is None else model.damping_ratio,
             effort_weight=config.effort_weight,
             white_load=config.white_load,

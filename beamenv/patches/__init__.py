@@ -2,6 +2,18 @@
 
 from beamenv.patches.layout import PatchLayout
 from beamenv.patches.material import MFC, PATCH_MATERIALS, PZT, PatchMaterial
-from beamenv.patches.operators import actuation, force_per_span, patch_force, sensing
+from beamenv.patches.operators import PatchResponse, actuation, force_per_span, local_response, patch_force, sensing
 
-__all__ = ["MFC", "PATCH_MATERIALS", "PZT", "PatchLayout", "PatchMaterial", "actuation", "force_per_span", "patch_force", "sensing"]
+__all__ = [
+    "MFC",
+    "PATCH_MATERIALS",
+    "PZT",
+    "PatchLayout",
+    "PatchMaterial",
+    "PatchResponse",
+    "actuation",
+    "force_per_span",
+    "local_response",
+    "patch_force",
+    "sensing",
+]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,16 +12,27 @@ from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL, PatchLayout
 from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam, check_fit
+from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.trial_functions import Stations
 
 Array = NDArray[np.float64]
 
+CLASSICAL = slice(2, 6)
+"""Extension, bending and twist among the section's resultants; of transverse shear a patch raises none."""
 
-def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float, z: Array) -> Array:
-    """Generalised force (S, N) per volt and per metre of a patch at stations z (m) that it covers.
+LOCAL_STATIONS = 4
+"""Gauss stations on each piece of a patch: its strains hardly change along it."""
 
-    The condensed piezoelectric resultants times every strain row of the wall (thesis Eq. 4.18, from the energy).
+
+def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float, z: Array, speed: float = 0.0) -> Array:
+    """Generalised force (S, N) per volt and per metre of a patch at stations z (m) that it covers, on vibration at a speed (rad/s).
+
+    The piezoelectric stress in the sheet times the strains of the solid section; in the thesis' model the condensed resultants
+    times every strain row of the wall (thesis Eq. 4.18, from the energy).
     """
+    if beam.model == "blade":
+        sections, work = work_on_section(beam, patch, wall, width)
+        return np.asarray(np.einsum("sg,sgn->sn", sections.at(z, work), beam.exact.section_strains(z, beam.at(speed))))
     walls = beam.walls_at(z, cuts=((wall, width),))
     under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in walls.points.edges]
     covered = np.repeat(under, 2)
@@ -30,16 +42,33 @@ def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: f
     return np.asarray(np.einsum("sg,sgn->sn", per_strain, strains))
 
 
-def patch_force(beam: RotatingBeam, patch: PatchMaterial, wall: str, start: float, length: float, width: float) -> Array:
+def work_on_section(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float) -> tuple[SectionsAlong, Array]:
+    """The sections of a blade, and the work (V, STRAINS) per volt and metre that a patch does on the strains of each of them."""
+    sections = beam.exact.cut_for(wall, width)
+    under = np.array([edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in sections.solid.ring.edges])
+    outer = 0.5 * beam.section.thickness
+    stress = patch.stress_in_wall()[[0, 1, 2]] / patch.electrode_spacing
+    return sections, sections.solid.layer_force(under, outer - patch.thickness, outer, stress)
+
+
+def patch_force(
+    beam: RotatingBeam, patch: PatchMaterial, wall: str, start: float, length: float, width: float, speed: float = 0.0
+) -> Array:
     """Generalised force (N,) per volt of one patch.
 
     ``ValueError`` for a patch that leaves the blade or does not fit its wall.
     """
-    return patch_forces(beam, patch, wall, (start,), length, width)[:, 0]
+    return patch_forces(beam, patch, wall, (start,), length, width, speed)[:, 0]
 
 
 def patch_forces(
-    beam: RotatingBeam, patch: PatchMaterial, wall: str, starts: Sequence[float], length: float, width: float
+    beam: RotatingBeam,
+    patch: PatchMaterial,
+    wall: str,
+    starts: Sequence[float],
+    length: float,
+    width: float,
+    speed: float = 0.0,
 ) -> Array:
     """Generalised force (N, k) per volt of each of k patches on one wall.
 
@@ -48,7 +77,7 @@ def patch_forces(
     for start in starts:
         check_fit(beam, patch.inlay(wall, start, length, width))
     under = [stations_under(beam, start, start + length) for start in starts]
-    per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]))
+    per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]), speed)
     ends = np.cumsum([len(stations.z) for stations in under])
     return np.column_stack([stations.weight @ part for stations, part in zip(under, np.split(per_span, ends[:-1]), strict=True)])
 
@@ -61,15 +90,51 @@ def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
     return Stations.between(breakpoints[apart], beam.terms + EXTRA_STATIONS)
 
 
-def actuation(beam: RotatingBeam, layout: PatchLayout) -> Array:
-    """F: generalised force per volt, (N, actuators), or (N, 1) when ganged; ``beam`` carries the inlays of passive patches."""
+def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
+    """F: generalised force per volt, (N, actuators), or (N, 1) when ganged; ``beam`` carries the inlays of passive patches and
+    vibrates about its steady state at ``speed`` rad/s.
+    """
     starts = layout.actuator_positions(beam.length)
-    forces = patch_forces(beam, layout.patch, ACTUATOR_WALL, starts, layout.length, layout.width)
+    forces = patch_forces(beam, layout.patch, ACTUATOR_WALL, starts, layout.length, layout.width, speed)
     return forces.sum(axis=1, keepdims=True) if layout.ganged else forces
 
 
-def sensing(beam: RotatingBeam, layout: PatchLayout) -> Array:
+def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
     """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
     starts = layout.sensor_positions(beam.length)
-    forces = patch_forces(beam, layout.patch, SENSOR_WALL, starts, layout.length, layout.width)
+    forces = patch_forces(beam, layout.patch, SENSOR_WALL, starts, layout.length, layout.width, speed)
     return layout.patch.charge_per_reaction * forces.T
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PatchResponse:
+    """What voltages on the patches do to the blade at rest."""
+
+    energy: Array
+    """(m, m), J/V²: twice the energy that the actuators store."""
+    charges: Array
+    """(p, m), C/V: what the sensors show of it."""
+
+
+def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
+    """FᵀK_e⁻¹F and C_s K_e⁻¹F of the blade at rest, exactly, however short its patches are.
+
+    Stresses that a patch raises in a cantilever balance within each section, so that its strains C⁻¹f are where the patch is and
+    nowhere else, f (4,) being its stress resultants and C the section's classical stiffness: ∫ f_iᵀ C⁻¹ f_j dz over the span
+    that two patches share. (That of a section's end effects, a share of some per cent at the ends of a patch, is left out.)
+    """
+    sides = [(ACTUATOR_WALL, layout.actuator_positions(beam.length)), (SENSOR_WALL, layout.sensor_positions(beam.length))]
+    edges = [edge for _, starts in sides for start in starts for edge in (start, start + layout.length)]
+    stations = Stations.between(beam.breakpoints(edges), LOCAL_STATIONS)
+    strains = []
+    for wall, starts in sides:
+        sections, work = work_on_section(beam, layout.patch, wall, layout.width)
+        strain = sections.at(stations.z, np.einsum("vg,vgk->vk", work, sections.solid.saint_venant)[:, CLASSICAL])
+        strains += [strain * ((stations.z > start) & (stations.z < start + layout.length))[:, None] for start in starts]
+    sections = beam.exact.sections
+    stiffness = sections.at(stations.z, sections.solid.classical_stiffness)
+    each = np.stack(strains, axis=-1)  # (S, 4, patches): C⁻¹f
+    whole = np.einsum("s,ski,skl,slj->ij", stations.weight, each, stiffness, each, optimize=True)
+    m = len(sides[0][1])
+    gang = np.ones((m, 1)) if layout.ganged else np.eye(m)
+    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from beamenv.configuration import Count, checked
-from beamenv.patches import PatchLayout, actuation, sensing
+from beamenv.patches import PatchLayout, PatchResponse, actuation, local_response, sensing
 from beamenv.plant.plant import Plant
 from beamenv.plant.read_only import ReadOnly
 from beamenv.structure import RotatingBeam
@@ -49,21 +49,25 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
             f"speed = {float(speed)!r} rad/s must be at least 0 and below the critical speed, {beam.critical_speed:.6g} rad/s."
         )
     modes = checked("blade.modes", modes, Count(1, beam.space.size))  # so many trial functions
-    matrices = beam.matrices
-    frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), modes)
-    coupling = speed * shapes.T @ matrices.gyroscopic @ shapes if gyroscopic else np.zeros((modes, modes))
+    point = beam.at(speed)
+    frequencies, shapes = normal_modes(point.mass, point.stiffness, modes)
+    coupling = shapes.T @ point.gyroscopic @ shapes if gyroscopic else np.zeros((modes, modes))
     return ModalModel(frequencies, shapes, coupling)
 
 
-def surface_strain(beam: RotatingBeam) -> Array:
+STRAIN_STATIONS = (1e-6, 0.25, 0.5, 0.75)
+"""Of the span: where strains are watched."""
+
+
+def surface_strain(beam: RotatingBeam, speed: float) -> Array:
     """(k, N): spanwise strain at the outer face of every wall point, at the root and at each quarter of the span."""
-    rows = beam.surface_strain(beam.length * np.array([1e-6, 0.25, 0.5, 0.75]))
+    rows = beam.surface_strain(beam.length * np.array(STRAIN_STATIONS), speed)
     return rows.reshape(-1, rows.shape[-1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FullModel(ReadOnly):
-    """What acts on a blade and what is seen of it, by its N trial functions: the same at any speed."""
+    """What acts on a blade that turns at one speed and what is seen of it, by its N trial functions."""
 
     forces: Array
     """F (N, m), per V."""
@@ -75,17 +79,29 @@ class FullModel(ReadOnly):
     """(2, N), m: lag, flap."""
     strain: Array
     """(k, N)."""
+    steady_strain: Array
+    """(k,): what the steady state strains the blade there; zero in the thesis' model."""
+    response: PatchResponse
+    """Of the patches on the blade at rest; in the thesis' model FᵀK⁻¹F and C_s K⁻¹F at the speed, by the trial functions."""
 
 
-def full_model(beam: RotatingBeam, layout: PatchLayout) -> FullModel:
-    """That of a blade which carries the inlays of passive patches."""
+def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float) -> FullModel:
+    """That of a blade which carries the inlays of passive patches, at a speed in rad/s."""
     tip = beam.displacements(np.array([beam.length]))
+    forces, charges = actuation(beam, layout, speed), sensing(beam, layout, speed)
+    if beam.model == "thesis":
+        static = np.linalg.solve(beam.at(speed).stiffness, forces)
+        response = PatchResponse(forces.T @ static, charges @ static)
+    else:
+        response = local_response(beam, layout)
     return FullModel(
-        forces=actuation(beam, layout),
-        charges=sensing(beam, layout),
+        forces=forces,
+        charges=charges,
         line_load=beam.line_load(),
         tip=np.vstack([tip["u"], tip["v"]]),
-        strain=surface_strain(beam),
+        strain=surface_strain(beam, speed),
+        steady_strain=beam.steady_strain(beam.length * np.array(STRAIN_STATIONS), speed).ravel(),
+        response=response,
     )
 
 
@@ -133,7 +149,6 @@ def in_modes(
 def reduced_plant(
     modal: ModalModel,
     full: FullModel,
-    stiffness: Array,
     *,
     damping_ratio: float | Array,
     effort_weight: float,
@@ -143,7 +158,7 @@ def reduced_plant(
     voltage_limits: tuple[float, float],
     control_interval: float,
 ) -> Plant:
-    """The plant of one blade with the stiffness K (N, N) at its speed; other arguments as in ``BladeConfig``.
+    """The plant of one blade; arguments as in ``BladeConfig``.
 
     The damping ratio may be one of each mode (r,).
     """
@@ -153,7 +168,7 @@ def reduced_plant(
         forces=forces,
         charges=full.charges,
         line_load=full.line_load,
-        stored_energy=forces.T @ np.linalg.solve(stiffness, forces),
+        stored_energy=full.response.energy,
         damping_ratio=damping_ratio,
         effort_weight=effort_weight,
     )

@@ -11,6 +11,9 @@ from pydantic import InstanceOf
 
 from beamenv.configuration import Count, Number, Positive, Refused, checked, configuration
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
+from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
+from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
+from beamenv.structure.geometrically_exact.sections_along import Planform, SectionsAlong
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
 from beamenv.structure.section.section import THEORY, Metres, Section, SpanWalls
@@ -78,18 +81,51 @@ class RotatingBeam:
     @cached_property
     def space(self) -> TrialSpace:
         """The trial functions."""
-        return TrialSpace(self.length, self.terms, rigid=self.shear == "rigid")
+        return TrialSpace(self.length, self.terms, rigid=self.shear == "rigid", warping=self.model == "blade")
+
+    @cached_property
+    def exact(self) -> ExactBeam:
+        """The geometrically exact beam on solid sections: what the blade's model computes with."""
+        planform = Planform(self.length, np.radians(self.pretwist_deg), np.radians(self.presetting_deg), self.taper)
+        return ExactBeam(
+            space=self.space,
+            stations=Stations.graded(self.breakpoints(self._edges), self.terms + EXTRA_STATIONS),
+            sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
+            hub_radius=self.hub_radius,
+            nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
+        )
 
     @cached_property
     def matrices(self) -> BeamMatrices:
-        """M, K_e, K_Ω, G₁: assembled once, good at any speed."""
-        edges = [edge for inlay in self.inlays for edge in (inlay.start, inlay.start + inlay.length)]
-        stations = Stations.between(self.breakpoints(edges), self.terms + EXTRA_STATIONS)
-        walls = self.walls_at(stations.z)
-        matrices = assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+        """M, K_e, K_Ω, G₁: assembled once, good at any speed; under the stresses of a linear steady state in the blade's model."""
+        matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
         return matrices
+
+    def _wall_matrices(self) -> BeamMatrices:
+        stations = Stations.between(self.breakpoints(self._edges), self.terms + EXTRA_STATIONS)
+        walls = self.walls_at(stations.z)
+        return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+
+    @property
+    def _edges(self) -> list[float]:
+        return [edge for inlay in self.inlays for edge in (inlay.start, inlay.start + inlay.length)]
+
+    def at(self, speed: float) -> OperatingPoint:
+        """M, K, G and the steady state at a speed, rad/s; ``ValueError`` where there is none below the critical speed.
+
+        From the critical speed on, and in the thesis' model, K_e + Ω² K_Ω and Ω G₁.
+        """
+        if self.model == "thesis" or speed >= self.critical_speed:
+            matrices = self.matrices
+            return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
+        known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_point", {})
+        if speed not in known:
+            point = self.exact.at(speed)
+            known.clear()
+            known[speed] = point
+        return known[speed]
 
     def breakpoints(self, edges: list[float]) -> Array:
         """Ascending span coordinates of root, tip and the given edges, without repetition."""
@@ -123,33 +159,33 @@ class RotatingBeam:
 
         ``motions`` keeps only some of lag, flap, extension, twist, each with its section rotation.
         """
-        speed, count, matrices = self._selected(speed, count, motions)
-        if gyroscopic and np.any(matrices.gyroscopic) and speed:
-            return whirling_frequencies(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed))[:count]
-        return normal_modes(matrices.mass, matrices.stiffness(speed), count)[0]
+        point, count = self._selected(speed, count, motions)
+        if gyroscopic and np.any(point.gyroscopic):
+            return whirling_frequencies(point.mass, point.gyroscopic, point.stiffness)[:count]
+        return normal_modes(point.mass, point.stiffness, count)[0]
 
     def modes(self, speed: float = 0.0, count: int = 6, motions: tuple[str, ...] | None = None, gyroscopic: bool = True) -> Modes:
         """Frequencies, mode shapes and families of the first ``count`` modes at a speed in rad/s below the critical one."""
-        speed, count, matrices = self._selected(speed, count, motions)
+        point, count = self._selected(speed, count, motions)
         shapes: Array | NDArray[np.complex128]
         if gyroscopic and speed:
             if speed >= self.critical_speed:
                 raise Refused("speed", speed, f"below the critical speed, {self.critical_speed:.6g} rad/s")
-            frequencies, shapes = whirling_modes(matrices.mass, speed * matrices.gyroscopic, matrices.stiffness(speed), count)
+            frequencies, shapes = whirling_modes(point.mass, point.gyroscopic, point.stiffness, count)
         else:
-            frequencies, shapes = normal_modes(matrices.mass, matrices.stiffness(speed), count)
+            frequencies, shapes = normal_modes(point.mass, point.stiffness, count)
         full = self._all_coefficients(shapes, motions)
         blocks = [self.space.columns((motion,)) for motion in MOTIONS]
-        participation = energy_participation(self.matrices.mass, full, blocks)
+        participation = energy_participation(self.at(speed).mass, full, blocks)
         names = list(MOTIONS)
         families = tuple(names[k] for k in participation.argmax(axis=1))
         return Modes(frequencies, full, families, participation)
 
-    def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> tuple[float, int, BeamMatrices]:
+    def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> tuple[OperatingPoint, int]:
         speed = checked("speed", speed, Number(ge=0.0, unit="rad/s"))
         columns = self.space.columns(motions)
         count = checked("count", count, Count(1, len(columns)))
-        return speed, count, self.matrices if motions is None else self.matrices.restricted(columns)
+        return self.at(speed) if motions is None else self.at(speed).restricted(columns), count
 
     def _all_coefficients(
         self, shapes: Array | NDArray[np.complex128], motions: tuple[str, ...] | None
@@ -163,13 +199,25 @@ class RotatingBeam:
         rows = self.space.evaluate(np.atleast_1d(np.asarray(z, dtype=float)))
         return {name: rows[name, 0] for name in ("u", "v", "s", "theta_x", "theta_y", "phi")}
 
-    def surface_strain(self, z: Array) -> Array:
-        """Rows (stations, points, N): spanwise strain at the outer face of the walls' Gauss points, at z (m)."""
+    def surface_strain(self, z: Array, speed: float = 0.0) -> Array:
+        """Rows (stations, points, N): spanwise strain at points of the outer face, at z (m), of vibration at a speed in rad/s."""
+        if self.model == "blade":
+            face = self.exact.sections.at(z, self.exact.sections.solid.face_strain())
+            return np.asarray(face @ self.exact.section_strains(z, self.at(speed)))
         walls = self.walls_at(z)
         outer = 0.5 * walls.laws.thickness[..., None]
         rows = walls.strain_rows()
         at_face = rows[..., 0, :] + outer * rows[..., 1, :] + outer**3 * rows[..., 2, :]
         return np.asarray(at_face @ generalised_strains(self.space.evaluate(z)))
+
+    def steady_strain(self, z: Array, speed: float) -> Array:
+        """(stations, points): spanwise strain at the points of ``surface_strain`` as the blade turns and nothing vibrates; zero in
+        the thesis' model, which leaves it out.
+        """
+        if self.model == "thesis":
+            return np.zeros(self.surface_strain(z).shape[:2])
+        face = self.exact.sections.at(z, self.exact.sections.solid.face_strain())
+        return np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
 
     def line_load(self) -> Array:
         """Generalised force (N, 2) per N/m of uniform line load in lag and in flap."""

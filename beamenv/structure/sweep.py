@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,9 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from beamenv.configuration import Count, Refused, checked
 from beamenv.structure.assembly import BeamMatrices
 from beamenv.structure.beam import RotatingBeam
-from beamenv.structure.modes import critical_speed, diverged_frequencies, reduced, stable_frequencies
+from beamenv.structure.geometrically_exact.sections_along import between
+from beamenv.structure.modes import diverged_frequencies, reduced, stable_frequencies
 
 Array = NDArray[np.float64]
+
+NODES = 8
+"""Speeds at which steady states are worked out for a sweep of more."""
 
 STACK = 64
 """Eigenproblems solved in one call: beyond this a larger stack only takes more memory."""
@@ -41,17 +46,73 @@ def frequency_sweep(
 def _sweep(beam: RotatingBeam, speeds: Array, count: int, motions: tuple[str, ...] | None, gyroscopic: bool) -> Array:
     columns = beam.space.columns(motions)
     count = checked("count", count, Count(1, len(columns)))
-    matrices = beam.matrices if motions is None else beam.matrices.restricted(columns)
-    elastic, spin, coupling = mass_reduced(matrices)
-    critical = critical_speed(matrices.elastic_stiffness, matrices.spin_stiffness)
+    critical = beam.critical_speed
     frequencies = np.empty((len(speeds), count))
-    groups = (np.flatnonzero(speeds < critical), np.flatnonzero(speeds >= critical))
-    for diverged, group in enumerate(groups):
+    below, beyond = np.flatnonzero(speeds < critical), np.flatnonzero(speeds >= critical)
+    about_moving = beam.model == "blade" and beam.exact.nonlinear
+    for diverged, group, nonlinear in ((False, below, about_moving), (True, beyond, False)):
+        family = SteadyFamily.of(beam, columns, speeds[group]) if nonlinear else LinearFamily.of(beam, columns)
         for start in range(0, len(group), STACK):
             picked = group[start : start + STACK]
-            omega = speeds[picked, None, None]
-            frequencies[picked] = _stack(elastic + omega**2 * spin, omega * coupling, gyroscopic, bool(diverged))[:, :count]
+            frequencies[picked] = _stack(*family.at(speeds[picked]), gyroscopic, diverged)[:, :count]
     return frequencies
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearFamily:
+    """K and G at any speed in coordinates in which M is the identity: K_e + Ω² K_Ω and Ω G₁."""
+
+    elastic: Array
+    spin: Array
+    coupling: Array
+
+    @classmethod
+    def of(cls, beam: RotatingBeam, columns: NDArray[np.intp]) -> LinearFamily:
+        """Of some coefficients of a beam, the others held at zero."""
+        return cls(*mass_reduced(beam.matrices.restricted(columns)))
+
+    def at(self, speeds: Array) -> tuple[Array, Array]:
+        """(S, N, N) each."""
+        omega = speeds[:, None, None]
+        return self.elastic + omega**2 * self.spin, omega * self.coupling
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SteadyFamily:
+    """The same about the non-linear steady states, of which few are worked out: between them K and G/Ω, smooth functions of Ω²,
+    follow a polynomial.
+    """
+
+    nodes: Array
+    """Ω² (n,)."""
+    stiffness: Array
+    coupling: Array
+    """(n, N, N)"""
+
+    @classmethod
+    def of(cls, beam: RotatingBeam, columns: NDArray[np.intp], speeds: Array) -> SteadyFamily:
+        """For speeds (S,) in any order; where they are few each is worked out itself."""
+        nodes = np.unique(speeds**2) if len(np.unique(speeds)) <= NODES else _chebyshev(speeds.min() ** 2, speeds.max() ** 2)
+        stiffness, coupling, near = [], [], None
+        for square in nodes.tolist():
+            point = beam.exact.at(float(np.sqrt(square)), near)
+            near = point.steady
+            point = point.restricted(columns)
+            root = np.asarray(np.linalg.cholesky(point.mass), dtype=np.float64)
+            stiffness.append(reduced(root, point.stiffness))
+            coupling.append(reduced(root, point.gyroscopic) / max(np.sqrt(square), 1.0))
+        return cls(nodes, np.array(stiffness), np.array(coupling))
+
+    def at(self, speeds: Array) -> tuple[Array, Array]:
+        """(S, N, N) each."""
+        weights = between(self.nodes, speeds**2)
+        coupling = np.einsum("sn,nij->sij", weights, self.coupling)
+        return np.einsum("sn,nij->sij", weights, self.stiffness), np.maximum(speeds, 1.0)[:, None, None] * coupling
+
+
+def _chebyshev(low: float, high: float) -> Array:
+    nodes = np.cos(np.pi * (np.arange(NODES)[::-1] + 0.5) / NODES)
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * nodes)
 
 
 def mass_reduced(matrices: BeamMatrices) -> tuple[Array, Array, Array]:

@@ -31,6 +31,13 @@ class TrialSpace:
     length: float
     terms: int
     rigid: bool
+    warping: bool = False
+    """Whether sections warp at will and shear, so that no slope need vanish at the clamp."""
+
+    def root_order(self, field: str) -> int:
+        """The power of z with which a field leaves the clamp."""
+        bends = field in ("u", "v") and self.rigid
+        return ROOT_ORDER[field] if bends or not self.warping else 1
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -58,7 +65,7 @@ class TrialSpace:
             block = slice(index * self.terms, (index + 1) * self.terms)
             for order in range(3):
                 row = np.zeros((len(z), self.size))
-                row[:, block] = tables[ROOT_ORDER[name]][order]
+                row[:, block] = tables[self.root_order(name)][order]
                 rows[name, order] = row
         if self.rigid:
             for order in range(2):
@@ -101,6 +108,10 @@ def gauss_rule(points: int) -> tuple[Array, Array]:
     return rule
 
 
+LEAST = 4
+"""Stations on the shortest piece, between whose ends trial functions hardly bend."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Stations:
     """Gauss stations along the span: ``per_piece`` on each piece between breakpoints, where the blade may change abruptly."""
@@ -117,6 +128,14 @@ class Stations:
         half = 0.5 * np.diff(breakpoints)
         z = (breakpoints[:-1] + half)[:, None] + half[:, None] * nodes
         return cls(z.ravel(), (half[:, None] * weights).ravel(), breakpoints, per_piece)
+
+    @classmethod
+    def graded(cls, breakpoints: Array, order: int) -> Stations:
+        """Stations for functions of ``order`` on the whole span: the fewer the shorter a piece is."""
+        share = np.diff(breakpoints) / (breakpoints[-1] - breakpoints[0])
+        pieces = [cls.between(breakpoints[k : k + 2], int(np.ceil(LEAST + order * part))) for k, part in enumerate(share)]
+        z, weight = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("z", "weight"))
+        return cls(z, weight, breakpoints, 0)
 
     def integral_to_tip(self, values: Array) -> Array:
         """∫_z^L f dσ at every station, exact for f polynomial (degree < per_piece) on each piece."""

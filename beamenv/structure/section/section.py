@@ -57,6 +57,14 @@ class Section(ABC):
         """The wall that each of the K edges belongs to; edge k runs from vertex k to vertex k + 1."""
 
     @property
+    def placed_vertices(self) -> Array:
+        """(K, 2), m: the corners with the mid-line's centroid on the pitch axis, wherever their origin is."""
+        vertices = self.vertices
+        following = np.roll(vertices, -1, axis=0)
+        length = np.hypot(*(following - vertices).T)
+        return vertices - 0.5 * (length @ (vertices + following)) / length.sum()
+
+    @property
     @abstractmethod
     def thickness_limit(self) -> float:
         """Wall thickness (m) at which the walls would fill the section."""

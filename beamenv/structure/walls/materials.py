@@ -63,6 +63,35 @@ class Lamina:
         """Q̄44 in Pa for γ_nz: G23 cos² + G13 sin²."""
         return float(self.G23 * np.cos(angle) ** 2 + self.G13 * np.sin(angle) ** 2)
 
+    @property
+    def nu23(self) -> float:
+        """Contraction through the thickness per extension across the fibres: that of a ply isotropic in the plane 2, 3,
+        E2/2G23 − 1, or as near to it as leaves its energy positive.
+        """
+        most = 1.0 - 2.0 * self.nu12**2 * self.E2 / self.E1
+        return float(np.clip(0.5 * self.E2 / self.G23 - 1.0, -0.95, most - 1e-3 * (1.0 + most)))
+
+    def solid_stiffness(self) -> NDArray[np.float64]:
+        """(6, 6) in Pa for (ε1, ε2, ε3, γ12, γ13, γ23), with E3 = E2 and ν13 = ν12."""
+        compliance = np.zeros((6, 6))
+        along, across = -self.nu12 / self.E1, -self.nu23 / self.E2
+        compliance[:3, :3] = [[1.0 / self.E1, along, along], [along, 1.0 / self.E2, across], [along, across, 1.0 / self.E2]]
+        compliance[[3, 4, 5], [3, 4, 5]] = 1.0 / self.G12, 1.0 / self.G13, 1.0 / self.G23
+        return np.asarray(np.linalg.inv(compliance), dtype=np.float64)
+
+
+def wall_stiffness(material: Lamina, angle: float) -> NDArray[np.float64]:
+    """(6, 6) in Pa for (ε_ss, ε_nn, γ_sn, γ_sz, γ_nz, ε_zz) of a wall, with the fibres ``angle`` (rad) from s towards z."""
+    c, s = np.cos(angle), np.sin(angle)
+    to_material = np.zeros((6, 6))  # 1 = c s + s z, 2 = −s s + c z, 3 = n
+    to_material[0, [0, 3, 5]] = c * c, c * s, s * s
+    to_material[1, [0, 3, 5]] = s * s, -c * s, c * c
+    to_material[2, 1] = 1.0
+    to_material[3, [0, 3, 5]] = -2.0 * c * s, c * c - s * s, 2.0 * c * s
+    to_material[4, [2, 4]] = c, s
+    to_material[5, [2, 4]] = -s, c
+    return np.asarray(to_material.T @ material.solid_stiffness() @ to_material)
+
 
 def strain_rotation(angle: float) -> NDArray[np.float64]:
     """(3, 3): engineering strains (ε_ss, ε_zz, γ_sz) of the wall to (ε1, ε2, γ12) of a ply turned by ``angle`` (rad)."""

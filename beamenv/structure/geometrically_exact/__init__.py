@@ -1,0 +1,1 @@
+"""Beams whose sections turn and move by any amount: the steady state under spin, and vibration about it."""

@@ -1,0 +1,145 @@
+"""The sections of a blade along its span: solid sections at few sizes and with every combination of inlays, and between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.geometrically_exact.rotations import about_span
+from beamenv.structure.section.mesh import ring
+from beamenv.structure.section.section import Section
+from beamenv.structure.section.solid_sections import SolidSections
+from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.laminate import Laminate, Layup
+
+Array = NDArray[np.float64]
+
+SIZES = 7
+"""Sizes at which the sections of a tapered blade are worked out; between them its properties, smooth functions of the size, follow
+a polynomial."""
+
+
+@dataclass(frozen=True, slots=True)
+class Planform:
+    """How the section is turned and scaled along the span."""
+
+    length: float
+    pretwist: float
+    presetting: float
+    """rad, of the whole span and of the root."""
+    taper: float
+
+    def scale(self, z: Array) -> Array:
+        """Size over that of the root (S,)."""
+        tip = 1.0 / self.taper
+        return tip + (1.0 - tip) * (1.0 - z / self.length)
+
+    def frames(self, z: Array) -> Array:
+        """C₀ (S, 3, 3): the axes of the sections."""
+        return about_span(self.presetting + self.pretwist * z / self.length)
+
+    @property
+    def rate(self) -> float:
+        """rad/m."""
+        return self.pretwist / self.length
+
+    @property
+    def sizes(self) -> Array:
+        """Chebyshev points between the sizes of root and tip; one for a blade without taper."""
+        if self.taper == 1.0:
+            return np.ones(1)
+        nodes = np.cos(np.pi * (np.arange(SIZES) + 0.5) / SIZES)
+        tip = 1.0 / self.taper
+        return 0.5 * (1.0 + tip) + 0.5 * (1.0 - tip) * nodes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SectionsAlong:
+    """Every section that a blade has, and which is where."""
+
+    section: Section
+    layup: Layup
+    planform: Planform
+    inlays: tuple[Inlay, ...]
+    kinds: tuple[Inlay, ...]
+    """One inlay of each kind."""
+    codes: NDArray[np.intp]
+    """(C,) ascending: which combinations of kinds occur, as sums of powers of two."""
+    solid: SolidSections
+    """C times SIZES of them (or one), combination after combination."""
+
+    @classmethod
+    def build(
+        cls, section: Section, layup: Layup, planform: Planform, inlays: Sequence[Inlay], cuts: Sequence[tuple[str, float]] = ()
+    ) -> SectionsAlong:
+        """Those of a blade whose inlays may lie anywhere."""
+        kinds = _kinds(inlays)
+        codes = _combinations(inlays, kinds)
+        sizes = planform.sizes
+        widths = sorted({*cuts, *((inlay.wall, inlay.width) for inlay in inlays)})
+        vertices = np.tile(sizes[:, None, None] * section.placed_vertices, (len(codes), 1, 1))
+        elements = ring(vertices, section.walls, section.thickness, widths)
+        laminates: dict[Laminate, int] = {}
+        hosts = {wall: Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls}
+        which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
+        for row, code in enumerate(codes.tolist()):
+            for k, edge in enumerate(elements.edges):
+                laminate = hosts[edge.wall]
+                for bit, kind in enumerate(kinds):
+                    if code >> bit & 1 and edge.lies_under(kind):
+                        laminate = laminate.with_outer_layer(kind.ply, kind.thickness)
+                which[row, k] = laminates.setdefault(laminate, len(laminates))
+        solid = SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), planform.rate)
+        return cls(section, layup, planform, tuple(inlays), kinds, codes, solid)
+
+    def cut_for(self, wall: str, width: float) -> SectionsAlong:
+        """The same sections, with the wall's elements cut where a strip of some width in its middle begins and ends."""
+        return SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [(wall, width)])
+
+    def at(self, z: Array, values: Array) -> Array:
+        """(S, …): what the sections have (V, …), at stations z (m)."""
+        code = np.zeros(len(z), dtype=np.intp)
+        for bit, kind in enumerate(self.kinds):
+            covered = np.any([inlay.covers(z) for inlay in self.inlays if _same_kind(inlay, kind)], axis=0)
+            code += covered.astype(np.intp) << bit
+        which = np.searchsorted(self.codes, code)
+        sizes = self.planform.sizes
+        if len(sizes) == 1:
+            return values[which]
+        by_size = values.reshape(len(self.codes), len(sizes), *values.shape[1:])[which]
+        return np.einsum("sn,sn...->s...", between(sizes, self.planform.scale(z)), by_size)
+
+
+def between(nodes: Array, at: Array) -> Array:
+    """(S, n): the polynomial through n nodes, at S places; Lagrange's form."""
+    apart = nodes[:, None] - nodes + np.eye(len(nodes))
+    distance = at[:, None, None] - nodes[None, None, :] * np.ones((1, len(nodes), 1))
+    factors = np.where(np.eye(len(nodes), dtype=bool), 1.0, distance / apart)
+    return np.asarray(factors.prod(axis=2))
+
+
+def _same_kind(one: Inlay, other: Inlay) -> bool:
+    return (one.wall, one.width, one.ply, one.thickness) == (other.wall, other.width, other.ply, other.thickness)
+
+
+def _kinds(inlays: Sequence[Inlay]) -> tuple[Inlay, ...]:
+    found: list[Inlay] = []
+    for inlay in inlays:
+        if not any(_same_kind(inlay, kind) for kind in found):
+            found.append(inlay)
+    return tuple(found)
+
+
+def _combinations(inlays: Sequence[Inlay], kinds: Sequence[Inlay]) -> NDArray[np.intp]:
+    """The codes of all combinations of kinds that lie over one another somewhere, the bare section first."""
+    edges = np.unique([edge for inlay in inlays for edge in (inlay.start, inlay.start + inlay.length)])
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    code = np.zeros(len(middles), dtype=np.intp)
+    for bit, kind in enumerate(kinds):
+        for inlay in inlays:
+            if _same_kind(inlay, kind):
+                code |= inlay.covers(middles).astype(np.intp) << bit
+    return np.unique(np.append(code, 0))

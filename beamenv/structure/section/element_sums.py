@@ -1,0 +1,225 @@
+"""Integrals over the solid elements of V sections that differ in size or in what their walls are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.section.elements import (
+    ACROSS,
+    RIGID,
+    gauss_rule,
+    layers,
+    lobatto_nodes,
+    places,
+    rigid_motion,
+    stiffness_in_section,
+    strain_of_tables,
+)
+from beamenv.structure.section.mesh import Ring
+from beamenv.structure.walls.laminate import Laminate, Ply
+
+Array = NDArray[np.float64]
+
+MONOMIALS = 6
+"""1, x, y, x², xy, y²."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ElementSums:
+    """Sums over the points of each of V·K elements of ``size`` displacements: energies, mass, moments of the spanwise stress."""
+
+    warping: Array
+    """∫ Bᵀ Q B (V, K, size, size)."""
+    cross: Array
+    """∫ Bᵀ Q S (V, K, size, size)."""
+    derivative: Array
+    """∫ Sᵀ Q S (V, K, size, size)."""
+    beam_strain: Array
+    """∫ Bᵀ Q S Z (V, K, size, 6)."""
+    derivative_strain: Array
+    """∫ Sᵀ Q S Z (V, K, size, 6)."""
+    beam: Array
+    """∫ (S Z)ᵀ Q S Z (V, K, 6, 6)."""
+    moments: Array
+    """∫ σ_zz (1, x, y, x², xy, y²) dA (V, K, 6, 2 size + 6), per warping, per its derivative and per beam strain."""
+    mass: Array
+    """∫ ρ (shape × shape) dA (V, K, nodes, nodes), kg/m."""
+    inertia: Array
+    """∫ ρ (1, x, y, x², xy, y²) dA (V, 6)."""
+    nodes: Array
+    """(V, lines, 4, 2), m."""
+
+    @property
+    def first(self) -> ElementSums:
+        """That of the first section alone."""
+        return ElementSums(*(getattr(self, each.name)[:1] for each in fields(self)))
+
+    @property
+    def size(self) -> int:
+        """Displacements of an element."""
+        return self.warping.shape[-1]
+
+    @property
+    def lines(self) -> int:
+        """How many lines across the wall all elements have together."""
+        return self.nodes.shape[1]
+
+    @property
+    def rigid_lines(self) -> Array:
+        """(V, 12 K, 6): rigid motion of the lines at which elements meet."""
+        order = self.lines // self.warping.shape[1]
+        meeting = self.nodes[:, ::order]
+        return rigid_motion(meeting[..., 0], meeting[..., 1]).reshape(len(meeting), -1, RIGID)
+
+    @property
+    def rigid(self) -> Array:
+        """(V, lines, 12, 6): rigid motion of all lines."""
+        return rigid_motion(self.nodes[..., 0], self.nodes[..., 1]).reshape(*self.nodes.shape[:2], -1, RIGID)
+
+    def gather(self, lines: Array) -> Array:
+        """(V, K, size, c): displacements of each element from those of the lines (V, lines, 12, c)."""
+        sections, elements = self.warping.shape[:2]
+        of_elements = lines.reshape(sections, elements, -1, *lines.shape[2:])
+        last = np.roll(of_elements[:, :, :1], -1, axis=1)
+        return np.concatenate([of_elements, last], axis=2).reshape(sections, elements, self.size, -1)
+
+    def energy(self, warping: Array, derivative: Array, strain: Array) -> Array:
+        """∫ εᵀ Q ε (V, c, c) of c states: warping and its derivative (V, K, size, c), beam strain (V, 6, c)."""
+        strain = strain[:, None]
+        transposed = (warping.swapaxes(-1, -2), derivative.swapaxes(-1, -2), strain.swapaxes(-1, -2))
+        stress = (
+            self.warping @ warping + self.cross @ derivative + self.beam_strain @ strain,
+            self.cross.swapaxes(-1, -2) @ warping + self.derivative @ derivative + self.derivative_strain @ strain,
+            self.beam_strain.swapaxes(-1, -2) @ warping + self.derivative_strain.swapaxes(-1, -2) @ derivative + self.beam @ strain,
+        )
+        energies = [left @ right for left, right in zip(transposed, stress, strict=True)]
+        return np.asarray((energies[0] + energies[1] + energies[2]).sum(axis=1))
+
+    def inertial(self, warping: Array) -> Array:
+        """M times displacements of elements (V, K, size, c)."""
+        nodes = self.mass.shape[-1]
+        shape = warping.shape
+        return (self.mass @ warping.reshape(*shape[:2], nodes, -1)).reshape(shape)
+
+
+def element_sums(ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> ElementSums:
+    """Those of V sections: the ring's S sizes are V of them, and element k of section v has the wall ``laminates[which[v, k]]``."""
+    sections, count = which.shape
+    nodes = (ring.order + 1) * (ACROSS + 1)
+    totals = _Totals.zeros(sections * count, nodes)
+    for layer in _layers(laminates, which):
+        totals.add(ring, layer, pretwist)
+    shaped = {name: values.reshape(sections, count, *values.shape[1:]) for name, values in vars(totals).items()}
+    inertia = shaped.pop("inertia").sum(axis=1)
+    return ElementSums(**shaped, inertia=inertia, nodes=line_nodes(ring))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Layer:
+    """A layer of one ply and the elements (flat indices) that have it."""
+
+    members: NDArray[np.intp]
+    low: float
+    high: float
+    ply: Ply
+
+
+def _layers(laminates: Sequence[Laminate], which: NDArray[np.intp]) -> Iterator[_Layer]:
+    for number, laminate in enumerate(laminates):
+        members = np.flatnonzero(which.ravel() == number)
+        for low, high, ply in layers(laminate):
+            yield _Layer(members, low, high, ply)
+
+
+@dataclass(frozen=True, eq=False)
+class _Totals:
+    """The fields of ``ElementSums`` while layer after layer is added, (E, …)."""
+
+    warping: Array
+    cross: Array
+    derivative: Array
+    beam_strain: Array
+    derivative_strain: Array
+    beam: Array
+    moments: Array
+    mass: Array
+    inertia: Array
+
+    @classmethod
+    def zeros(cls, elements: int, nodes: int) -> _Totals:
+        size = 3 * nodes
+        square, strain = (elements, size, size), (elements, size, RIGID)
+        moments = (elements, MONOMIALS, 2 * size + RIGID)
+        shapes = square, square, square, strain, strain, (elements, RIGID, RIGID), moments, (elements, nodes, nodes)
+        return cls(*(np.zeros(shape) for shape in (*shapes, (elements, MONOMIALS))))
+
+    def add(self, ring: Ring, layer: _Layer, pretwist: float) -> None:
+        """∫ table × table over the layer, contracted with what a pair of tables means in energy."""
+        along, weight_along = gauss_rule(ring.order + 1)
+        depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * ring.thickness else 2)
+        half = 0.5 * (layer.high - layer.low)
+        here = places(ring, layer.members, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
+        tables = here.tables()
+        nodes, count = here.value.shape[-1], len(layer.members)
+        pairs = (tables * here.weight[..., None]).swapaxes(-1, -2) @ tables
+        shapes = pairs[:, : 4 * nodes, : 4 * nodes].reshape(count, 4, nodes, 4, nodes)
+        with_beam = pairs[:, : 4 * nodes, 4 * nodes :].reshape(count, 4, nodes, 3)
+        of_beam = pairs[:, 4 * nodes :, 4 * nodes :]
+        stiffness = stiffness_in_section(layer.ply, ring.tangents.reshape(-1, 2)[layer.members])
+        B, S, Z = strain_of_tables(pretwist)
+        stressed_B, stressed_S, stressed_Z = (_stressed(stiffness, rows) for rows in (B, S[None], Z))
+        at, value = layer.members, shapes[:, 3, :, 3]
+        values, square = shapes[:, :, :, 3], shapes.transpose(0, 1, 3, 2, 4).reshape(count, 16, nodes, nodes)
+        self.warping[at] += _summed(_meaning(B, stressed_B), square)
+        self.cross[at] += _summed(_meaning(B, stressed_S), values)
+        self.derivative[at] += _summed(_meaning(S[None], stressed_S), value[:, None])
+        by_pair = with_beam.transpose(0, 1, 3, 2)[..., None]
+        self.beam_strain[at] += _summed(_meaning(B, stressed_Z), by_pair.reshape(count, 12, nodes, 1))
+        self.derivative_strain[at] += _summed(_meaning(S[None], stressed_Z), by_pair[:, 3])
+        self.beam[at] += _summed(_meaning(Z, stressed_Z), of_beam.reshape(count, 9, 1, 1))
+        monomials = np.stack([np.ones_like(here.x), here.x, here.y, here.x**2, here.x * here.y, here.y**2], axis=1)
+        weighted = monomials * here.weight[:, None]
+        sums = weighted @ tables
+        of_shapes = sums[..., : 4 * nodes].reshape(count, MONOMIALS, 4, nodes).transpose(0, 2, 1, 3)
+        parts = (
+            (stressed_B, of_shapes.reshape(count, 4, -1, 1)),
+            (stressed_S, of_shapes[:, 3].reshape(count, 1, -1, 1)),
+            (stressed_Z, sums[..., 4 * nodes :].transpose(0, 2, 1)[..., None]),
+        )
+        spanwise = [_summed(stressed[:, :, None, 5], integrals).reshape(count, MONOMIALS, -1) for stressed, integrals in parts]
+        self.moments[at] += np.concatenate(spanwise, axis=-1)
+        self.mass[at] += layer.ply.material.density * value
+        self.inertia[at] += layer.ply.material.density * weighted.sum(axis=-1)
+
+
+def _stressed(stiffness: Array, rows: Array) -> Array:
+    """(E, T, 6, c): stresses of strains (T, 6, c)."""
+    return np.asarray(stiffness[:, None] @ rows)
+
+
+def _meaning(left: Array, stressed: Array) -> Array:
+    """(E, T·U, c, d): energy of a pair of tables, from strains (T, 6, c) and stresses (E, U, 6, d)."""
+    energy = left.swapaxes(-1, -2)[None, :, None] @ stressed[:, None]
+    return energy.reshape(len(stressed), -1, *energy.shape[-2:])
+
+
+def _summed(meaning: Array, integrals: Array) -> Array:
+    """Σ over T pairs of tables: (E, T, c, d) and (E, T, i, j) to (E, ic, jd)."""
+    count, pairs, c, d = meaning.shape
+    i, j = integrals.shape[2:]
+    product = integrals.reshape(count, pairs, -1).swapaxes(-1, -2) @ meaning.reshape(count, pairs, -1)
+    return product.reshape(count, i, j, c, d).transpose(0, 1, 3, 2, 4).reshape(count, i * c, j * d)
+
+
+def line_nodes(ring: Ring) -> Array:
+    """(S, lines, 4, 2), m: the nodes on all lines across the wall, element after element."""
+    share = 0.5 * (1.0 + lobatto_nodes(ring.order)[:-1])[:, None, None]
+    depth = 0.5 * ring.thickness * lobatto_nodes(ACROSS)[:, None]
+    start = ring.points[:, :, None] + depth * ring.directions[:, :, None]
+    end = np.roll(start, -1, axis=1)
+    nodes = (1.0 - share) * start[:, :, None] + share * end[:, :, None]
+    return np.asarray(nodes.reshape(len(start), -1, ACROSS + 1, 2))

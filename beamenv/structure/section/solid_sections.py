@@ -1,0 +1,161 @@
+"""What a beam has to know of its sections, from solid elements: stiffness, warping, inertia, and where stresses act.
+
+A section moves as a rigid whole, r, and warps: u = Z r + Σ shape_j a_j(z). The first six shapes are Saint-Venant's, the others
+distort the section in its plane. Far from clamp and patches the amplitudes of the first six follow the stress resultants, and the
+beam is as stiff as the (6, 6) matrix says; at the clamp they vanish, which Saint-Venant's solution alone cannot do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
+from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
+from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
+from beamenv.structure.section.elements import RIGID, Places, gauss_rule, places, strain_of_tables, turn_of_strains
+from beamenv.structure.section.mesh import Ring
+from beamenv.structure.walls.laminate import Laminate
+
+Array = NDArray[np.float64]
+
+AMPLITUDES = RIGID + DISTORTIONS
+"""Shapes a section may take beside its rigid motion."""
+
+STRAINS = RIGID + 2 * AMPLITUDES
+"""Of a section: (γx, γy, w′, θx′, θy′, φ′), the amplitudes of its shapes, and their derivatives along the span."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SolidSections:
+    """V sections of one topology, in their own axes."""
+
+    ring: Ring
+    shapes: Array
+    """(V, K, size, AMPLITUDES): displacements of each element's nodes."""
+    pretwist: float
+    """rad/m."""
+    stiffness: Array
+    """Saint-Venant's (V, 6, 6): rows Vx, Vy, N, Mx, My, Mz."""
+    energy: Array
+    """(V, STRAINS, STRAINS): twice the strain energy per metre."""
+    inertia: Array
+    """∫ρ (1, x, y, x², xy, y²) dA (V, 6)."""
+    shape_mass: Array
+    """(V, AMPLITUDES, AMPLITUDES), per metre; the shapes' momenta on the whole are zero."""
+    stress_moments: Array
+    """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, 6) per Saint-Venant's beam strain."""
+    saint_venant: Array
+    """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
+
+    @classmethod
+    def build(cls, ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> SolidSections:
+        """Sections whose element k has the wall ``laminates[which[v, k]]``; they twist by ``pretwist`` rad/m along the span."""
+        sums = element_sums(ring, laminates, which, pretwist)
+        system = Factorised.of(sums)
+        central = central_solution(system, pretwist)
+        unit = np.sqrt(np.diagonal(central.stiffness[0]))  # resultants of unit energy, the same in all sections
+        shapes = np.concatenate([central.warping * unit, distortion_shapes(system)], axis=-1)
+        here = sums.gather(shapes)
+        return cls(
+            ring=ring,
+            shapes=here,
+            pretwist=pretwist,
+            stiffness=central.stiffness,
+            energy=_energy(sums, here),
+            inertia=sums.inertia,
+            shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
+            stress_moments=_stress_moments(sums, central, pretwist),
+            saint_venant=_saint_venant(central, unit, pretwist),
+        )
+
+    @property
+    def classical_stiffness(self) -> Array:
+        """(V, 4, 4) for (w′, θx′, θy′, φ′): no transverse force acts."""
+        return np.asarray(np.linalg.inv(np.linalg.inv(self.stiffness)[:, 2:, 2:]))
+
+    @property
+    def tension_centre(self) -> Array:
+        """(V, 2), m: where an axial force bends the section in neither direction."""
+        compliance = np.linalg.inv(self.stiffness)[:, 2:5, 2:5]
+        force = np.linalg.solve(compliance, np.array([1.0, 0.0, 0.0])[:, None])[..., 0]
+        return np.stack([-force[:, 2], force[:, 1]], axis=-1) / force[:, :1]
+
+    @property
+    def shear_centre(self) -> Array:
+        """(V, 2), m: where a transverse force twists the section in no direction, bending moments held at zero."""
+        compliance = np.linalg.inv(self.stiffness)
+        twist = compliance[:, 5, 5]
+        return np.stack([-compliance[:, 5, 1], compliance[:, 5, 0]], axis=-1) / twist[:, None]
+
+    def face_points(self) -> Array:
+        """(V, K, 2), m: where lines between elements reach the outer face."""
+        return self.ring.points + 0.5 * self.ring.thickness * self.ring.directions
+
+    def face_strain(self) -> Array:
+        """Spanwise strain (V, K, STRAINS) there, per strain of the section."""
+        every = np.arange(self.ring.points.shape[0] * self.ring.points.shape[1])
+        one = np.ones(1)
+        start = places(self.ring, every, np.array([-1.0]), np.array([0.5 * self.ring.thickness]), one, one)
+        sections, count = self.ring.points.shape[:2]
+        return self._strain(start, every)[..., 0, 5, :].reshape(sections, count, STRAINS)
+
+    def layer_force(self, under: NDArray[np.bool_], low: float, high: float, stress: Array) -> Array:
+        """Work (V, STRAINS) per strain of the section and per metre, of stresses (ss, zz, sz), Pa, in a layer from ``low`` to
+        ``high`` (m from the mid-line) of the elements ``under`` (K,).
+        """
+        members = np.flatnonzero(np.tile(under, len(self.shapes)))
+        along, weight_along = gauss_rule(self.ring.order + 1)
+        depth, weight = gauss_rule(2)
+        half = 0.5 * (high - low)
+        here = places(self.ring, members, along, low + half * (1.0 + depth), weight_along, half * weight)
+        turned = turn_of_strains(self.ring.tangents.reshape(-1, 2)[members]).swapaxes(-1, -2)[..., [0, 5, 3]] @ stress
+        strain = self._strain(here, members)
+        work = np.einsum("eqkn,eq,ek->en", strain, here.weight, turned, optimize=True)
+        return np.asarray(work.reshape(len(self.shapes), -1, STRAINS).sum(axis=1))
+
+    def _strain(self, here: Places, members: NDArray[np.intp]) -> Array:
+        """(E, Q, 6, STRAINS) at points of some elements, by their flat indices."""
+        shapes = self.shapes.reshape(-1, *self.shapes.shape[2:])[members]
+        e, q, nodes = here.value.shape
+        tables = here.tables()
+        B, S, Z = strain_of_tables(self.pretwist)
+        moved = shapes.reshape(e, nodes, 3, -1)
+        of_shapes = tables[..., : 4 * nodes].reshape(e, q * 4, nodes) @ moved.reshape(e, nodes, -1)
+        fields = of_shapes.reshape(e, q, 4, 3, -1)
+        strained = np.einsum("eqtcj,tkc->eqkj", fields, B, optimize=True)
+        onward = np.einsum("eqcj,kc->eqkj", fields[:, :, 3], S)
+        beam = np.einsum("eqt,tkc->eqkc", tables[..., 4 * nodes :], Z)
+        return np.concatenate([beam, strained, onward], axis=-1)
+
+
+def _saint_venant(central: CentralSolution, unit: Array, pretwist: float) -> Array:
+    """(V, STRAINS, 6)."""
+    state = np.zeros((len(central.strain), STRAINS, RIGID))
+    state[:, :RIGID] = central.strain
+    state[:, RIGID : 2 * RIGID] = np.diag(1.0 / unit)
+    state[:, RIGID + AMPLITUDES : 2 * RIGID + AMPLITUDES] = equilibrium(pretwist) / unit[:, None]
+    return state
+
+
+def _energy(sums: ElementSums, shapes: Array) -> Array:
+    """(V, STRAINS, STRAINS)."""
+    sections, nothing = len(shapes), np.zeros_like
+    beam = np.broadcast_to(np.eye(RIGID, STRAINS), (sections, RIGID, STRAINS))
+    padding = np.zeros((*shapes.shape[:3], RIGID))
+    warping = np.concatenate([padding, shapes, nothing(shapes)], axis=-1)
+    onward = np.concatenate([padding, nothing(shapes), shapes], axis=-1)
+    return sums.energy(warping, onward, beam)
+
+
+def _stress_moments(sums: ElementSums, central: CentralSolution, pretwist: float) -> Array:
+    """(V, 6, 6) per beam strain S⁻¹θ."""
+    here = sums.gather(central.warping)
+    size = sums.size
+    T = equilibrium(pretwist)
+    warp, onward, beam = (sums.moments[..., part] for part in (slice(size), slice(size, 2 * size), slice(2 * size, None)))
+    per_resultant = (warp @ here + onward @ (here @ T) + beam @ central.strain[:, None]).sum(axis=1)
+    return np.asarray(per_resultant @ central.stiffness).reshape(-1, MONOMIALS, RIGID)
