@@ -86,7 +86,8 @@ class BeamConfig:
     """Around the closed cell; None: that of the blade's model, "consistent", or "thesis" in the thesis'."""
     steady_state: Annotated[str | None, STEADY_STATE] = None
     """What the turning blade vibrates about; None: "nonlinear", or the blade at rest in the thesis' model, which has no other."""
-    terms: Annotated[int, TERMS] = 10
+    terms: Annotated[int | None, TERMS] = None
+    """Trial functions of each field along the span; None: 16, or 10 in the thesis' model."""
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""

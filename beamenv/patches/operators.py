@@ -87,7 +87,7 @@ def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length) if start < edge < end]
     breakpoints = np.unique([start, *edges, end])  # a patch on the opposite wall changes the shear flow where it ends
     apart = np.append(True, np.diff(breakpoints) > 1e-9 * beam.length)
-    return Stations.between(breakpoints[apart], beam.terms + EXTRA_STATIONS)
+    return Stations.between(breakpoints[apart], beam.space.terms + EXTRA_STATIONS)
 
 
 def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:

@@ -36,7 +36,7 @@ class BaseLoads:
 def base_loads(beam: RotatingBeam) -> BaseLoads:
     """The loads of a blade, from the section inertia that its mass matrix is made of."""
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length)]
-    stations = Stations.between(beam.breakpoints(edges), beam.terms + EXTRA_STATIONS)
+    stations = Stations.between(beam.breakpoints(edges), beam.space.terms + EXTRA_STATIONS)
     inertia = beam.walls_at(stations.z).inertia()
     rows = generalised_displacements(beam.space.evaluate(stations.z))
     arm = (beam.hub_radius + stations.z)[:, None]

@@ -14,7 +14,7 @@ from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strai
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import Planform, SectionsAlong
-from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
+from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
 from beamenv.structure.section.section import THEORY, Metres, Section, SpanWalls
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
@@ -66,8 +66,8 @@ class RotatingBeam:
     """"consistent": constant around the cell; "thesis": without the couplings of off-axis plies. None: that of the model."""
     steady_state: Annotated[str | None, STEADY_STATE] = None
     """What the blade vibrates about when it turns, "nonlinear" or "linear". None: "nonlinear", the blade at rest in the thesis."""
-    terms: Annotated[int, TERMS] = 10
-    """Trial functions of each field."""
+    terms: Annotated[int | None, TERMS] = None
+    """Trial functions of each field. None: 16, or 10 in the thesis' model."""
     inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
 
@@ -81,7 +81,7 @@ class RotatingBeam:
     @cached_property
     def space(self) -> TrialSpace:
         """The trial functions."""
-        return TrialSpace(self.length, self.terms, rigid=self.shear == "rigid", warping=self.model == "blade")
+        return TrialSpace(self.length, terms_of(self.model, self.terms), rigid=self.shear == "rigid", warping=self.model == "blade")
 
     @cached_property
     def exact(self) -> ExactBeam:
@@ -89,7 +89,7 @@ class RotatingBeam:
         planform = Planform(self.length, np.radians(self.pretwist_deg), np.radians(self.presetting_deg), self.taper)
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints(self._edges), self.terms + EXTRA_STATIONS),
+            stations=Stations.graded(self.breakpoints(self._edges), self.space.terms + EXTRA_STATIONS),
             sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
@@ -104,7 +104,7 @@ class RotatingBeam:
         return matrices
 
     def _wall_matrices(self) -> BeamMatrices:
-        stations = Stations.between(self.breakpoints(self._edges), self.terms + EXTRA_STATIONS)
+        stations = Stations.between(self.breakpoints(self._edges), self.space.terms + EXTRA_STATIONS)
         walls = self.walls_at(stations.z)
         return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
 
@@ -221,7 +221,7 @@ class RotatingBeam:
 
     def line_load(self) -> Array:
         """Generalised force (N, 2) per N/m of uniform line load in lag and in flap."""
-        stations = Stations.between(np.array([0.0, self.length]), self.terms + EXTRA_STATIONS)
+        stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
 

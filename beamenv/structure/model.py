@@ -8,6 +8,10 @@ from beamenv.structure.walls.wall_kinematics import SHEAR_FLOWS
 MODELS = ("blade", "thesis")
 STEADY_STATES = ("nonlinear", "linear")
 
+DEFAULT_TERMS = {"blade": 16, "thesis": 10}
+"""Trial functions of each field: ten as in the thesis; with sixteen all modes of the thesis' blade up to 6.3 krad/s are within
+0.4 % of those with twenty-five."""
+
 MODEL = Choice(MODELS)
 FLOW = Choice(SHEAR_FLOWS)
 STEADY_STATE = Choice(STEADY_STATES)
@@ -25,6 +29,11 @@ def checked_flow(model: str, shear_flow: str | None, name: str = "shear_flow") -
     if shear_flow == "thesis" and model != "thesis":
         raise Refused(name, shear_flow, "None or consistent, or come with model = 'thesis'")
     return shear_flow
+
+
+def terms_of(model: str, terms: int | None) -> int:
+    """Trial functions of each field: those asked for, or the model's own number."""
+    return DEFAULT_TERMS[model] if terms is None else terms
 
 
 def check_steady_state(model: str, steady_state: str | None, name: str = "steady_state") -> None:

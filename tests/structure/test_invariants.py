@@ -65,7 +65,7 @@ def test_mass_and_stiffness_come_out_of_their_integrals_symmetric(beam):
 @given(beam=blades(model=THESIS))
 def test_the_gyroscopic_matrix_is_the_virtual_work_of_the_coriolis_force(beam):
     """2ρΩ (δU Ẇ − δW U̇) per volume, by a quadrature of its own through the wall; that it does no work on the motion follows."""
-    stations = Stations.between(np.array([0.0, beam.length]), beam.terms + 8)
+    stations = Stations.between(np.array([0.0, beam.length]), beam.space.terms + 8)
     walls = beam.walls_at(stations.z)
     motion = motion_rows(walls.points, walls.flow, walls.laws.thickness, beam.shear)
     displaced = assembly.generalised_displacements(beam.space.evaluate(stations.z))
@@ -122,7 +122,7 @@ def test_the_critical_speed_is_the_first_at_which_a_mode_loses_its_stiffness(bea
 @given(beam=blades(terms=st.integers(2, 6)), share=SHARE_OF_CRITICAL_SPEED)
 def test_more_terms_never_raise_a_frequency_without_gyroscopic_coupling(beam, share):
     """Rayleigh and Ritz: the trial spaces are nested. About one shape, that is: at rest, or at any speed in the thesis' model."""
-    finer = replace(beam, terms=beam.terms + 1)
+    finer = replace(beam, terms=beam.space.terms + 1)
     speed = share * finer.critical_speed if beam.model == "thesis" else 0.0
     coarse, fine = (each.natural_frequencies(speed, beam.space.size, gyroscopic=False) for each in (beam, finer))
     assert np.all(fine <= coarse * (1.0 + 1e-7) + 1e-9 * coarse[-1])

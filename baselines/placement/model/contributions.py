@@ -22,6 +22,7 @@ from beamenv.patches import force_per_span
 from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
+from beamenv.structure.model import terms_of
 from beamenv.structure.modes import normal_modes
 
 Array = NDArray[np.float64]
@@ -67,7 +68,7 @@ class Contributions:
 def contributions(config: BladeConfig) -> Contributions:
     """The contributions of a configuration's patches, for any position of them; takes about 0.1 s."""
     layout = config.patches
-    span = ChebyshevSpan(OUTERMOST * config.beam.length, 2 * config.beam.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(OUTERMOST * config.beam.length, 2 * terms_of(config.model, config.beam.terms) + EXTRA_COEFFICIENTS)
     bare = config.beam.build(model=config.model)
     frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / frequencies
@@ -148,7 +149,7 @@ def quadratic(rows: Array, section: Array) -> Array:
 
 def tension_of(bare: RotatingBeam, z: Array) -> Array:
     """T₀ (nodes,) = ∫_z^L m (R₀ + σ) dσ of the bare blade, N per (rad/s)²."""
-    whole = ChebyshevSpan(bare.length, 2 * bare.terms + EXTRA_COEFFICIENTS)
+    whole = ChebyshevSpan(bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
     mass = bare.walls_at(whole.nodes).inertia().mass_per_length
     pulled = whole.integral(mass * (bare.hub_radius + whole.nodes))
     return np.asarray((whole.values(np.array([bare.length])) - whole.values(z)) @ pulled)

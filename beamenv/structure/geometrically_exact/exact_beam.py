@@ -32,8 +32,8 @@ BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), sl
 ITERATIONS = 30
 """Most Newton steps to the steady state; five or six do."""
 
-CONVERGED = 1e-10
-"""Largest increment, m or rad, of the last step."""
+CONVERGED = 1e-4
+"""Largest increment, m or rad, after which no further step is made: steps shrink as their squares, so the next were of 1e-9."""
 
 HELD = 1e-10
 """Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
@@ -277,9 +277,9 @@ class _AtStations:
         resultants, stiffness = self._stressed(placement)
         strain_rows = placement.strain_rows @ self.rows
         inertia = self.inertia(placement)
-        pull = np.einsum("s,sin,si->n", self.weight, strain_rows, resultants, optimize=True)
+        pull = strain_rows.reshape(-1, strain_rows.shape[-1]).T @ (self.weight[:, None] * resultants).ravel()
         tangent = self._tangent(placement, resultants, stiffness, inertia, strain_rows, speed)
-        return np.linalg.solve(tangent, speed**2 * self.force(inertia.centrifugal) - pull)
+        return np.asarray(np.linalg.solve(tangent, speed**2 * self.force(inertia.centrifugal) - pull))
 
     def _stressed(self, placement: Placement) -> tuple[Array, Array]:
         """Resultants (S, 6) and what the fibres' quadratic extension adds to the section's stiffness (S, 6, 6)."""

@@ -7,15 +7,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+_CROSS = np.zeros((3, 9))
+_CROSS[[0, 0, 1, 1, 2, 2], [7, 5, 2, 6, 3, 1]] = 1.0, -1.0, 1.0, -1.0, 1.0, -1.0
+
 _SMALL = 1e-4
 """rad: below, series are exact to round-off."""
 
 
 def hat(vector: Array) -> Array:
     """v̂ (…, 3, 3) with v̂ a = v × a."""
-    x, y, z = np.moveaxis(vector, -1, 0)
-    zero = np.zeros_like(x)
-    return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*vector.shape[:-1], 3, 3)
+    return (vector @ _CROSS).reshape(*vector.shape[:-1], 3, 3)
 
 
 def about_span(angle: Array) -> Array:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,21 +79,13 @@ class SectionsAlong:
         """Those of a blade whose inlays may lie anywhere."""
         kinds = _kinds(inlays)
         codes = _combinations(inlays, kinds)
-        sizes = planform.sizes
         widths = sorted({*cuts, *((inlay.wall, inlay.width) for inlay in inlays)})
-        vertices = np.tile(sizes[:, None, None] * section.placed_vertices, (len(codes), 1, 1))
-        elements = ring(vertices, section.walls, section.thickness, widths)
-        laminates: dict[Laminate, int] = {}
-        hosts = {wall: Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls}
-        which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
-        for row, code in enumerate(codes.tolist()):
-            for k, edge in enumerate(elements.edges):
-                laminate = hosts[edge.wall]
-                for bit, kind in enumerate(kinds):
-                    if code >> bit & 1 and edge.lies_under(kind):
-                        laminate = laminate.with_outer_layer(kind.ply, kind.thickness)
-                which[row, k] = laminates.setdefault(laminate, len(laminates))
-        solid = SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), planform.rate)
+        hosts = tuple(Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls)
+        sheets = tuple((kind.wall, kind.width, kind.ply, kind.thickness) for kind in kinds)
+        key = (section, hosts, sheets, codes.tobytes(), tuple(widths), planform.rate, planform.taper)
+        solid = _ALIVE.get(key)
+        if solid is None:
+            solid = _ALIVE[key] = _solid_sections(section, hosts, planform, kinds, codes, widths)
         return cls(section, layup, planform, tuple(inlays), kinds, codes, solid)
 
     def cut_for(self, wall: str, width: float) -> SectionsAlong:
@@ -111,6 +104,34 @@ class SectionsAlong:
             return values[which]
         by_size = values.reshape(len(self.codes), len(sizes), *values.shape[1:])[which]
         return np.einsum("sn,sn...->s...", between(sizes, self.planform.scale(z)), by_size)
+
+
+_ALIVE: WeakValueDictionary[Hashable, SolidSections] = WeakValueDictionary()
+"""Sections that some blade has: an equal one shares them, for they cannot be changed. They do not depend on the speed, on where
+patches are, or on how many terms there are."""
+
+
+def _solid_sections(
+    section: Section,
+    hosts: Sequence[Laminate],
+    planform: Planform,
+    kinds: Sequence[Inlay],
+    codes: NDArray[np.intp],
+    widths: Sequence[tuple[str, float]],
+) -> SolidSections:
+    sizes = planform.sizes
+    vertices = np.tile(sizes[:, None, None] * section.placed_vertices, (len(codes), 1, 1))
+    elements = ring(vertices, section.walls, section.thickness, widths)
+    by_wall, laminates = dict(zip(section.walls, hosts, strict=True)), dict[Laminate, int]()
+    which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
+    for row, code in enumerate(codes.tolist()):
+        for k, edge in enumerate(elements.edges):
+            laminate = by_wall[edge.wall]
+            for bit, kind in enumerate(kinds):
+                if code >> bit & 1 and edge.lies_under(kind):
+                    laminate = laminate.with_outer_layer(kind.ply, kind.thickness)
+            which[row, k] = laminates.setdefault(laminate, len(laminates))
+    return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), planform.rate)
 
 
 def between(nodes: Array, at: Array) -> Array:

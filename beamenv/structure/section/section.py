@@ -15,6 +15,8 @@ from beamenv.configuration import Choice, Number, Refused, checked, configuratio
 from beamenv.configuration.kinds import plain
 from beamenv.structure.model import checked_flow
 from beamenv.structure.section.inertia import SectionInertia
+from beamenv.structure.section.mesh import ring
+from beamenv.structure.section.solid_sections import SolidSections
 from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
 from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
 from beamenv.structure.walls.wall_kinematics import (
@@ -87,13 +89,29 @@ class Section(ABC):
     def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:
         """Classical stiffness (4, 4) for (w', θx', θy', φ'): EA, EI_flap, EI_lag, GJ on the diagonal and the couplings.
 
-        The transverse shear strains are condensed out (Berdichevsky, Armanios and Badir, Composites Engineering 2, 1992).
-        Units N, N m, N m². ``model``, ``shear`` and ``shear_flow`` are those of a ``RotatingBeam``. Raises ``ValueError`` for one
-        that is unknown or not the model's, and for a lay-up of other walls.
+        About the origin of the corners; no transverse force acts. Units N, N m, N m². In the blade's model that of ``properties``;
+        in the thesis' by its wall kinematics, with ``shear`` and ``shear_flow`` as in a ``RotatingBeam`` (Berdichevsky, Armanios
+        and Badir, Composites Engineering 2, 1992). Raises ``ValueError`` for an option that is unknown or not the model's, and
+        for a lay-up of other walls.
         """
         layup.check_walls(self.walls)
         checked("shear", shear, THEORY)
         flow = checked_flow(model, shear_flow)
+        return self.properties(layup).classical_stiffness if model == "blade" else self._wall_stiffness(layup, shear, flow)
+
+    def properties(self, layup: Layup) -> SectionProperties:
+        """Stiffness with transverse shear, centres and inertia by solid finite elements, about the origin of the corners.
+
+        Raises ``ValueError`` for a lay-up of other walls and for a wall too short for its thickness.
+        """
+        layup.check_walls(self.walls)
+        hosts = {wall: Laminate.equal_plies(layup.plies(wall), self.thickness) for wall in self.walls}
+        elements = ring(self.vertices[None], self.walls, self.thickness)
+        laminates = list(dict.fromkeys(hosts.values()))
+        which = np.array([[laminates.index(hosts[edge.wall]) for edge in elements.edges]])
+        return SectionProperties.of(SolidSections.build(elements, laminates, which, pretwist=0.0))
+
+    def _wall_stiffness(self, layup: Layup, shear: str, flow: str) -> Array:
         walls = SpanWalls.build(self, layup, z=np.zeros(1), scale=np.ones(1), angle=np.zeros(1), shear=shear, shear_flow=flow)
         full = walls.stiffness()[0]
         kept = [W, TX, TY, PHI]
@@ -102,6 +120,40 @@ class Section(ABC):
         shears = [GX, GY]
         return full[np.ix_(kept, kept)] - full[np.ix_(kept, shears)] @ np.linalg.solve(
             full[np.ix_(shears, shears)], full[np.ix_(shears, kept)]
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SectionProperties:
+    """What a section is worth to a beam, about the origin of its corners."""
+
+    stiffness: Array
+    """(6, 6) for (γx, γy, w', θx', θy', φ'): rows Vx, Vy, N, Mx, My, Mz; N, N m, N m²."""
+    classical_stiffness: Array
+    """(4, 4) for (w', θx', θy', φ'), the transverse shear condensed out."""
+    tension_centre: Array
+    """(2,), m: an axial force there bends the section in neither direction."""
+    shear_centre: Array
+    """(2,), m: a transverse force there does not twist the section."""
+    mass_per_length: float
+    """kg/m."""
+    mass_centre: Array
+    """(2,), m."""
+    second_moments: Array
+    """(2, 2), kg m: ∫ρ (x, y)ᵀ(x, y) dA."""
+
+    @classmethod
+    def of(cls, solid: SolidSections) -> SectionProperties:
+        """The first of some solid sections."""
+        mass, x, y, xx, xy, yy = solid.inertia[0]
+        return cls(
+            stiffness=solid.stiffness[0],
+            classical_stiffness=solid.classical_stiffness[0],
+            tension_centre=solid.tension_centre[0],
+            shear_centre=solid.shear_centre[0],
+            mass_per_length=float(mass),
+            mass_centre=np.array([x, y]) / mass,
+            second_moments=np.array([[xx, xy], [xy, yy]]),
         )
 
 

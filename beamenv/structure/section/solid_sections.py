@@ -29,7 +29,7 @@ STRAINS = RIGID + 2 * AMPLITUDES
 """Of a section: (γx, γy, w′, θx′, θy′, φ′), the amplitudes of its shapes, and their derivatives along the span."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SolidSections:
     """V sections of one topology, in their own axes."""
 
@@ -50,6 +50,12 @@ class SolidSections:
     """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, 6) per Saint-Venant's beam strain."""
     saint_venant: Array
     """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
+
+    def __post_init__(self) -> None:
+        """Nobody writes to what many share."""
+        for values in vars(self).values():
+            if isinstance(values, np.ndarray):
+                values.setflags(write=False)
 
     @classmethod
     def build(cls, ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> SolidSections:

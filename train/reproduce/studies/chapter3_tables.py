@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from beamenv.structure.model import DEFAULT_TERMS
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Matches, Verdict
@@ -88,7 +89,7 @@ def table_3_2(model: Model) -> Outcome:
 
 def table_3_3(model: Model) -> Outcome:
     """Presetting and speed."""
-    ours, early = presetting_and_speed(model, model.box.terms), presetting_and_speed(model, UNDER_CONVERGED_TERMS)
+    ours, early = presetting_and_speed(model, DEFAULT_TERMS["thesis"]), presetting_and_speed(model, UNDER_CONVERGED_TERMS)
     printed, oh = printed_presettings(), printed_presettings(("oh1", "oh2", "oh3"))
     names = [
         f"Ω = {row['speed']}, γ = {row['presetting_deg']}°, ω{mode}" for row in printed_table("table-3.3") for mode in (1, 2, 3)
