@@ -68,7 +68,7 @@ class ExactBeam:
     def section_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS, N): strains of the sections at stations z (m) per coefficient, of vibration about the steady state."""
         at = self._at
-        coefficients = self._about(point)
+        coefficients = self.about(point)
         beam = self.placement(z, coefficients).strain_rows @ self.rows(z)
         follow = at.amplitudes(self.placement(self.stations.z, coefficients).strain_rows @ at.rows)
         return self._with_shapes(z, beam, follow)
@@ -76,13 +76,13 @@ class ExactBeam:
     def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
         assert point.steady is not None
-        if self._about(point).any():
+        if self.about(point).any():
             beam = self.placement(z, point.steady.coefficients).strain
         else:
             beam = self.placement(z, np.zeros(self.space.size)).strain_rows @ self.rows(z) @ point.steady.coefficients
         return self._with_shapes(z, beam[..., None], point.steady.amplitudes[:, None])[..., 0]
 
-    def _about(self, point: OperatingPoint) -> Array:
+    def about(self, point: OperatingPoint) -> Array:
         """Coefficients (N,) of the placement that vibration is about: that at rest where the steady state is linear."""
         if self.nonlinear and point.steady is not None:
             return point.steady.coefficients
