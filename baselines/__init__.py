@@ -19,6 +19,7 @@ from baselines.laws.lqr import lqr
 from baselines.laws.mpc import PredictiveController, mpc
 from baselines.laws.no_control import no_control
 from baselines.laws.positive_position_feedback import positive_position_feedback
+from baselines.laws.reference_lqg import full_order_lqg, reference_lqg
 from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
 from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
 from baselines.laws.velocity_feedback import velocity_feedback
@@ -41,6 +42,7 @@ __all__ = [
     "clipped_lqg",
     "closed_loop_poles",
     "evaluate",
+    "full_order_lqg",
     "h_infinity",
     "h_infinity_norm",
     "lqg",
@@ -48,6 +50,7 @@ __all__ = [
     "mpc",
     "no_control",
     "positive_position_feedback",
+    "reference_lqg",
     "roll_out",
     "rotor_lqg",
     "scheduled_lqg",

@@ -72,7 +72,7 @@ class Task:
 
     @property
     def design_plant(self) -> Plant:
-        """The plant that controllers are designed for; the true one unless said otherwise."""
+        """The plant that controllers are designed for: the design blade's, of its ``modes`` modes and without electronics."""
         return self.design_blade.plant
 
     @property
@@ -120,11 +120,12 @@ def resolve_task(
     duration = checked("duration", duration, Number(gt=interval / 2, unit="s"))
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
-    truth = chosen.plants.truth
-    config = _in_scenario(config, chosen, chosen.plants.modes if truth is None else None)
-    own = config if design is None else _design_config(preset, speed, design)
-    designed = _in_scenario(own, chosen, chosen.plants.design_modes)
-    true = Blade(config) if truth is None else given_blade(config, load_plant(truth), truth, chosen.plants.modes)
+    truth, modes = chosen.plants.truth, chosen.plants.modes
+    own = _driven(config if design is None else _design_config(preset, speed, design), chosen)
+    config = _with(_driven(config, chosen), truth_modes=modes if truth is None else None)
+    known = chosen.plants.design_modes
+    designed = _with(own if design is not None else config, modes=known, truth_modes=known)  # designers know no further mode
+    true = Blade(config) if truth is None else given_blade(config, load_plant(truth), truth, modes)
     true = _alive(_BLADES, true)
     _check_failures(chosen, true.plant)
     task = Task(
@@ -158,11 +159,16 @@ def _check_failures(chosen: Scenario, plant: Plant) -> None:
             raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
 
 
-def _in_scenario(config: BladeConfig, chosen: Scenario, modes: int | None) -> BladeConfig:
-    """The blade with the drive and the number of modes that a scenario gives it."""
+def _driven(config: BladeConfig, chosen: Scenario) -> BladeConfig:
+    """The blade with the drive that a scenario gives it."""
     limits = chosen.drive.voltage_limits
-    config = config if limits is None else replace(config, voltage_limits=limits)
-    return config if modes is None else replace(config, modes=modes)
+    return config if limits is None else replace(config, voltage_limits=limits)
+
+
+def _with(config: BladeConfig, **modes: int | None) -> BladeConfig:
+    """The blade with those numbers of modes that a scenario gives."""
+    given = {name: number for name, number in modes.items() if number is not None}
+    return replace(config, **given) if given else config  # type: ignore[arg-type]
 
 
 def _design_config(preset: str, speed: float | None, design: BladeConfig | Mapping[str, Any] | str) -> BladeConfig:
@@ -229,9 +235,12 @@ def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> t
 
 def _initial_state(plant: Plant, value: Any, rows: int) -> Array:
     state = _numbers("options.initial_state", value)
-    n = len(plant.A)
-    if state.shape not in ((n,), (rows, n)):
-        raise ValueError(f"options.initial_state has shape {state.shape}, but must have shape ({n},) or ({rows}, {n}).")
+    n, b = len(plant.A), plant.blade_states
+    if state.shape not in ((n,), (rows, n), (b,), (rows, b)):
+        alone = f", or ({b},) or ({rows}, {b}), the blade's own states" if b < n else ""
+        raise ValueError(f"options.initial_state has shape {state.shape}, but must have shape ({n},) or ({rows}, {n}){alone}.")
+    if state.shape[-1] < n:
+        state = np.concatenate([state, np.zeros((*state.shape[:-1], n - b))], axis=-1)
     strain = np.abs(state @ plant.strain.T).max(initial=0.0)
     if not (np.isfinite(state).all() and strain <= FAILURE_STRAIN):
         raise ValueError(

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # LQG, and the proof that it is the optimum
 #
-# The blade obeys $x^+ = Ax + Bu + Ed$, $y = Cx + v$ exactly between samples, with white loads $d \sim N(0, W)$ and readings'
-# noise $v \sim N(0, V)$, and costs $z^T \Phi z$ an interval, $z = [x; u; d]$. The least mean cost that any law can have which
-# sees only $y$ is
+# LQG is told here the very plant that moves, with all its modes, amplifiers and filters. It obeys $x^+ = Ax + Bu + Ed$,
+# $y = Cx + v$ exactly between samples, with white loads $d \sim N(0, W)$ and readings' noise $v \sim N(0, V)$, and costs
+# $z^T \Phi z$ an interval, $z = [x; u; d]$. The least mean cost that any law can have which sees only $y$ is
 #
 # $$
 # J^* = \frac{1}{\Delta t}\Bigl\{ \mathrm{tr}\,(E^T P E + \Phi_{dd}) W + \mathrm{tr}\,(\Phi_{uu} + B^T P B)\, K \Sigma K^T \Bigr\}
@@ -49,7 +49,7 @@ print(f"J* = {1e6 * known:.2f} + {1e6 * unknown:.2f} = {1e6 * optimum:.2f} µJ")
 # `lqg` builds the controller, `stationary_cost` works out the mean cost of any linear law from its closed loop.
 
 # %%
-controller = lqg(envs.unwrapped.design_plant)
+controller = lqg(plant)
 print(f"LQG, by its closed loop: {1e6 * stationary_cost(plant, controller):.2f} µJ")
 assert abs(stationary_cost(plant, controller) / optimum - 1) < 1e-6
 

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.configuration import Refused
-from beamenv.plant.plant import Plant
+from beamenv.patches import actuation, sensing
+from beamenv.plant.electronics import behind_electronics, static_residual
+from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
 from beamenv.structure import RotatingBeam
 from beamenv.structure.beam import OUT_OF_SCALE
@@ -40,7 +42,7 @@ class Blade:
 
     @cached_property
     def modal(self) -> ModalModel:
-        """Its retained modes."""
+        """The modes of its design plant."""
         return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
 
     @cached_property
@@ -50,8 +52,63 @@ class Blade:
 
     @cached_property
     def plant(self) -> Plant:
-        """Its reduced plant."""
-        modal, config = self.modal, self.config
+        """Its reduced plant, that controllers are designed for: ``modes`` modes, voltages and currents as they are."""
+        return self._reduced(self.modal, self.config.sensor_full_scale)
+
+    @cached_property
+    def true_modal(self) -> ModalModel:
+        """The modes of its true plant."""
+        config = self.config
+        if config.truth_modes is not None or _is_thesis(config):
+            return truncate(self.beam, config.speed, config.truth_modes or config.modes, config.gyroscopic)
+        every = truncate(self.beam, config.speed, self.beam.space.size, config.gyroscopic)
+        below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
+        return every.first(max(below, min(config.modes, self.beam.space.size)))
+
+    @cached_property
+    def truth(self) -> Plant:
+        """Its true plant, that moves: all modes up to the Nyquist frequency, the others' static share, and the electronics.
+
+        In the thesis' model, unless ``truth_modes`` are others, it is ``plant``.
+        """
+        config, plant = self.config, self.plant
+        if _is_thesis(config) and config.truth_modes in (None, config.modes):
+            return plant
+        bare = self._reduced(self.true_modal, float(plant.sensor_full_scale[0]))
+        if _is_thesis(config):
+            return bare
+        electronics, rate = config.electronics, 2.0 * np.pi / config.control_interval
+        bandwidth, cutoff = electronics.amplifier_bandwidth, electronics.filter_cutoff
+        return behind_electronics(
+            bare,
+            charge_residual=self._residual(self._static_charges(), self.full.charges),
+            tip_residual=self._residual(self.full.tip @ self._static, self.full.tip),
+            amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
+            filter_order=electronics.filter_order,
+            filter_cutoff=None if cutoff is None else cutoff * rate,
+        )
+
+    @cached_property
+    def _static(self) -> Array:
+        """K⁻¹F (N, m): the coefficients of the trial functions under each volt, at its speed."""
+        return np.asarray(np.linalg.solve(self.beam.at(self.config.speed).stiffness, self.full.forces))
+
+    def _static_charges(self) -> Array:
+        """(p, m), C per V: exactly at rest, where patches so short raise strains beneath them alone, and by the trial functions
+        what the rotation changes, which they can follow.
+        """
+        beam, layout = self.beam, self.config.patches
+        at_rest = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
+        return np.asarray(self.full.response.charges + self.full.charges @ self._static - at_rest)
+
+    def _residual(self, static: Array, rows: Array) -> Array:
+        """(k, m) per V: of what is there at rest, what the modes of the true plant do not show by rows (k, N)."""
+        modal = self.true_modal
+        shapes = modal.mode_shapes
+        return static_residual(static, rows @ shapes, shapes.T @ self.full.forces, modal.natural_frequencies)
+
+    def _reduced(self, modal: ModalModel, sensor_full_scale: float | None) -> Plant:
+        config = self.config
         try:
             plant = reduced_plant(
                 modal,
@@ -60,7 +117,7 @@ class Blade:
                 effort_weight=config.effort_weight,
                 white_load=config.white_load,
                 sensor_noise_fraction=config.sensor_noise_fraction,
-                sensor_full_scale=config.sensor_full_scale,
+                sensor_full_scale=sensor_full_scale,
                 voltage_limits=config.voltage_limits,
                 control_interval=config.control_interval,
             )
@@ -69,16 +126,6 @@ class Blade:
         if not all(np.isfinite(getattr(plant, each.name)).all() for each in fields(plant)):
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
-
-    @property
-    def true_modal(self) -> ModalModel:
-        """The modes of its true plant."""
-        return self.modal
-
-    @property
-    def truth(self) -> Plant:
-        """Its true plant, that moves."""
-        return self.plant
 
     def changed(self, config: BladeConfig) -> Blade:
         """The blade of another configuration, with the parts of this one that do not depend on the difference."""
@@ -92,17 +139,36 @@ class Blade:
         """The blade behind the data acquisition that fits it now: another blade made of its configuration keeps it."""
         return self.changed(replace(self.config, sensor_full_scale=float(self.plant.sensor_full_scale[0])))
 
+    def with_fixed_order(self) -> Blade:
+        """The blade with as many modes in its true plant as it has now, whatever becomes of their frequencies."""
+        return self.changed(replace(self.config, truth_modes=len(self.true_modal.natural_frequencies)))
+
     def displacement_operator(self, stations: Sequence[float] | Array) -> Array:
-        """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
+        """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the true plant."""
         rows = self.beam.displacements(np.asarray(stations, dtype=float))
-        displaced = np.stack([rows["u"], rows["v"], rows["phi"]]) @ (
-            self.true_modal.mode_shapes / self.true_modal.natural_frequencies
-        )
-        return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)
+        lag_flap_twist, truth = np.stack([rows["u"], rows["v"], rows["phi"]]), self.truth
+        displaced = lag_flap_twist @ (self.true_modal.mode_shapes / self.true_modal.natural_frequencies)
+        still = np.zeros((*displaced.shape[:-1], len(truth.A) - displaced.shape[-1]))
+        operator = np.concatenate([displaced, still], axis=-1)
+        if truth.electronic_states and self.config.electronics.amplifier_bandwidth is not None:
+            m = truth.B.shape[1]
+            flat = lag_flap_twist.reshape(-1, lag_flap_twist.shape[-1])
+            residual = self._residual(flat @ self._static, flat)
+            operator[..., -m:] = (residual * drive_limit(truth)).reshape(*operator.shape[:-1], m)
+        return operator
+
+
+def _is_thesis(config: BladeConfig) -> bool:
+    return config.model == "thesis"
 
 
 _BEAM = ("beam", "patches", "model")
-_MADE_OF = {"beam": _BEAM, "modal": (*_BEAM, "speed", "modes", "gyroscopic"), "full": (*_BEAM, "speed")}
+_MADE_OF = {
+    "beam": _BEAM,
+    "modal": (*_BEAM, "speed", "modes", "gyroscopic"),
+    "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
+    "full": (*_BEAM, "speed"),
+}
 """The fields of a configuration that each part depends on."""
 
 
@@ -143,5 +209,5 @@ def changed_blade(
 
 
 def displacement_operator(config: BladeConfig, stations: Sequence[float] | Array) -> Array:
-    """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the plant."""
+    """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the true plant."""
     return Blade(config).displacement_operator(stations)

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.configuration import Choice, Flag, Number, Positive, Range, Whole, configuration
+from beamenv.blade.electronics import ElectronicsConfig
+from beamenv.configuration import Choice, Count, Flag, Number, Positive, Range, Whole, configuration
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.patches import PatchLayout
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
@@ -127,7 +128,8 @@ class BladeConfig:
     speed: Annotated[float, Number(ge=0.0, unit="rad/s")] = 200.0
     """rad/s."""
     modes: Whole = 11
-    """Retained modes: what a pretwisted blade's tip displacement and voltages need (thesis Fig. 5.2)."""
+    """Modes of the plant that controllers are designed for: what a pretwisted blade's tip displacement and voltages need (thesis
+    Fig. 5.2)."""
     gyroscopic: Annotated[bool, Flag()] = True
     damping_ratio: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.01
     """Of every mode."""
@@ -142,6 +144,10 @@ class BladeConfig:
     the blade's largest current after a sudden reference load."""
     voltage_limits: Annotated[tuple[float, float], Range(encloses=0.0, unit="V")] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
+    electronics: ElectronicsConfig = field(default_factory=ElectronicsConfig)
+    truth_modes: Annotated[int | None, Count()] = None
+    """Modes of the plant that moves; None: every one up to the Nyquist frequency π/``control_interval``, and no fewer than
+    ``modes``; in the thesis' model ``modes``."""
     control_interval: Annotated[float, Number(ge=1e-6, le=1.0, unit="s")] = 0.5e-3
     """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 
@@ -13,4 +14,12 @@ class Design:
     """The design plant and what it was built from; the blade that really turns may be another one, which is not in here."""
 
     plant: Plant
+    """Of the design's ``modes`` modes, without electronics."""
     config: BladeConfig
+
+    @property
+    def full_plant(self) -> Plant:
+        """All that is known of the design blade: every mode up to the Nyquist frequency, or as many as the scenario's designers may
+        know, and the electronics. Built anew when asked for.
+        """
+        return Blade(self.config).truth

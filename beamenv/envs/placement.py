@@ -171,7 +171,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
 
 def _with_fixed_range(task: Task) -> Task:
     """The task with the data acquisition that its blades have now, wherever their sensors go."""
-    return _of_blades(task, Blade.with_fixed_range)
+    return _of_blades(task, lambda blade: blade.with_fixed_range().with_fixed_order())
 
 
 def _moved(task: Task, positions: Mapping[Side, Positions]) -> Task:

@@ -39,8 +39,9 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
     """The plant whose system ``plant_to_control`` would give: dynamics from ``system``, all else from ``like`` and ``changes``.
 
     ``system`` has the inputs and outputs of ``like.to_control()`` and its states in energy coordinates, ½ xᵀx being joules; if it
-    has another number of them than ``like``, ``changes`` must give the ``strain`` rows (k, n), and the cost is again the energy.
-    Natural frequencies are taken to be the magnitudes of the poles, one of each pair. Raises ``ValueError`` for a sampled system,
+    has another number of them than ``like``, ``changes`` must give the ``strain`` rows (k, n), and the cost is again the energy. It
+    then has no ``electronic_states``, unless ``changes`` say how many of the last are such. Natural frequencies are taken to be the
+    magnitudes of the blade's own poles, one of each pair. Raises ``ValueError`` for a sampled system,
     other numbers of inputs or outputs, a feedthrough that is not from voltages to currents, or strain rows of another length.
     """
     (n, m), p = like.B.shape, len(like.C)
@@ -57,10 +58,13 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
     strain = np.asarray(changes.pop("strain", like.strain), dtype=np.float64)
     if strain.ndim != 2 or strain.shape[1] != len(A):
         raise ValueError(f"strain has shape {strain.shape}, but must have rows of {len(A)} numbers, one for each state of system.")
-    own = {} if len(A) == n else {"state_weight": 0.5 * np.eye(len(A))}
+    electronic = changes.pop("electronic_states", like.electronic_states if len(A) == n else 0)
+    blade = len(A) - electronic
+    own = {} if len(A) == n else {"state_weight": 0.5 * np.diag(np.arange(len(A)) < blade)}
     parts = {"A": A, "B": B[:, :m], "C": C[:p], "D": D[:p, :m], "disturbance_input": B[:, m:], "tip_displacement": C[p:]}
-    frequencies = np.sort(np.abs(np.linalg.eigvals(A)))[::2]
-    return replace(like, **{**parts, **own, "strain": strain, "natural_frequencies": frequencies, **changes})
+    frequencies = np.sort(np.abs(np.linalg.eigvals(A[:blade, :blade])))[::2]
+    found = {"strain": strain, "natural_frequencies": frequencies, "electronic_states": electronic}
+    return replace(like, **{**parts, **own, **found, **changes})
 
 
 def _numbered(name: str, count: int) -> list[str]:

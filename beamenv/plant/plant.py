@@ -1,7 +1,8 @@
 """The plant: matrices that cannot be changed, in continuous time and exactly sampled.
 
 State ``x = [ω η; η̇]`` in energy coordinates: η are the coordinates of mass-normalised modes, so that
-½ xᵀx is the vibration energy in joules. The dynamics are
+½ xᵀx is the vibration energy in joules. States of filters and amplifiers may follow (``beamenv.plant.electronics``), which have
+no energy. The dynamics are
 
     ẋ = A x + B u + E d,        y = C x + D u + v
 
@@ -52,7 +53,7 @@ class Plant(ReadOnly):
     natural_frequencies: Array
     """(r,), rad/s, of the retained undamped modes without gyroscopic coupling, ascending."""
     state_weight: Array
-    """Q (n, n): ½ I, the vibration energy in joules."""
+    """Q (n, n): ½ I, the vibration energy in joules; zero for the electronics."""
     input_weight: Array
     """R (m, m), J/V²: ρ Fᵀ K⁻¹ F, the energy the actuators can store."""
     process_noise: Array
@@ -65,9 +66,16 @@ class Plant(ReadOnly):
     """(p,), A: the current that a sensor reading of 1 stands for."""
     control_interval: float
     """s: sensors are sampled, voltages and loads are held over this interval."""
+    electronic_states: int = 0
+    """How many of the n states, the last, are those of filters and amplifiers."""
 
     def __repr__(self) -> str:
         return f"Plant({self.sizes})"
+
+    @property
+    def blade_states(self) -> int:
+        """How many of the n states, the first, are the blade's: ½ the sum of their squares is the energy."""
+        return len(self.A) - self.electronic_states
 
     @property
     def sizes(self) -> str:

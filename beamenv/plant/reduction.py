@@ -41,6 +41,12 @@ class ModalModel(ReadOnly):
     gyroscopic: Array
     """ΨᵀGΨ (…, r, r), 1/s."""
 
+    def first(self, count: int) -> ModalModel:
+        """Its first modes alone."""
+        return ModalModel(
+            self.natural_frequencies[..., :count], self.mode_shapes[..., :count], self.gyroscopic[..., :count, :count]
+        )
+
 
 def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = True) -> ModalModel:
     """The modal model of a blade; ``ValueError`` at or beyond the critical speed or for more modes than trial functions."""

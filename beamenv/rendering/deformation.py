@@ -38,6 +38,7 @@ class Deformation:
             return self._running_operator(self._run_up, plant)
         blade = self._task.blade
         if self._varied is not None:
+            blade = blade.with_fixed_order()
             blade = blade.changed(changed_blade(blade.config, *self._varied[plant].tolist()))
         return blade.displacement_operator(self._stations)
 
@@ -45,6 +46,7 @@ class Deformation:
         """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K."""
         blade = self._task.blade
         root = np.linalg.cholesky(run_up.stiffness(np.asarray(plant * blade.config.control_interval)))
-        rows, shapes = blade.beam.displacements(self._stations), blade.modal.mode_shapes
-        displaced = np.stack([rows[name] for name in ("u", "v", "phi")]) @ shapes @ np.linalg.inv(root).T
-        return np.concatenate([displaced, np.zeros_like(displaced)], axis=-1)
+        operator = blade.displacement_operator(self._stations).copy()
+        r = len(root)
+        operator[..., :r] = operator[..., :r] @ (blade.true_modal.natural_frequencies[:, None] * np.linalg.inv(root).T)
+        return operator

@@ -35,9 +35,10 @@ class PlantVariation:
     truth: Annotated[str | None, NameOrFile(NAMES, ENDING)] = None
     """What moves in place of the beam, alone: a plant file (``beamenv.plant.files``), or the name of one that ships."""
     modes: Annotated[int | None, Count()] = None
-    """Modes of the true plant; None: the configured number, or all that a plant file has."""
+    """Modes of the true plant; None: the configured number, all up to the Nyquist frequency unless said otherwise, or all that a
+    plant file has."""
     design_modes: Annotated[int | None, Count()] = None
-    """Modes of the plant that controllers are designed for; None: the configured number."""
+    """Modes of the plant that controllers are designed for; None: the configured number, 11 unless said otherwise."""
     spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s")] = None
     """rad/s: Ω(t) runs from the first to the second over the episode (``spin_up`` of the simulation); nothing else varies then."""
     bank: Whole = 128

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,20 @@ def reward_scale(plant: Plant) -> float:
     """
     state = static_deflection(plant, (0.0, REFERENCE_LOAD))
     return float(state @ plant.state_weight @ state) * plant.control_interval
+
+
+class _Instant(NamedTuple):
+    """What the blades are and meet at one instant, and where the product of the instant before goes: views of one memory."""
+
+    joined: Array
+    """(…, s): state, voltages, loads."""
+    state: Array
+    voltages: Array
+    loads: Array
+    energetic: Array
+    """(…, b): the blade's own states."""
+    product: Array
+    """(…, w): begins with the state."""
 
 
 def _alike(values: Array) -> Array:
@@ -82,29 +96,48 @@ class Blades:
     def _lay_out(self) -> None:
         """Column by column where blades of a group have one plant, blade by blade for a plant each: as BLAS likes it."""
         n, m = self.plant.B.shape
-        widths = n + m + 2, self.bank.operators.fused.shape[-1], m
+        size, width, b = n + m + 2, self.bank.operators.fused.shape[-1], self.plant.blade_states
+        widths = max(size, width), max(size, width), m, b
         if len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups):
-            self._joined, self._product, self._weighted = (self._lie.columns_first(width)[1] for width in widths)
+            arrays = [self._lie.columns_first(width)[1] for width in widths]
         else:
-            self._joined, self._product, self._weighted = (np.zeros((*self._shape, width)) for width in widths)
-        self._state, self._voltages, self._loads = np.split(self._joined, [n, n + m], axis=-1)
+            arrays = [np.zeros((*self._shape, width)) for width in widths]
+        *memories, self._weighted, self._squares = arrays
+        self._now, self._then = (
+            _Instant(
+                joined=each[..., :size],
+                state=each[..., :n],
+                voltages=each[..., n : n + m],
+                loads=each[..., n + m : size],
+                energetic=each[..., :b],
+                product=each[..., :width],
+            )
+            for each in memories
+        )
 
     def __getstate__(self) -> tuple[Any, ...]:
-        moving = self._joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
+        moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
         return self.bank, self.scenario, self._sizes, self._physical, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
         *arguments, joined, disturbances, electronics, index = state
         self.__init__(*arguments)  # type: ignore[misc]
-        self._joined[...] = joined
+        self._now.joined[...] = joined
         self._disturbances, self.electronics = disturbances, electronics
         self.plants.load_state_dict({"index": index})
 
     @property
     def state(self) -> Array:
-        """(…, n) true states in energy coordinates: ½ xᵀx is the vibration energy in joules."""
-        return self._by_blade(self._state)
+        """(…, n) true states in energy coordinates: ½ xᵀx of the blade's own is the vibration energy in joules."""
+        turned = np.atleast_2d(self.moving)
+        state = row_product(turned, self.bank.axes[0] if len(self.bank) == 1 else self.bank.axes[self.plants.index])
+        return np.asarray(state if self._shape else state[0])
+
+    @property
+    def moving(self) -> Array:
+        """(…, n) the true states in the axes of the bank, in which the kernel steps."""
+        return self._by_blade(self._now.state)
 
     @property
     def index(self) -> Rows:
@@ -123,7 +156,7 @@ class Blades:
         """(…, d) the true states as the design plant has its own: by displacements and velocities."""
         if self.bank.to_design is None:
             raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
-        state = self.state
+        state = self.moving
         if len(self.bank) == self.bank.groups and self._shape:
             views = self.bank.to_design if self._lie.runs else self.bank.to_design[0]
             return np.asarray(self._lie.product(state[None], views)[0])
@@ -166,10 +199,10 @@ class Blades:
         if self.bank.start is not None:
             state += self.bank.start[self.plants.group[rows]]
         if initial_state is not None:
-            state[...] = initial_state
+            state[...] = row_product(np.broadcast_to(initial_state, state.shape), self.bank.axes[index].swapaxes(-1, -2))
         at = self._lie.rows_of(rows)
-        self._joined[at] = 0.0
-        self._state[at] = state
+        self._now.joined[at] = 0.0
+        self._now.state[at] = state
         motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
@@ -190,7 +223,7 @@ class Blades:
     def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
         """Motion at the start of an episode, one row for each state (rows, n)."""
         count = len(state)
-        index = self.plants.index[rows]
+        index, energetic = self.plants.index[rows], state[:, : self.plant.blade_states]
         output, noise = row_product(state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
         if self.electronics is None:
             reading = np.clip(output + noise, -1.0, 1.0)
@@ -202,7 +235,7 @@ class Blades:
             failed=np.zeros(count, dtype=np.bool_),
             volts=np.zeros((count, self.plant.B.shape[1])),
             tip_displacement=row_product(state, self.bank.tip[index]),
-            energy=0.5 * row_dot(state, state),
+            energy=0.5 * row_dot(energetic, energetic),
             effort=np.zeros(count),
             cost_increment=np.zeros(count),
         )
@@ -216,13 +249,14 @@ class Blades:
         held = actions / self._drive if self._physical else actions
         held = np.maximum(np.minimum(held, self._highest), self._lowest)
         acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
-        self._voltages[...] = acting.reshape(self._voltages.shape)
-        self._disturbances.loads(self._loads)
-        following, reading, tip, increment = advance(self.plants.operators, self._joined, self._product, self._multiply)
-        self._state[...] = following
+        now, then = self._now, self._then
+        now.voltages[...] = acting.reshape(now.voltages.shape)
+        self._disturbances.loads(now.loads)
+        _, reading, tip, increment = advance(self.plants.operators, now.joined, then.product, self._multiply, self._squares)
+        self._now, self._then = then, now  # the product begins with the next state
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
-        energy = 0.5 * row_dot(self._state, self._state)
-        effort = row_dot(self._multiply(self._voltages, self.plants.effort_weight, self._weighted), self._voltages)
+        energy = 0.5 * row_dot(then.energetic, then.energetic)
+        effort = row_dot(self._multiply(now.voltages, self.plants.effort_weight, self._weighted), now.voltages)
         self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
@@ -249,7 +283,7 @@ class Blades:
         for bit after ``load_state_dict``.
         """
         return {
-            "joined": self._joined.copy(),
+            "joined": self._now.joined.copy(),
             "plants": self.plants.state_dict(),
             "disturbances": self.disturbances.state_dict(),
             "electronics": None if self.electronics is None else self.electronics.state_dict(),
@@ -257,7 +291,7 @@ class Blades:
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict``, of arrays or of what NumPy makes arrays of."""
-        self._joined[...] = np.asarray(state["joined"])
+        self._now.joined[...] = np.asarray(state["joined"])
         self.plants.load_state_dict(state["plants"])
         self.disturbances.load_state_dict(state["disturbances"])
         if self.electronics is not None:
@@ -272,8 +306,9 @@ class Blades:
         if self.electronics is not None:
             flat = self.electronics.acquire(np.atleast_2d(self._by_blade(output)), np.atleast_2d(self._by_blade(noise)))
             return self._in_units(flat if self._shape else flat[0])
-        output += noise[..., : output.shape[-1]]
-        reading = self._by_blade(output)
+        noisy = np.empty(output.shape)  # the output may be part of the state
+        np.add(output, noise[..., : output.shape[-1]], out=noisy)
+        reading: Array = noisy.reshape(self.count or 1, -1) if self._shape else noisy
         np.minimum(reading, _FULL, out=reading)
         np.maximum(reading, _MINUS_FULL, out=reading)
         return self._in_units(reading)
@@ -287,6 +322,6 @@ class Blades:
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either
             rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
-            state = np.atleast_2d(self.state)[rows]
+            state = np.atleast_2d(self.moving)[rows]
             np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[self.plants.index[rows]], state)
         return failed

@@ -17,34 +17,60 @@ from beamenv.plant.plant import Plant, SampledPlant, sample, sample_all
 class Operators:
     """What one step needs, fused into one product; arrays of NumPy or of torch.
 
-    One plant for all blades, for each block of them, or for each: ``fused`` then has their leading axes. With
+    One plant for all blades, for each block of them, or for each: the arrays then have their leading axes. With
     z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
-    [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost (s)].
+    [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost, columns from ``crossing`` on].
+    What need not be multiplied is left out: outputs that are states, and the states of amplifiers, v⁺ = u + decay (v − u).
+
+    The increment of J is zᵀ cost z. In axes of the state in which the cost of its first b numbers is diagonal
+    (``plants.cost_axes``) these are the ``weights``, and the product needs few other columns of the cost.
     """
 
     fused: Any
-    """(s, n + p + 2 + s), or (..., s, n + p + 2 + s) with the blocks' or the blades' own axes."""
+    """(s, w), or (..., s, w) with the blocks' or the blades' own axes."""
+    weights: Any
+    """(b,), or (..., b), J s per J: cost of the squares of the first b states; b = 0 where all of it is in ``fused``."""
     states: int
+    """n"""
     outputs: int
+    """p"""
+    reads: int
+    """Column of the product in which the outputs begin: among the next states where filters show them."""
+    tips: int
+    """Column in which the tip displacement begins."""
+    costs: int
+    """Column in which those of the cost begin."""
+    crossing: int
+    """Numbers of z before this one have no cost but ``weights`` and that with later ones."""
+    lagging: int = 0
+    """How many of the states, the last, are the voltages that amplifiers give, and not in the product."""
+    decay: float = 0.0
+    """What is left after an interval of their distance from the voltages held."""
 
     @classmethod
     def from_plant(cls, plant: Plant) -> Operators:
-        """Operators of a plant held over its control interval, as float64 NumPy arrays."""
-        return cls(_fused(plant, sample(plant)), states=len(plant.A), outputs=len(plant.C))
+        """Operators of a plant held over its control interval, in its own coordinates, as float64 NumPy arrays."""
+        return cls._plain(plant, _fused(plant, sample(plant)), ())
 
     @classmethod
     def from_plants(cls, plants: Sequence[Plant]) -> Operators:
-        """Those of several plants of one size and one control interval; ``fused`` has an axis for them."""
+        """Those of several plants of one size and one control interval; the arrays have an axis for them."""
         fused = np.stack([_fused(plant, held) for plant, held in zip(plants, sample_all(plants), strict=True)])
-        return cls(fused, states=len(plants[0].A), outputs=len(plants[0].C))
+        return cls._plain(plants[0], fused, (len(plants),))
+
+    @classmethod
+    def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
+        n, p = len(plant.A), len(plant.C)
+        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, reads=n, tips=n + p, costs=n + p + 2, crossing=0)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
-        return replace(self, fused=to_array(self.fused.copy() if isinstance(self.fused, np.ndarray) else self.fused))
+        fused, weights = (to_array(each.copy() if isinstance(each, np.ndarray) else each) for each in (self.fused, self.weights))
+        return replace(self, fused=fused, weights=weights)
 
     def pick(self, index: Any) -> Operators:
         """The operators of one plant of several, or of one for each blade."""
-        return Operators(self.fused[index], self.states, self.outputs)
+        return replace(self, fused=self.fused[index], weights=self.weights[index])
 
 
 def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
@@ -54,19 +80,41 @@ def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
 
 
 def advance(
-    operators: Operators, joined: Any, out: Any = None, multiply: Callable[[Any, Any, Any], Any] | None = None
+    operators: Operators, joined: Any, out: Any = None, multiply: Callable[[Any, Any, Any], Any] | None = None, squares: Any = None
 ) -> tuple[Any, Any, Any, Any]:
     """One control interval, exactly.
 
     ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
-    increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., n + m + 2 + n + p + 2) may be given to
-    hold the product, and the first three arrays are then views of it. ``multiply`` stands in for ``row_product``.
+    increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., w) may be given to hold the product, and the first
+    three arrays are then views of it, and ``squares`` (..., b) to hold squares of the state. ``multiply`` stands in for
+    ``row_product``.
     """
-    n, p = operators.states, operators.outputs
+    read, tip, cost, diagonal = operators.reads, operators.tips, operators.costs, operators.weights.shape[-1]
     product = (multiply or row_product)(joined, operators.fused, out)
-    increment = row_dot(product[..., n + p + 2 :], joined)
-    return product[..., :n], product[..., n : n + p], product[..., n + p : n + p + 2], increment
+    crossing = joined[..., operators.crossing :]
+    increment = row_dot(product[..., cost : cost + crossing.shape[-1]], crossing)
+    if diagonal:
+        increment = increment + weighted_squares(joined[..., :diagonal], operators.weights, squares)
+    state = product[..., : operators.states] if not operators.lagging else _with_amplifiers(operators, joined, product, out)
+    return state, product[..., read : read + operators.outputs], product[..., tip : tip + 2], increment
+
+
+def _with_amplifiers(operators: Operators, joined: Any, product: Any, out: Any) -> Any:
+    """The next state (..., n): that of blade and filters from the product, and the voltages that amplifiers then give."""
+    n, first = operators.states, operators.states - operators.lagging
+    held = joined[..., n : n + operators.lagging]
+    given = held + operators.decay * (joined[..., first:n] - held) if operators.decay else held
+    if out is None:
+        return namespace(product).concatenate([product[..., :first], given], -1)
+    product[..., first:n] = given  # in the place of what the cost no longer needs
+    return product[..., :n]
+
+
+def weighted_squares(rows: Any, weights: Any, out: Any = None) -> Any:
+    """Σ weight x² (...,) over the last axis, with weights (b,) or (..., b); with NumPy, ``out`` may hold the squares."""
+    squares = rows * rows if out is None else np.multiply(rows, rows, out)
+    return squares @ weights if weights.ndim == 1 else row_dot(squares, weights)
 
 
 def row_product(rows: Any, matrix: Any, out: Any = None) -> Any:

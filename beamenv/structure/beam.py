@@ -120,10 +120,11 @@ class RotatingBeam:
         if self.model == "thesis" or speed >= self.critical_speed:
             matrices = self.matrices
             return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
-        known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_point", {})
+        known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_points", {})
         if speed not in known:
             point = self.exact.at(speed)
-            known.clear()
+            if len(known) > 1:  # one speed and rest are asked for in turn
+                del known[next(iter(known))]
             known[speed] = point
         return known[speed]
 

@@ -166,7 +166,8 @@ def test_blocks_that_are_not_positive_whole_numbers_are_refused(small_plant, blo
 
 
 def test_under_deep_saturation_it_costs_less_than_lqg_clipped(load):
-    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, scenario={"preset": "deflection", "magnitude": 300.0})
+    scenario = {"preset": "deflection", "magnitude": 300.0}
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, scenario=scenario, blade={"model": "thesis"})
     plant = envs.unwrapped.design_plant
     clipped = evaluate(lqg(plant, persistent_load=load), envs, range(8))
     law = mpc(plant, load)

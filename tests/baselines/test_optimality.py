@@ -36,12 +36,16 @@ OTHERS = {
 }
 
 
+def unlimited(model):
+    """White noise only, and a drive that never saturates."""
+    blade = {"voltage_limits": (-1e6, 1e6), "model": model}
+    return gymnasium.make_vec(beamenv.ENV_ID, num_envs=EPISODES, scenario="white", duration=DURATION, blade=blade)
+
+
 @pytest.fixture(name="envs", scope="module")
 def _envs():
-    """White noise only, and a drive that never saturates."""
-    return gymnasium.make_vec(
-        beamenv.ENV_ID, num_envs=EPISODES, scenario="white", duration=DURATION, blade={"voltage_limits": (-1e6, 1e6)}
-    )
+    """The thesis' world, whose true plant is the design's."""
+    return unlimited("thesis")
 
 
 @pytest.fixture(name="plant", scope="module")
@@ -68,7 +72,11 @@ def mean_costs(law, envs, seed=0):
     return cost / (DURATION - SETTLE)
 
 
-def test_measured_cost_of_lqg_is_the_analytic_optimum(envs, plant):
+@pytest.mark.parametrize("model", ["thesis", "blade"])
+def test_measured_cost_of_lqg_is_the_analytic_optimum(model):
+    """On the very plant that it knows: the design's in the thesis' world, the whole truth, electronics and all, of the blade."""
+    envs = unlimited(model)
+    plant = envs.unwrapped.plant
     law = lqg(plant)
     costs = mean_costs(law, envs)
     error, optimum = costs.std(ddof=1) / np.sqrt(EPISODES), stationary_cost(plant, law)

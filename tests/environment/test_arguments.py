@@ -107,9 +107,9 @@ def test_a_huge_but_finite_action_only_saturates():
         ({"load": {"size": 3.0}}, r"options.load has no field 'size': its fields are case, magnitude"),
         ({"load": {"case": "gust"}}, r"options.load.case is 'gust', but must be one of step, pulse"),
         ({"load": {"magnitude": -3.0}}, "options.load.magnitude is -3.0"),
-        ({"initial_state": np.zeros(5)}, r"options.initial_state has shape \(5,\), but must have shape \(22,\)"),
-        ({"initial_state": np.full(22, np.nan)}, r"options.initial_state strains the blade by nan, but must be finite"),
-        ({"initial_state": np.full(22, 1e3)}, r"options.initial_state strains the blade by"),
+        ({"initial_state": np.zeros(5)}, r"options.initial_state has shape \(5,\), but must have shape \(52,\)"),
+        ({"initial_state": np.full(52, np.nan)}, r"options.initial_state strains the blade by nan, but must be finite"),
+        ({"initial_state": np.full(52, 1e3)}, r"options.initial_state strains the blade by"),
         ({"initial_state": "rest"}, r"options.initial_state is 'rest', but must be an array of numbers"),
     ],
 )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamenv
-from beamenv import RotatingBeamEnv, blade_config, build_plant
+from beamenv import RotatingBeamEnv, blade_config
 from beamenv.blade.build import Blade, displacement_operator
 from beamenv.blade.shape import sides
 from beamenv.scenarios.load_cases import static_deflection
@@ -22,7 +22,7 @@ from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid
 
 def test_the_drawn_tip_moves_by_the_magnified_tip_displacement():
     config = blade_config()
-    plant, solid = build_plant(config), BladeSolid(Blade(config))
+    plant, solid = Blade(config).truth, BladeSolid(Blade(config))
     state = static_deflection(plant, [3.0, 30.0])
     operator = displacement_operator(config, solid.stations)
     rest, bent = (solid.pose(operator @ each).walls.mean(axis=1) for each in (0.0 * state, state))

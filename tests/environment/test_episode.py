@@ -16,8 +16,13 @@ def quiet(**arguments):
 
 
 def some_state(plant, energy=1e-3, seed=0):
-    state = np.random.default_rng(seed).normal(size=len(plant.A))
-    return state * np.sqrt(2.0 * energy / (state @ state))
+    """Of a blade with this energy behind electronics in some state, within a tenth of what they can show or drive."""
+    blade, electronics = np.split(np.random.default_rng(seed).normal(size=len(plant.A)), [plant.blade_states])
+    return np.concatenate([blade * np.sqrt(2.0 * energy / (blade @ blade)), 0.1 * np.tanh(electronics)])
+
+
+def energy_of(plant, state):
+    return 0.5 * float((state[: plant.blade_states] ** 2).sum())
 
 
 def held_response(plant, state, volts, load, time):
@@ -53,7 +58,7 @@ def test_steps_are_the_exact_solution_with_its_exact_cost():
         np.testing.assert_allclose(env.state, state, atol=1e-12)
         np.testing.assert_allclose(observation, np.clip(plant.C @ state / plant.sensor_full_scale, -1.0, 1.0), atol=1e-9)
         np.testing.assert_allclose(info["tip_displacement"], plant.tip_displacement @ state, atol=1e-14)
-        assert info["energy"] == pytest.approx(0.5 * state @ state, rel=1e-9)
+        assert info["energy"] == pytest.approx(energy_of(plant, state), rel=1e-9)
         assert info["cost_increment"] == pytest.approx(cost, rel=1e-9)
         assert reward == pytest.approx(-cost / reward_scale(plant), rel=1e-9)
         volts = info["volts"]
@@ -72,7 +77,7 @@ def test_the_first_reading_is_that_of_the_first_state_and_none_comes_late():
 
 def test_an_undamped_blade_left_alone_keeps_its_energy():
     env = quiet(blade={"damping_ratio": 0.0})
-    env.reset(options={"initial_state": some_state(env.plant)})
+    env.reset(options={"initial_state": some_state(env.plant)[: env.plant.blade_states]})  # the electronics at rest
     for _ in range(1000):
         *_, info = env.step(np.zeros(4))
     assert info["energy"] == pytest.approx(1e-3, rel=1e-9)
@@ -80,7 +85,7 @@ def test_an_undamped_blade_left_alone_keeps_its_energy():
 
 def test_damping_never_adds_energy_and_the_cost_of_no_effort_is_the_integral_of_energy():
     env = quiet()
-    env.reset(options={"initial_state": some_state(env.plant)})
+    env.reset(options={"initial_state": some_state(env.plant)[: env.plant.blade_states]})
     energies, costs = [1e-3], []
     for _ in range(300):
         *_, info = env.step(np.zeros(4))
@@ -133,7 +138,8 @@ def test_voltages_saturate_at_the_limits_of_the_drive(action, volts):
 
 def test_readings_are_clipped_to_full_scale():
     env = quiet()
-    observation, _ = env.reset(options={"initial_state": some_state(env.plant, energy=1.0)})
+    env.reset(options={"initial_state": some_state(env.plant, energy=1.0)})
+    observation, *_ = env.step(np.zeros(4))
     assert np.abs(observation).max() == 1.0
     assert observation in env.observation_space
 
@@ -225,9 +231,13 @@ def test_a_reset_without_seed_goes_on_with_the_same_generator():
     assert not np.array_equal(first, second)
 
 
-def test_the_design_plant_is_the_true_one_unless_said_otherwise():
+def test_the_design_blade_is_the_true_one_unless_said_otherwise():
     env = RotatingBeamEnv()
-    assert env.design_plant is env.plant
+    assert env.task.design_blade is env.task.blade
+    assert env.design_plant is env.task.blade.plant
+    assert env.plant is env.task.blade.truth
+    thesis = RotatingBeamEnv(blade={"model": "thesis"})
+    assert thesis.plant is thesis.design_plant
     env = RotatingBeamEnv(blade={"damping_ratio": 0.03}, design={}, speed=150.0)
     assert env.task.config.damping_ratio == 0.03
     assert env.task.design_config.damping_ratio == 0.01

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamenv.blade.build import build_beam, build_plant, displacement_operator
+from beamenv.blade.build import Blade, build_beam, build_plant, displacement_operator
 from beamenv.blade.presets import blade_config
 from beamenv.patches import actuation, sensing
 from beamenv.plant.plant import sample
@@ -124,7 +124,7 @@ def test_five_hundred_newtons_per_metre_bend_the_tip_by_one_and_a_half_millimetr
 
 
 def test_displacement_operator_ends_in_the_tip_displacement():
-    plant = build_plant(CONFIG)
+    plant = Blade(CONFIG).truth
     operator = displacement_operator(CONFIG, [0.0, 1.0, 2.023])
     assert operator[:, 0] == pytest.approx(0.0, abs=1e-15)
     assert operator[:2, -1] == pytest.approx(plant.tip_displacement)

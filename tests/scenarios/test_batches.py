@@ -110,8 +110,8 @@ def test_a_copy_in_the_middle_of_an_episode_goes_on_alike(name, kind, duplicate)
 def test_the_reward_is_minus_the_cost_whatever_the_plant(name):
     """J adds up from steps whose cost is at least the actuators' effort, over the scale of the plant that all depart from."""
     env = RotatingBeamEnv(scenario=SMALL.get(name, name))
-    modes = {"spillover": 22, "solid-20": None}.get(name, 11)
-    nominal = RotatingBeamEnv(scenario={"plants": {"modes": modes, "truth": env.task.scenario.plants.truth}})
+    plants = env.task.scenario.plants
+    nominal = RotatingBeamEnv(scenario={"plants": {"modes": plants.modes, "truth": plants.truth}})
     env.reset(seed=1)
     nominal.reset(seed=1)
     _, reward, _, _, info = nominal.step(np.full(4, 0.1))

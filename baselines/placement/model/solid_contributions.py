@@ -26,10 +26,11 @@ from numpy.typing import NDArray
 
 from baselines.placement.model.chebyshev import ChebyshevSpan
 from beamenv.blade.config import BladeConfig
-from beamenv.patches.operators import work_on_section
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
+from beamenv.patches.operators import work_on_section
 from beamenv.structure import RotatingBeam
-from beamenv.structure.geometrically_exact.exact_beam import SHAPE, ExactBeam, without_shear
+from beamenv.structure.geometrically_exact.at_stations import SHAPE, increment_rows, without_shear
+from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.inertia import SpinningSections
 from beamenv.structure.geometrically_exact.kinematics import FibreExtension, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
@@ -85,7 +86,7 @@ class BareBlade:
             z=z,
             speed=point.speed,
             placement=exact.placement(z, exact.about(point)),
-            increments=exact.rows(z) @ basis,
+            increments=increment_rows(exact.space, z) @ basis,
             strains=exact.section_strains(z, point) @ basis,
             steady=exact.steady_strains(z, point)[:, :RIGID],
         )
@@ -153,9 +154,7 @@ class Covering:
         )
 
     def _forces(self, code: int, bare: BareBlade) -> tuple[Array, Array]:
-        on_top, below = (
-            np.einsum("sg,sgn->sn", sections.under(code, bare.z, work), bare.strains) for sections, work in self.work
-        )
+        on_top, below = (np.einsum("sg,sgn->sn", sections.under(code, bare.z, work), bare.strains) for sections, work in self.work)
         return on_top, below
 
     def _energy(self, code: int, bare: BareBlade) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,7 @@ class Allotment:
         if self.drawn and self._lie.shape and len(rows) < len(self.index):
             at = self._lie.rows_of(rows)  # in place: operators of many blades are many megabytes
             self.operators.fused[at] = self._bank.operators.fused[index]
+            self.operators.weights[at] = self._bank.operators.weights[index]
             self.effort_weight[at] = self._bank.effort_weight[index]
         elif self._each > 1:
             self._gather()
@@ -75,6 +77,9 @@ class Allotment:
     def _gather(self) -> None:
         places = self._places()
         self.operators = self._bank.operators.pick(places) if len(self._bank) > 1 else self._bank.operators
+        if self._lie.runs:  # a product serves a group, but squares are weighted blade by blade
+            weights = self._bank.operators.weights[self.index]
+            self.operators = replace(self.operators, weights=weights.reshape(*self._lie.shape, weights.shape[-1]))
         self.effort_weight = self._bank.effort_weight[places]
 
     def _places(self) -> Any:

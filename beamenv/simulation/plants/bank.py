@@ -12,6 +12,7 @@ from beamenv.plant.plant import Plant, normalised
 from beamenv.plant.read_only import ReadOnly, read_only, sealed
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
+from beamenv.simulation.plants.cost_axes import cost_axes, in_axes
 
 Array = NDArray[np.float64]
 
@@ -22,13 +23,16 @@ class Bank(ReadOnly):
 
     A bank may hold those of several blades, in ``groups`` of equal size, one after the other.
 
-    Every plant has energy coordinates of its own: ½ xᵀx is the energy, in joules, whichever it is.
+    Every plant has energy coordinates of its own: ½ xᵀx of the blade's states is the energy, in joules, whichever it is; and in a
+    bank that moves blades they are turned into ``axes`` (``cost_axes``). What is said of states below holds in these.
     """
 
     plant: Plant
     """The one all others depart from; the first blade's."""
     operators: Operators
     """``fused`` (K, …), or of one plant."""
+    axes: Array
+    """T (K, n, n), orthogonal: states are T x, with x as the plant has it."""
     readout: Array
     """(K, n, p): state to noise-free readings, in full scales."""
     tip: Array
@@ -52,7 +56,8 @@ class Bank(ReadOnly):
 
     def __post_init__(self) -> None:
         ReadOnly.__post_init__(self)
-        object.__setattr__(self, "operators", replace(self.operators, fused=read_only(self.operators.fused)))
+        whole = {name: read_only(getattr(self.operators, name)) for name in ("fused", "weights")}
+        object.__setattr__(self, "operators", replace(self.operators, **whole))
 
     def __repr__(self) -> str:
         plants = "1 plant" if len(self) == 1 else f"{len(self)} plants"
@@ -76,17 +81,18 @@ class Bank(ReadOnly):
     @classmethod
     def single(cls, plant: Plant, speed: float = 0.0, to_design: Array | None = None) -> Bank:
         """The bank of one plant."""
-        bank = cls.gather(plant, [plant], np.array([speed]), None if to_design is None else to_design[None])
-        return replace(bank, operators=Operators.from_plant(normalised(plant)))
+        bank = cls.gather(plant, [plant], np.array([speed]), None if to_design is None else to_design[None]).in_cost_axes()
+        return replace(bank, operators=bank.operators.pick(0))
 
     @classmethod
     def gather(cls, plant: Plant, plants: Sequence[Plant], speeds: Array, to_design: Array | None) -> Bank:
-        """The bank of several plants."""
+        """The bank of several plants, in their own coordinates."""
         units = [normalised(each) for each in plants]
         operators = Operators.from_plants(units)
         return cls(
             plant=plant,
-            operators=replace(operators, fused=sealed(operators.fused)),
+            operators=replace(operators, fused=sealed(operators.fused), weights=sealed(operators.weights)),
+            axes=sealed(np.tile(np.eye(len(plant.A)), (len(plants), 1, 1))),
             readout=sealed(np.stack([unit.C.T for unit in units])),
             tip=sealed(np.stack([each.tip_displacement.T for each in plants])),
             strain=sealed(np.stack([each.strain for each in plants])),
@@ -94,6 +100,24 @@ class Bank(ReadOnly):
             speeds=speeds,
             effort_weight=sealed(np.stack([unit.input_weight * unit.control_interval for unit in units])),
             to_design=to_design,
+        )
+
+    def in_cost_axes(self) -> Bank:
+        """This bank, as ``gather`` made it, in the axes in which its steps are cheap."""
+        fused, plant = self.operators.fused, self.plant
+        axes = cost_axes(fused[..., self.operators.costs :], len(plant.A), plant.blade_states)
+        following = np.concatenate([axes[1:], axes[-1:]]) if self.runs else axes
+        back = axes.swapaxes(-1, -2)
+        return replace(
+            self,
+            operators=in_axes(self.operators, axes, following, normalised(plant)),
+            axes=sealed(axes),
+            readout=sealed(axes @ self.readout),
+            tip=sealed(axes @ self.tip),
+            strain=sealed(self.strain @ back),
+            release=sealed(self.release @ back),
+            to_design=None if self.to_design is None else sealed(axes @ self.to_design),
+            start=None if self.start is None else sealed(np.einsum("gn,gmn->gm", self.start, axes[:: len(axes) // self.groups])),
         )
 
     @classmethod
@@ -104,11 +128,12 @@ class Bank(ReadOnly):
             return first
         views, starts = [bank.to_design for bank in banks], [bank.start for bank in banks]
         fused = [bank.operators.fused.reshape(len(bank), *bank.operators.fused.shape[-2:]) for bank in banks]
+        weights = [bank.operators.weights.reshape(len(bank), -1) for bank in banks]
         whole = {name: sealed(np.concatenate([getattr(bank, name) for bank in banks])) for name in _BY_PLANT}
         return cls(
             plant=first.plant,
             others=tuple(bank.plant for bank in banks[1:]),
-            operators=replace(first.operators, fused=sealed(np.concatenate(fused))),
+            operators=replace(first.operators, fused=sealed(np.concatenate(fused)), weights=sealed(np.concatenate(weights))),
             to_design=None if any(view is None for view in views) else np.concatenate(views),  # type: ignore[arg-type]
             start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
             runs=first.runs,
@@ -116,5 +141,5 @@ class Bank(ReadOnly):
         )
 
 
-_BY_PLANT = ("readout", "tip", "strain", "release", "speeds", "effort_weight")
+_BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight")
 _ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale")

@@ -31,12 +31,15 @@ def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
     blades = list(varied_blades(blade, variation))
     views = [seen_from(each, design) for each in blades]
     to_design = None if any(view is None for view in views) else np.stack(views)  # type: ignore[arg-type]
-    return Bank.gather(blade.plant, [each.plant for each in blades], np.array([each.config.speed for each in blades]), to_design)
+    plants, speeds = [each.truth for each in blades], np.array([each.config.speed for each in blades])
+    return Bank.gather(blade.truth, plants, speeds, to_design).in_cost_axes()
 
 
 def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:
-    """The blades of a bank, behind the data acquisition of the one they depart from; those of one structure share it."""
-    ranged = blade.with_fixed_range()
+    """The blades of a bank, behind the data acquisition of the one they depart from and with as many modes; those of one structure
+    share it.
+    """
+    ranged = blade.with_fixed_range().with_fixed_order()
     built: dict[BeamConfig, Blade] = {}
     for row in varied(variation, blade.config):
         config = changed_blade(ranged.config, *row)

@@ -6,19 +6,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
+from beamenv.plant.reduction import ModalModel
 
 Array = NDArray[np.float64]
 
 
 def seen_from(blade: Blade, design: Blade) -> Array | None:
-    """(n, d): the state of a blade in a design blade's coordinates, by its displacements and velocities.
+    """(n, d): the true state of a blade in a design blade's coordinates, by its displacements and velocities.
 
-    With mode shapes Ψ on the same trial functions η_d = Ψ_dᵀ M_d Ψ η. None where the trial functions are not the same.
+    With mode shapes Ψ on the same trial functions η_d = Ψ_dᵀ M_d Ψ η; what filters and amplifiers hold is not the blade's. None
+    where the trial functions are not the same.
     """
     if blade.beam.space != design.beam.space:
         return None
-    true = blade.true_modal
-    return coordinates(true.mode_shapes / true.natural_frequencies, true.mode_shapes, design)
+    return widened(between(blade.true_modal, design), len(blade.truth.A))
+
+
+def between(modal: ModalModel, design: Blade) -> Array:
+    """(2r, d): states of r modes in the coordinates of a design blade on the same trial functions."""
+    return coordinates(modal.mode_shapes / modal.natural_frequencies, modal.mode_shapes, design)
+
+
+def widened(view: Array, states: int) -> Array:
+    """(…, n, d): a view (…, 2r, d) of the first 2r of n ``states``, which sees nothing of the others."""
+    unseen = np.zeros((*view.shape[:-2], states - view.shape[-2], view.shape[-1]))
+    return np.concatenate([view, unseen], axis=-2)
 
 
 def coordinates(displacing: Array, moving: Array, design: Blade) -> Array:

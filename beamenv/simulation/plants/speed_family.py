@@ -12,7 +12,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Number, Numbers, checked
 from beamenv.plant.plant import Plant
-from beamenv.simulation.plants.coordinates import seen_from
+from beamenv.simulation.plants.coordinates import between
 
 Array = NDArray[np.float64]
 
@@ -49,8 +49,7 @@ def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike) -> Sp
 
 
 def _from_common(own: Blade, other: Blade) -> Array:
-    seen = seen_from(own, other)
-    assert seen is not None  # the blade is the same
+    seen = between(own.modal, other)  # the blade is the same, and so are its trial functions
     modes = own.config.modes
     least = np.linalg.svd(seen[modes:, modes:], compute_uv=False).min()
     if least < _LEAST_IN_COMMON:

@@ -14,9 +14,9 @@ Speed follows a cycloid, Ω = Ω₀ + ΔΩ (τ − sin(2πτ)/2π) with τ = t/T
 t = 0⁺, where the blade still stands in the static equilibrium of Ω₀. The difference is the vibration that the start excites: from
 100 to 300 rad/s in 0.5 s it is about that of a sudden 56 N/m in lag.
 
-The motion is expanded in the modes of the configured speed, 200 rad/s: at 100 and 300 rad/s the frequencies of the first six
-are then 0.16 % too high at most, those of all eleven 0.6 %. The plant of an interval is that of the speed at its middle, held
-over the interval; coordinates are energy coordinates at every instant.
+The motion is expanded in the modes of the true plant at the configured speed, 200 rad/s. With eleven of them the frequencies of the
+first six are 0.16 % too high at most at 100 and 300 rad/s, those of all eleven 0.6 %. The plant of an interval is that of the
+speed at its middle, held over the interval; coordinates are energy coordinates at every instant.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from beamenv.blade.build import Blade
 from beamenv.plant.plant import Plant
 from beamenv.plant.read_only import sealed
 from beamenv.simulation.plants.bank import Bank
-from beamenv.simulation.plants.coordinates import coordinates
+from beamenv.simulation.plants.coordinates import coordinates, widened
 from beamenv.structure.base_motion import base_loads
 
 Array = NDArray[np.float64]
@@ -76,7 +76,8 @@ class RunUp:
     def of(cls, blade: Blade, course: Cycloid) -> RunUp:
         """In the modes of the configured speed, with their damping."""
         config, matrices, loads = blade.config, blade.beam.matrices, base_loads(blade.beam)
-        shapes = blade.modal.mode_shapes
+        modal = blade.true_modal
+        shapes = modal.mode_shapes
 
         def reduced(matrix: Array) -> Array:
             return np.asarray(shapes.T @ matrix @ shapes)
@@ -85,8 +86,8 @@ class RunUp:
             course=course,
             elastic=reduced(matrices.elastic_stiffness),
             spin=reduced(matrices.spin_stiffness),
-            gyroscopic=reduced(matrices.gyroscopic) if config.gyroscopic else np.zeros((config.modes, config.modes)),
-            damping=np.diag(2.0 * config.damping_ratio * blade.modal.natural_frequencies),
+            gyroscopic=reduced(matrices.gyroscopic) if config.gyroscopic else np.zeros_like(modal.gyroscopic),
+            damping=np.diag(2.0 * config.damping_ratio * modal.natural_frequencies),
             centrifugal=shapes.T @ loads.centrifugal,
             euler=shapes.T @ loads.euler,
         )
@@ -141,7 +142,7 @@ def spin_up_bank(blade: Blade, design: Blade, speeds: tuple[float, float], steps
     critical = blade.beam.critical_speed
     if max(speeds) >= critical:
         raise ValueError(f"scenario: plants.spin_up is {list(speeds)}, but must be below the critical speed, {critical:.6g} rad/s.")
-    reference, interval = blade.plant, blade.config.control_interval
+    reference, interval = blade.truth, blade.config.control_interval
     run_up = RunUp.of(blade, Cycloid(*speeds, steps * interval))
     edges: Array = interval * np.arange(steps + 1, dtype=np.float64)
     middles: Array = edges[:-1] + 0.5 * interval
@@ -149,7 +150,8 @@ def spin_up_bank(blade: Blade, design: Blade, speeds: tuple[float, float], steps
     mid_roots = _root(run_up.stiffness(middles))
     plants = [plant_at(reference, run_up, time, root) for time, root in zip(middles, mid_roots, strict=True)]
     bank = Bank.gather(reference, plants, run_up.course.speed(middles), None)
-    incoming, outgoing = _changes(roots[:-1], mid_roots), _changes(mid_roots, roots[1:])
+    n = len(reference.A)
+    incoming, outgoing = _changes(roots[:-1], mid_roots, n), _changes(mid_roots, roots[1:], n)
     back = incoming.swapaxes(1, 2)
     return replace(
         bank,
@@ -158,10 +160,10 @@ def spin_up_bank(blade: Blade, design: Blade, speeds: tuple[float, float], steps
         tip=sealed(back @ bank.tip),
         strain=sealed(bank.strain @ incoming),
         release=np.asarray(np.linalg.solve(incoming, bank.release.swapaxes(1, 2)), dtype=np.float64).swapaxes(1, 2),
-        start=_initial_state(run_up, roots[0])[None],
+        start=_initial_state(run_up, roots[0], n)[None],
         runs=True,
-        to_design=_views(blade, design, roots[:-1]),
-    )
+        to_design=_views(blade, design, roots[:-1], n),
+    ).in_cost_axes()
 
 
 def _root(stiffness: Array) -> Array:
@@ -169,16 +171,16 @@ def _root(stiffness: Array) -> Array:
 
 
 def plant_at(reference: Plant, run_up: RunUp, time: float, root: Array) -> Plant:
-    """The plant at one time in energy coordinates [Uᵀη; η̇], U = ``root``."""
-    r = len(root)
+    """The plant at one time in energy coordinates [Uᵀη; η̇], U = ``root``; the electronics are those of any time."""
+    r, b = len(root), 2 * len(root)
     at = np.asarray(time)
     inverse = np.linalg.inv(root)
-    dynamics = np.zeros((2 * r, 2 * r))
-    dynamics[:r, r:] = root.T
-    dynamics[r:, :r], dynamics[r:, r:] = -run_up.restoring(at) @ inverse.T, -run_up.rate_matrix(at)
-    to_reference = np.zeros((2 * r, 2 * r))  # energy coordinates of the configured speed from those of this one
+    to_reference = np.eye(len(reference.A))  # energy coordinates of the configured speed from those of this one
     to_reference[:r, :r] = reference.natural_frequencies[:, None] * inverse.T
-    to_reference[r:, r:] = np.eye(r)
+    dynamics = reference.A @ to_reference
+    dynamics[:b, :b] = 0.0
+    dynamics[:r, r:b] = root.T
+    dynamics[r:b, :r], dynamics[r:b, r:b] = -run_up.restoring(at) @ inverse.T, -run_up.rate_matrix(at)
     return replace(
         reference,
         A=sealed(dynamics),
@@ -188,12 +190,11 @@ def plant_at(reference: Plant, run_up: RunUp, time: float, root: Array) -> Plant
     )
 
 
-def _changes(before: Array, after: Array) -> Array:
-    """(K, 2r, 2r): energy coordinates of one root from those of another, x' = T x."""
+def _changes(before: Array, after: Array, states: int) -> Array:
+    """(K, n, n): energy coordinates of one root from those of another, x' = T x."""
     r = before.shape[-1]
-    change = np.zeros((len(before), 2 * r, 2 * r))
+    change = np.tile(np.eye(states), (len(before), 1, 1))
     change[:, :r, :r] = after.swapaxes(1, 2) @ np.linalg.inv(before).swapaxes(1, 2)
-    change[:, r:, r:] = np.eye(r)
     return change
 
 
@@ -204,18 +205,18 @@ def _at_instants(fused: Array, incoming: Array, outgoing: Array) -> Array:
     joined[:, :n, :n] = incoming
     moved = joined.swapaxes(1, 2) @ fused
     moved[..., :n] = moved[..., :n] @ outgoing.swapaxes(1, 2)
-    moved[..., -size:] = moved[..., -size:] @ joined
+    moved[..., -size:] = moved[..., -size:] @ joined  # the cost
     return np.asarray(moved)
 
 
-def _initial_state(run_up: RunUp, root: Array) -> Array:
+def _initial_state(run_up: RunUp, root: Array, states: int) -> Array:
     displaced, moving = run_up.initial_vibration()
-    return np.concatenate([root.T @ displaced, moving])
+    return np.concatenate([root.T @ displaced, moving, np.zeros(states - 2 * len(root))])
 
 
-def _views(blade: Blade, design: Blade, roots: Array) -> Array | None:
+def _views(blade: Blade, design: Blade, roots: Array, states: int) -> Array | None:
     """(K, n, d): states at the begin of each interval in the design blade's coordinates."""
     if blade.beam.space != design.beam.space:
         return None
-    shapes = blade.modal.mode_shapes
-    return np.stack([coordinates(shapes @ np.linalg.inv(root).T, shapes, design) for root in roots])
+    shapes = blade.true_modal.mode_shapes
+    return widened(np.stack([coordinates(shapes @ np.linalg.inv(root).T, shapes, design) for root in roots]), states)

@@ -45,21 +45,21 @@ class Windows:
         self._generator = generator
         self._blades = Blades(task.bank, task.scenario, episodes)
         self._operators = task.bank.operators.convert(_float)
-        self._sensors = len(task.plant.C)
+        self._sensors, self._energetic = len(task.plant.C), task.plant.blade_states
         self._phase: NDArray[np.int64] = np.arange(episodes) % self.count
         self._loads = np.zeros((*self._blades.shape, 2))
         self._limits = _float(normalised(task.plant).voltage_limits)
         self._memory: Memory | None = None
         self._signals: SignalMemory | None = None
         first = self._blades.begin(generator)
-        self._state, self._readings = _float(self._blades.state), _float(first.observation)
+        self._state, self._readings = _float(self._blades.moving), _float(first.observation)
         self._remember_signals(np.arange(episodes))
 
     def _begin(self, rows: NDArray[np.int64], actor: Acting) -> None:
         if not len(rows):
             return
         first = self._blades.begin(self._generator, rows)
-        self._state[rows] = _float(self._blades.state[rows])
+        self._state[rows] = _float(self._blades.moving[rows])
         self._readings[rows] = _float(first.observation)
         self._remember_signals(rows)
         assert self._memory is not None
@@ -127,7 +127,7 @@ class Windows:
             readings, signals = self._read(output, disturbance, signals)
             cost = cost + increment
             self._blades.elapse()
-        left = 0.5 * (state**2).sum(dim=1)
+        left = 0.5 * (state[:, : self._energetic] ** 2).sum(dim=1)
         self._keep(state, readings, memory, signals)
         self._phase = (self._phase + 1) % self.count
         self._begin(np.flatnonzero(self._phase == 0), actor)

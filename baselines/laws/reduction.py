@@ -1,0 +1,59 @@
+"""Laws of lower order that do nearly the same on their plant: balanced truncation within the closed loop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import solve_discrete_lyapunov
+
+from baselines.analysis.stationary import closed_loop, stationary_cost
+from baselines.design.linear import LinearController
+from baselines.design.riccati import Array
+from beamenv.plant.plant import Plant, sample
+
+
+def reduced(plant: Plant, law: LinearController, order: int) -> LinearController:
+    """The law with ``order`` numbers in its memory instead of ``law.order``.
+
+    In the closed loop under the plant's white loads and sensor noise the memory has a covariance, and each direction of it a say in
+    the cost that follows. Directions in which the product of the two is least are left out (Wortelboer and Bosgra 1994; what
+    Moore's balanced truncation is to a plant by itself). Raises ``ValueError`` for an order that is not below the law's, for a law
+    whose loop is unstable, and where the loop of the result is.
+    """
+    if not 0 < order < law.order:
+        raise ValueError(f"order = {order!r} must be a whole number from 1 to {law.order - 1}, below that of {law.name}.")
+    basis, dual = _balanced(plant, law)
+    onto, back = basis[:, :order], dual[:order]
+    shorter = replace(
+        law,
+        transition=back @ law.transition @ onto,
+        measurement_input=back @ law.measurement_input,
+        voltage_input=back @ law.voltage_input,
+        state_gain=law.state_gain @ onto,
+    )
+    if not np.isfinite(stationary_cost(plant, shorter)):
+        raise ValueError(f"order = {order} leaves {law.name} unstable on its own plant: allowed are larger ones.")
+    return shorter
+
+
+def _balanced(plant: Plant, law: LinearController) -> tuple[Array, Array]:
+    """Basis and dual basis (s, k), (k, s) of the memory, the most important direction first; k of them are not lost in rounding."""
+    held = sample(plant)
+    transition, noise_input, state_map, _, covariance = closed_loop(held, law)
+    if np.abs(np.linalg.eigvals(transition)).max() >= 1.0:
+        raise ValueError(f"law = {law.name} is unstable on the plant, and cannot be reduced there.")
+    n = len(held.A)
+    spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T)[n:, n:]
+    cost = state_map.T @ held.cost @ state_map
+    say = solve_discrete_lyapunov(transition.T, 0.5 * (cost + cost.T))[n:, n:]
+    reached, felt = _root(spread), _root(say)
+    left, values, right = np.linalg.svd(felt.T @ reached)
+    count = int(np.count_nonzero(values > values[0] * np.finfo(float).eps * len(values)))
+    scale = 1.0 / np.sqrt(values[:count])
+    return reached @ right[:count].T * scale, (left[:, :count] * scale).T @ felt.T
+
+
+def _root(matrix: Array) -> Array:
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))

@@ -1,0 +1,232 @@
+"""A blade at the stations at which it is integrated, with the sections' warping eliminated.
+
+The coefficients q are those of the reference line and the sections' turns, (u, v, s, θx, θy, φ). A section's shapes have
+amplitudes a(z) of their own, zero at the clamp, which have next to no inertia: for given strains e(z) of the beam they take the
+values of least energy, a = −K_aa⁻¹ ∫(Φᵀ E_ae + Φ′ᵀ E_a′e) e dz, and move with q (Guyan's reduction, whose mass they keep).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from beamenv.structure.assembly import symmetric
+from beamenv.structure.geometrically_exact.inertia import SpinningSections
+from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, FibreExtension, Placement
+from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
+from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
+from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.section.elements import RIGID
+from beamenv.structure.section.solid_sections import AMPLITUDES, STRAINS
+from beamenv.structure.trial_functions import Stations, TrialSpace, polynomial_table
+
+Array = NDArray[np.float64]
+
+BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), slice(RIGID + AMPLITUDES, STRAINS)
+
+HELD = 1e-10
+"""Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
+
+
+@dataclass(frozen=True, eq=False)
+class BladeAtStations:
+    """A blade at the S stations at which it is integrated: what does not depend on the speed, and forms for any placement."""
+
+    weight: Array
+    """(S,), m."""
+    arm: Array
+    """(S, 3), m: from the hub's centre to the pitch axis, before anything is loaded."""
+    frames: Array
+    """C₀ (S, 3, 3)."""
+    rows: Array
+    """(S, 12, N): [u, c, u′, c′] per coefficient."""
+    value: Array
+    slope: Array
+    """(S, terms): trial functions of the shapes' amplitudes, and their derivatives."""
+    energy: Array
+    """(S, STRAINS, STRAINS): of the sections, see ``SolidSections``."""
+    stress_moments: Array
+    """(S, 6, 6)"""
+    section_inertia: Array
+    """(S, 6)"""
+    shape_mass: Array
+    """(S, AMPLITUDES, AMPLITUDES)"""
+
+    @classmethod
+    def of(cls, space: TrialSpace, stations: Stations, sections: SectionsAlong, hub_radius: float) -> BladeAtStations:
+        """Gather the sections and tabulate the trial functions."""
+        z, solid = stations.z, sections.solid
+        value, slope = shape_tables(space, z)
+        return cls(
+            weight=stations.weight,
+            arm=np.column_stack([np.zeros_like(z), np.zeros_like(z), hub_radius + z]),
+            frames=sections.planform.frames(z),
+            rows=increment_rows(space, z),
+            value=value,
+            slope=slope,
+            energy=sections.at(z, without_shear(solid.energy) if space.rigid else solid.energy),
+            stress_moments=sections.at(z, solid.stress_moments),
+            section_inertia=sections.at(z, solid.inertia),
+            shape_mass=sections.at(z, solid.shape_mass),
+        )
+
+    @cached_property
+    def unloaded(self) -> Placement:
+        """Where the blade is before anything is loaded."""
+        return Placement.of(np.zeros((len(self.weight), INCREMENT)), self.frames)
+
+    @cached_property
+    def strain_rows(self) -> Array:
+        """(S, 6, N) of the unloaded blade."""
+        return np.asarray(self.unloaded.strain_rows @ self.rows)
+
+    @cached_property
+    def shape_stiffness(self) -> tuple[Array, bool]:
+        """K_aa, factorised."""
+        terms = self.value.shape[1]
+        whole = self._shape_form(self.energy[:, SHAPE, SHAPE], self.value, self.value)
+        mixed = self._shape_form(self.energy[:, SHAPE, SHAPE_SLOPE], self.value, self.slope)
+        whole = whole + mixed + mixed.T + self._shape_form(self.energy[:, SHAPE_SLOPE, SHAPE_SLOPE], self.slope, self.slope)
+        size = AMPLITUDES * terms
+        whole[np.arange(size), np.arange(size)] += HELD * np.diagonal(whole).max()
+        return cho_factor(whole, lower=True, check_finite=False)
+
+    def _shape_form(self, section: Array, left: Array, right: Array) -> Array:
+        """∫ Φᵢ section_jk Φ′_l dz, (AMPLITUDES × terms)²."""
+        terms = left.shape[1]
+        products = (self.weight[:, None, None] * left[:, :, None] * right[:, None, :]).reshape(len(self.weight), -1)
+        form = (section.reshape(len(section), -1).T @ products).reshape(AMPLITUDES, AMPLITUDES, terms, terms)
+        return np.asarray(form.transpose(0, 2, 1, 3).reshape(AMPLITUDES * terms, -1))
+
+    @cached_property
+    def onto_shapes(self) -> Array:
+        """L (S, 6, AMPLITUDES × terms): what a beam strain at a station asks of the shapes."""
+        weighted = self.weight[:, None, None, None]
+        onto = self.energy[:, BEAM, SHAPE, None] * self.value[:, None, None, :]
+        onto = onto + self.energy[:, BEAM, SHAPE_SLOPE, None] * self.slope[:, None, None, :]
+        return np.asarray((weighted * onto).reshape(len(self.weight), RIGID, -1))
+
+    def amplitudes(self, strain: Array) -> Array:
+        """(AMPLITUDES × terms, …) for strains (S, 6, …)."""
+        asked = self.onto_shapes.reshape(-1, self.onto_shapes.shape[-1]).T @ strain.reshape(self.weight.size * RIGID, -1)
+        return -cho_solve(self.shape_stiffness, asked, check_finite=False).reshape(-1, *strain.shape[2:])
+
+    def resultants(self, strain: Array) -> tuple[Array, Array]:
+        """Stress resultants (S, 6) in the sections' axes for strains (S, 6), and the amplitudes."""
+        amplitudes = self.amplitudes(strain)
+        own = (self.energy[:, BEAM, BEAM] @ strain[..., None])[..., 0]
+        return own + self.onto_shapes @ amplitudes / self.weight[:, None], amplitudes
+
+    def elastic(self, strain_rows: Array) -> Array:
+        """∫ of the section's energy (N, N), with the shapes' amplitudes at their best."""
+        beam = self.strain_form(self.energy[:, BEAM, BEAM], strain_rows)
+        flat = strain_rows.reshape(-1, strain_rows.shape[-1])
+        asked = self.onto_shapes.reshape(len(flat), -1).T @ flat
+        return symmetric(beam - asked.T @ cho_solve(self.shape_stiffness, asked, check_finite=False))
+
+    def strain_form(self, section: Array, strain_rows: Array) -> Array:
+        """∫ rowsᵀ section rows dz (N, N) for sections (S, 6, 6)."""
+        weighted = (self.weight[:, None, None] * section) @ strain_rows
+        size = strain_rows.shape[-1]
+        return np.asarray(strain_rows.reshape(-1, size).T @ weighted.reshape(-1, size))
+
+    def form(self, of_increments: Array) -> Array:
+        """∫ of a form (S, 12, 12) of increments, (N, N)."""
+        weighted = (self.weight[:, None, None] * of_increments) @ self.rows
+        size = self.rows.shape[-1]
+        return np.asarray(self.rows.reshape(-1, size).T @ weighted.reshape(-1, size))
+
+    def force(self, on_increments: Array) -> Array:
+        """∫ of forces (S, 12), (N,)."""
+        return np.asarray(self.rows.reshape(-1, self.rows.shape[-1]).T @ (self.weight[:, None] * on_increments).ravel())
+
+    def inertia(self, placement: Placement) -> SpinningSections:
+        """The sections' inertia where the blade is."""
+        return SpinningSections.of(placement, self.section_inertia, self.arm)
+
+    def mass(self, inertia: SpinningSections, strain_rows: Array) -> Array:
+        """M (N, N), with that of the shapes."""
+        follow = self.amplitudes(strain_rows)
+        shapes = self._shape_form(self.shape_mass, self.value, self.value)
+        return symmetric(self.form(inertia.mass_form) + follow.T @ shapes @ follow)
+
+    def newton_step(self, q: Array, speed: float) -> Array:
+        """Increment (N,) of displacements and spins towards the steady state from coefficients q."""
+        placement = Placement.of(self.rows @ q, self.frames)
+        resultants, stiffness = self._stressed(placement)
+        strain_rows = placement.strain_rows @ self.rows
+        inertia = self.inertia(placement)
+        pull = strain_rows.reshape(-1, strain_rows.shape[-1]).T @ (self.weight[:, None] * resultants).ravel()
+        tangent = self._tangent(placement, resultants, stiffness, inertia, strain_rows, speed)
+        return np.asarray(np.linalg.solve(tangent, speed**2 * self.force(inertia.centrifugal) - pull))
+
+    def _stressed(self, placement: Placement) -> tuple[Array, Array]:
+        """Resultants (S, 6) and what the fibres' quadratic extension adds to the section's stiffness (S, 6, 6)."""
+        strain = placement.strain
+        moments = np.einsum("sfi,si->sf", self.stress_moments, strain)
+        fibres = FibreExtension.of(strain)
+        resultants = self.resultants(strain)[0] + fibres.resultants(moments, self.stress_moments)
+        return resultants, fibres.stiffness(moments, self.stress_moments)
+
+    def _tangent(
+        self, placement: Placement, resultants: Array, stiffness: Array, inertia: SpinningSections, strain_rows: Array, speed: float
+    ) -> Array:
+        whole = self.elastic(strain_rows) + self.strain_form(stiffness, strain_rows)
+        return symmetric(whole + self.form(placement.geometric(resultants) - speed**2 * inertia.centrifugal_softening))
+
+    def moved(self, q: Array, step: Array) -> Array:
+        """Coefficients after an increment of displacements and spins: the rotations are put together and fitted again."""
+        state, increment = self.rows @ q, self.rows @ step
+        turned = rotation(increment[:, SPIN]) @ rotation(state[:, SPIN])
+        beyond = rotation_vector(turned) - state[:, SPIN] - increment[:, SPIN]
+        return np.asarray(q + step + self._spin_fit @ (self.weight[:, None] * beyond).ravel())
+
+    @cached_property
+    def _spin_fit(self) -> Array:
+        """(N, 3S): coefficients of rotations at the stations, weighted, by least squares."""
+        spins = self.rows[:, SPIN]
+        flat = spins.reshape(-1, spins.shape[-1])
+        normal = flat.T @ (np.repeat(self.weight, 3)[:, None] * flat)
+        own = np.flatnonzero(np.diagonal(normal))
+        fit = np.zeros((spins.shape[-1], len(flat)))
+        fit[own] = np.linalg.solve(normal[np.ix_(own, own)], flat[:, own].T)
+        return fit
+
+    def about(self, q: Array, speed: float) -> OperatingPoint:
+        """M, K and G about the steady state with coefficients q."""
+        placement = Placement.of(self.rows @ q, self.frames)
+        resultants, stiffness = self._stressed(placement)
+        strain_rows = placement.strain_rows @ self.rows
+        inertia = self.inertia(placement)
+        return OperatingPoint(
+            speed=speed,
+            mass=self.mass(inertia, strain_rows),
+            stiffness=self._tangent(placement, resultants, stiffness, inertia, strain_rows, speed),
+            gyroscopic=speed * self.form(inertia.gyroscopic),
+            steady=SteadyState(q, self.amplitudes(placement.strain)),
+        )
+
+
+def increment_rows(space: TrialSpace, z: Array) -> Array:
+    """(S, 12, N): [u, c, u′, c′] at stations z (m), per coefficient."""
+    tables = space.evaluate(z)
+    order = ("u", "v", "s", "theta_x", "theta_y", "phi")
+    return np.stack([tables[name, derivative] for derivative in (0, 1) for name in order], axis=1)
+
+
+def shape_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
+    """Values and slopes (S, terms) of the amplitudes' trial functions."""
+    value, slope, _ = polynomial_table(z / space.length, 1, space.terms, space.length)
+    return value, slope
+
+
+def without_shear(energy: Array) -> Array:
+    """Energies (V, STRAINS, STRAINS) of sections that shear as they please, their shear strains held to cost nothing."""
+    shears = slice(0, 2)
+    free = energy - energy[:, :, shears] @ np.linalg.solve(energy[:, shears, shears], energy[:, shears, :])
+    free[:, shears, :] = free[:, :, shears] = 0.0
+    return free

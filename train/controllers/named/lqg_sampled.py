@@ -1,0 +1,13 @@
+"""LQG of the sampled design plant: the optimum on its eleven modes, and of them alone."""
+
+from dataclasses import replace
+
+from baselines import Controller, lqg
+from beamenv import Design
+
+KIND = "fixed"
+
+
+def build(design: Design) -> Controller:
+    """Filter and regulator from two discrete Riccati equations."""
+    return replace(lqg(design.plant), name="LQG (sampled, design modes)")
