@@ -31,11 +31,11 @@ def trace_of_the_plant(problem, positions):
 @pytest.mark.parametrize(("model", "within"), [("thesis", 2e-8), ("blade", 0.01)])
 def test_cost_is_the_trace_that_the_environments_plant_has(preset, changes, side, model, within):
     """To rounding in the thesis' model; about the bare blade's steady state within 1 %, on the small box, of which patches are a
-    greater part, within 5 %: layouts differ by a third."""
+    greater part, within 8 %: layouts differ by a third."""
     problem = PlacementProblem.of(blade_config(preset, changes | {"model": model}), side)
     layouts = problem.bounds.random(np.random.default_rng(1), 4)
     expected = [trace_of_the_plant(problem, layout) for layout in layouts]
-    assert problem.cost(layouts) == pytest.approx(expected, rel=within if preset == "thesis" or model == "thesis" else 5.0 * within)
+    assert problem.cost(layouts) == pytest.approx(expected, rel=within if preset == "thesis" or model == "thesis" else 8.0 * within)
 
 
 @pytest.mark.parametrize("side", ["actuators", "sensors"])
