@@ -148,6 +148,11 @@ class Blade:
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
 
+    @property
+    def standing_strain(self) -> Array:
+        """(k,): what counts towards failure of the strain without vibration, where that of vibration is watched."""
+        return self.full.steady_strain if self.config.strain_limit == "total" else np.zeros(len(self.truth.strain))
+
     def changed(self, config: BladeConfig) -> Blade:
         """The blade of another configuration, with the parts of this one that do not depend on the difference."""
         other = Blade(config)
