@@ -252,7 +252,7 @@ def test_natural_frequencies_are_marked_in_the_spectra(page_content):
 def test_the_solid_is_shown_as_far_as_the_beam_has_its_modes():
     idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
     episode = record_episode({"duration": 0.05, "scenario": "solid-20"}, 3, (idle, idle))
-    assert episode.without_control.states.shape[1] == 40
+    assert episode.without_control.states.shape[1] == len(episode.blade.truth.A)
     pair, factor = motions(episode)
     shown = pair[0].displacement[:, :2, -1] / factor
     true = episode.without_control.tip[pair[0].rows]
