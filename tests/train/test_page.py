@@ -187,7 +187,7 @@ def test_cells_are_ranked_by_the_number_and_not_by_the_text(page, page_content):
 
 
 def test_the_comparison_is_a_table_with_the_best_first():
-    envs = gym.make_vec(beamenv.ENV_ID, num_envs=3, duration=0.05)
+    envs = gym.make_vec(beamenv.ENV_ID, num_envs=3, duration=0.2)
     plant = envs.unwrapped.plant
     evaluations = [evaluate(law, envs, range(3)) for law in (no_control(plant), lqg(plant))]
     envs.close()
