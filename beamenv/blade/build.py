@@ -70,8 +70,11 @@ class Blade:
     def true_modal(self) -> ModalModel:
         """The modes of its true plant."""
         config = self.config
-        if config.truth_modes is not None or _is_thesis(config):
-            return truncate(self.beam, config.speed, config.truth_modes or config.modes, config.gyroscopic)
+        wanted = config.truth_modes
+        if _is_thesis(config) or (wanted is not None and wanted > self.beam.space.size):
+            return truncate(self.beam, config.speed, wanted or config.modes, config.gyroscopic)
+        if wanted is not None:
+            return self._every_mode.first(wanted)
         every = self._every_mode
         below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
         return every.first(max(below, min(config.modes, self.beam.space.size)))
