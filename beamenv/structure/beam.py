@@ -124,7 +124,7 @@ class RotatingBeam:
         if speed not in known:
             point = self.exact.at(speed)
             if len(known) > 1:  # one speed and rest are asked for in turn
-                del known[next(iter(known))]
+                del known[next(each for each in known if each != 0.0)]
             known[speed] = point
         return known[speed]
 
