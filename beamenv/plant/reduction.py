@@ -91,15 +91,17 @@ class FullModel(ReadOnly):
     """Of the patches on the blade at rest; in the thesis' model FᵀK⁻¹F and C_s K⁻¹F at the speed, by the trial functions."""
 
 
-def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float) -> FullModel:
-    """That of a blade which carries the inlays of passive patches, at a speed in rad/s."""
+def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float, at_rest: PatchResponse | None = None) -> FullModel:
+    """That of a blade which carries the inlays of passive patches, at a speed in rad/s; ``at_rest`` is its ``local_response``, if
+    that is known already.
+    """
     tip = beam.displacements(np.array([beam.length]))
     forces, charges = actuation(beam, layout, speed), sensing(beam, layout, speed)
     if beam.model == "thesis":
         static = np.linalg.solve(beam.at(speed).stiffness, forces)
-        response = PatchResponse(forces.T @ static, charges @ static)
+        response = PatchResponse(forces.T @ static, charges @ static, charges @ static)
     else:
-        response = local_response(beam, layout)
+        response = local_response(beam, layout) if at_rest is None else at_rest
     return FullModel(
         forces=forces,
         charges=charges,

@@ -48,5 +48,5 @@ def test_speeds_must_be_a_row_of_numbers_from_zero(speeds):
 
 
 def test_count_must_not_exceed_the_trial_functions():
-    with pytest.raises(ValueError, match="count is 61"):
+    with pytest.raises(ValueError, match="count is 97"):
         frequency_sweep(BLADE, [0.0], 61)

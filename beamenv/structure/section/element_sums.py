@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -110,29 +110,35 @@ def element_sums(ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.in
     """Those of V sections: the ring's S sizes are V of them, and element k of section v has the wall ``laminates[which[v, k]]``."""
     sections, count = which.shape
     nodes = (ring.order + 1) * (ACROSS + 1)
-    totals = _Totals.zeros(sections * count, nodes)
-    for layer in _layers(laminates, which):
-        totals.add(ring, layer, pretwist)
-    shaped = {name: values.reshape(sections, count, *values.shape[1:]) for name, values in vars(totals).items()}
+    first, of_elements = _distinct(ring, which)
+    totals = _Totals.zeros(len(first), nodes)
+    for number, laminate in enumerate(laminates):
+        members = np.flatnonzero(which.ravel()[first] == number)
+        for low, high, ply in layers(laminate):
+            totals.add(ring, _Layer(members, first[members], low, high, ply), pretwist)
+    shaped = {name: values[of_elements].reshape(sections, count, *values.shape[1:]) for name, values in vars(totals).items()}
     inertia = shaped.pop("inertia").sum(axis=1)
     return ElementSums(**shaped, inertia=inertia, nodes=line_nodes(ring))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Layer:
-    """A layer of one ply and the elements (flat indices) that have it."""
+    """A layer of one ply and the elements that have it, by their places among the distinct ones and in the ring."""
 
     members: NDArray[np.intp]
+    in_ring: NDArray[np.intp]
     low: float
     high: float
     ply: Ply
 
 
-def _layers(laminates: Sequence[Laminate], which: NDArray[np.intp]) -> Iterator[_Layer]:
-    for number, laminate in enumerate(laminates):
-        members = np.flatnonzero(which.ravel() == number)
-        for low, high, ply in layers(laminate):
-            yield _Layer(members, low, high, ply)
+def _distinct(ring: Ring, which: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Elements (flat indices into the ring) of which no two are alike, and (V·K,) which of them each element is."""
+    _, size = np.unique(ring.points.reshape(len(which), -1), axis=0, return_inverse=True)
+    place = np.arange(which.shape[1])
+    key = (size.reshape(-1, 1) * which.shape[1] + place) * (which.max() + 1) + which
+    _, first, of_elements = np.unique(key.ravel(), return_index=True, return_inverse=True)
+    return first, of_elements
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,14 +168,14 @@ class _Totals:
         along, weight_along = gauss_rule(ring.order + 1)
         depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * ring.thickness else 2)
         half = 0.5 * (layer.high - layer.low)
-        here = places(ring, layer.members, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
+        here = places(ring, layer.in_ring, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
         tables = here.tables()
-        nodes, count = here.value.shape[-1], len(layer.members)
+        nodes, count = here.value.shape[-1], len(layer.in_ring)
         pairs = (tables * here.weight[..., None]).swapaxes(-1, -2) @ tables
         shapes = pairs[:, : 4 * nodes, : 4 * nodes].reshape(count, 4, nodes, 4, nodes)
         with_beam = pairs[:, : 4 * nodes, 4 * nodes :].reshape(count, 4, nodes, 3)
         of_beam = pairs[:, 4 * nodes :, 4 * nodes :]
-        stiffness = stiffness_in_section(layer.ply, ring.tangents.reshape(-1, 2)[layer.members])
+        stiffness = stiffness_in_section(layer.ply, ring.tangents.reshape(-1, 2)[layer.in_ring])
         B, S, Z = strain_of_tables(pretwist)
         stressed_B, stressed_S, stressed_Z = (_stressed(stiffness, rows) for rows in (B, S[None], Z))
         at, value = layer.members, shapes[:, 3, :, 3]
