@@ -7,7 +7,7 @@ import pytest
 
 from baselines import PersistentLoad, lqg, stationary_cost
 from baselines.laws.scheduled_lqg import scheduled_lqg, scheduled_lqg_for
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import Blade, build_plant
 from beamenv.blade.presets import THESIS
 from beamenv.simulation.plants.speed_family import speed_family
 
@@ -102,3 +102,13 @@ def test_what_cannot_be_scheduled_is_refused_by_name(family):
     other = replace(family.plants[1], control_interval=1e-3)
     with pytest.raises(ValueError, match="differ in control_interval"):
         scheduled_lqg(replace(family, plants=(family.plants[0], other, *family.plants[2:])))
+
+
+@pytest.mark.parametrize("speed", [120.0, 185.0, 290.0])
+def test_on_all_that_is_known_it_is_near_the_optimum_of_every_speed_behind_the_electronics(speed):
+    """As "scheduled-lqg" is: seven speeds from half to half as much again as the blade's own."""
+    law = scheduled_lqg_for(THESIS, THESIS.speed * np.linspace(0.5, 1.5, 7), full=True, rate_weight=1.0)
+    truth = Blade(replace(THESIS, speed=speed, sensor_full_scale=float(build_plant(THESIS).sensor_full_scale[0]))).truth
+    optimum = stationary_cost(truth, lqg(truth))
+    assert optimum < stationary_cost(truth, law.at(speed)) < 1.01 * optimum
+    assert stationary_cost(truth, scheduled_lqg_for(THESIS, full=False).at(speed)) == np.inf
