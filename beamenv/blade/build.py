@@ -70,8 +70,11 @@ class Blade:
     def true_modal(self) -> ModalModel:
         """The modes of its true plant."""
         config = self.config
-        if config.truth_modes is not None or _is_thesis(config):
-            return truncate(self.beam, config.speed, config.truth_modes or config.modes, config.gyroscopic)
+        wanted = config.truth_modes
+        if _is_thesis(config) or (wanted is not None and wanted > self.beam.space.size):
+            return truncate(self.beam, config.speed, wanted or config.modes, config.gyroscopic)
+        if wanted is not None:
+            return self._every_mode.first(wanted)
         every = self._every_mode
         below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
         return every.first(max(below, min(config.modes, self.beam.space.size)))
@@ -147,6 +150,11 @@ class Blade:
         if not all(np.isfinite(getattr(plant, each.name)).all() for each in fields(plant)):
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
+
+    @property
+    def standing_strain(self) -> Array:
+        """(k,): what counts towards failure of the strain without vibration, where that of vibration is watched."""
+        return self.full.steady_strain if self.config.strain_limit == "total" else np.zeros(len(self.truth.strain))
 
     def changed(self, config: BladeConfig) -> Blade:
         """The blade of another configuration, with the parts of this one that do not depend on the difference."""

@@ -70,6 +70,7 @@ class GivenBlade(Blade):
                 tip=model.tip,
                 strain=strain,
                 steady_strain=self.full.steady_strain,
+                steady=self.full.steady,
                 response=self.full.response,
             ),
             damping_ratio=config.damping_ratio if model.damping_ratio is None else model.damping_ratio,
@@ -130,6 +131,10 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
         )
     if model.speed is not None and model.speed != config.speed:
         raise Refused("blade.speed", config.speed, f"that of the plant {source!r}, {model.speed:g} rad/s")
+    if model.strain is not None and config.strain_limit == "total":
+        raise Refused(
+            "blade.strain_limit", config.strain_limit, f"'vibration', for the plant {source!r} has strains of vibration alone"
+        )
     return GivenBlade(config, model.first(modes))
 
 

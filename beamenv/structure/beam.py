@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Annotated
 
@@ -112,7 +114,8 @@ class RotatingBeam:
     @cached_property
     def matrices(self) -> BeamMatrices:
         """M, K_e, K_Ω, G₁: assembled once, good at any speed; under the stresses of a linear steady state in the blade's model."""
-        matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
+        with in_scale():
+            matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
         return matrices
@@ -136,7 +139,8 @@ class RotatingBeam:
             return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
         known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_points", {})
         if speed not in known:
-            point = self.exact.at(speed)
+            with in_scale():
+                point = self.exact.at(speed)
             if len(known) > 1:  # one speed and rest are asked for in turn
                 del known[next(each for each in known if each != 0.0)]
             known[speed] = point
@@ -239,6 +243,18 @@ class RotatingBeam:
         stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
+
+
+@contextmanager
+def in_scale() -> Iterator[None]:
+    """``ValueError`` in one sentence for numbers of a beam that leave no digits or no finite ones to compute with."""
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except Refused:
+        raise
+    except (ValueError, OverflowError, np.linalg.LinAlgError):
+        raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}") from None
 
 
 def check_inlays(beam: RotatingBeam) -> None:
