@@ -28,6 +28,8 @@ def same(expected, actual):
     elif isinstance(expected, tuple):
         for each, other in zip(expected, actual, strict=True):
             same(each, other)
+    elif isinstance(expected, str):
+        assert expected == actual
     elif expected.dtype == object:
         for each, other in zip(expected, actual, strict=True):
             assert (each is None) == (other is None)
