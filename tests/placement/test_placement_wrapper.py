@@ -13,6 +13,7 @@ from baselines.placement import PlacementProblem, optimal_layout, place
 from baselines.placement.search.genetic import Genetic
 from beamenv import ENV_ID, PlacementWrapper, SensorHistory, VectorPlacementWrapper, blade_config, build_plant
 from beamenv.blade.bounds import Bounds
+from beamenv.blade.build import Blade
 
 ELSEWHERE = {"actuators": [0.0, 0.2, 0.4, 0.6], "sensors": [0.1, 0.2, 0.3, 0.4]}
 
@@ -36,8 +37,11 @@ def test_the_plant_is_the_one_with_patches_there():
     positions = {side: tuple(values) for side, values in ELSEWHERE.items()}
     expected = build_plant(blade_config(overrides={"patches": positions}))
     assert env.reset(seed=0)[1]["layout"] == positions
-    assert np.array_equal(env.unwrapped.plant.B, expected.B)
+    assert np.array_equal(env.unwrapped.design_plant.B, expected.B)
     assert np.array_equal(env.unwrapped.design_plant.C, expected.C)
+    modes = len(env.unwrapped.plant.natural_frequencies)
+    truth = Blade(blade_config(overrides={"patches": positions, "truth_modes": modes})).truth
+    assert np.array_equal(env.unwrapped.plant.A[: 2 * modes], truth.A[: 2 * modes])
 
 
 def test_as_they_were_means_as_without_the_wrapper():
@@ -120,7 +124,7 @@ def test_reset_changes_the_layout_from_then_on():
     assert info["layout"]["sensors"] == tuple(ELSEWHERE["sensors"])
     assert env.reset()[1]["layout"] == info["layout"] == env.step(np.zeros(4))[4]["layout"]
     env.reset(options={"layout": "uniform", "load": {"case": "step"}})
-    assert np.array_equal(env.unwrapped.plant.B, gymnasium.make(ENV_ID).unwrapped.plant.B)
+    assert np.array_equal(env.unwrapped.design_plant.B, gymnasium.make(ENV_ID).unwrapped.design_plant.B)
 
 
 def test_controllers_are_made_from_the_plant_of_the_layout():

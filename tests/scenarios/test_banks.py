@@ -124,7 +124,8 @@ def spillover():
 
 def test_design_and_truth_share_their_first_modes():
     true, design = spillover()
-    assert (len(true.A), true.blade_states, len(design.A)) == (52, 40, 10)
+    assert len(design.A) == 10
+    assert true.natural_frequencies[-1] > 0.8 * np.pi / true.control_interval
     np.testing.assert_allclose(design.natural_frequencies, true.natural_frequencies[:5], rtol=1e-9)
 
 
