@@ -128,9 +128,9 @@ def test_reset_changes_the_layout_from_then_on():
 
 
 def test_controllers_are_made_from_the_plant_of_the_layout():
-    """It damps there, and is another law than where the patches were."""
-    env = wrapped(**ELSEWHERE)
-    controller, elsewhere = lqg(env.unwrapped.design_plant), lqg(build_plant(blade_config()))
+    """It damps there, and is another law than where the patches were; in the thesis' world, all of which it knows."""
+    env = PlacementWrapper(gymnasium.make(ENV_ID, duration=0.02, blade={"model": "thesis"}), **ELSEWHERE)
+    controller, elsewhere = lqg(env.unwrapped.design_plant), lqg(build_plant(blade_config(overrides={"model": "thesis"})))
     assert np.abs(controller.state_gain - elsewhere.state_gain).max() > 0.1 * np.abs(elsewhere.state_gain).max()
 
     def cost(act):

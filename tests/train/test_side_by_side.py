@@ -60,7 +60,7 @@ def test_a_mode_keeps_its_place_whatever_the_order_of_the_plant():
     """The solid has 11 modes and no electronics, nominal's blade more: first displacements, then velocities, then electronics."""
     both = [resolve_task(duration=0.01, scenario=name) for name in ("nominal", "solid")]
     batches = [TrainingVecEnv(2, task, 0, history=3, shows_state=True) for task in both]
-    envs, own = SideBySide(batches), batches[1].reset()
+    envs, own = SideBySide(batches), TrainingVecEnv(2, both[1], 0, history=3, shows_state=True).reset()
     states = envs.reset()[2:, envs.seen : -2]
     modes, plant = 11, batches[0].blades.plant
     most = len(plant.natural_frequencies)

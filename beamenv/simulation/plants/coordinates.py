@@ -35,7 +35,7 @@ def widened(view: Array, states: int) -> Array:
 
 def coordinates(displacing: Array, moving: Array, design: Blade) -> Array:
     """(n, d) map of states whose halves move the trial functions' coefficients by ``displacing`` and ``moving`` (N, r)."""
-    projection = design.modal.mode_shapes.T @ design.beam.matrices.mass
+    projection = design.modal.mode_shapes.T @ design.beam.at(design.config.speed).mass
     displaced, moved = design.modal.natural_frequencies[:, None] * (projection @ displacing), projection @ moving
     d, r = displaced.shape
     whole = np.zeros((2 * d, 2 * r))
