@@ -14,6 +14,7 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
+from beamenv.blade.clamp import clamp_note
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
@@ -36,6 +37,9 @@ ScenarioArgument = Scenario | Mapping[str, Any] | str | Path | None
 
 INFO = ("volts", "tip_displacement", "energy", "effort", "cost_increment")
 """What info holds of a ``Motion``."""
+
+STEADY_INFO = ("static_stretch", "static_untwist", "static_strain", "static_strain_at")
+"""What a reset's info holds besides, of the blade as it turns and nothing vibrates."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,11 @@ class Task:
     def bank(self) -> Bank:
         """The true plants that episodes draw from."""
         return build_bank(self.blade, self.design_blade, self.scenario.plants, self.steps)
+
+    @property
+    def note(self) -> str:
+        """What is to be said of where the true blade's patches are; empty if nothing is."""
+        return clamp_note(self.config)
 
     def action_space(self) -> Box:
         """Voltages, normalised or in V."""
@@ -230,23 +239,28 @@ def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> t
     """Scenario and initial states ((n,) or (rows, n), or None) of one reset, as its options say."""
     options = {} if options is None else checked_table("options", options, ("load", "initial_state"))
     chosen = with_load(task.scenario, options["load"]) if "load" in options else task.scenario
-    return chosen, _initial_state(task.plant, options["initial_state"], rows) if "initial_state" in options else None
+    return chosen, _initial_state(task, options["initial_state"], rows) if "initial_state" in options else None
 
 
-def _initial_state(plant: Plant, value: Any, rows: int) -> Array:
-    state = _numbers("options.initial_state", value)
+def _initial_state(task: Task, value: Any, rows: int) -> Array:
+    plant, state = task.plant, _numbers("options.initial_state", value)
     n, b = len(plant.A), plant.blade_states
     if state.shape not in ((n,), (rows, n), (b,), (rows, b)):
         alone = f", or ({b},) or ({rows}, {b}), the blade's own states" if b < n else ""
         raise ValueError(f"options.initial_state has shape {state.shape}, but must have shape ({n},) or ({rows}, {n}){alone}.")
     if state.shape[-1] < n:
         state = np.concatenate([state, np.zeros((*state.shape[:-1], n - b))], axis=-1)
-    strain = np.abs(state @ plant.strain.T).max(initial=0.0)
+    strain = np.abs(task.blade.standing_strain + state @ plant.strain.T).max(initial=0.0)
     if not (np.isfinite(state).all() and strain <= FAILURE_STRAIN):
         raise ValueError(
             f"options.initial_state strains the blade by {strain:.3g}, but must be finite and stay below {FAILURE_STRAIN:g}."
         )
     return state
+
+
+def steady_information(steady: Array, note: str | NDArray[Any]) -> dict[str, Any]:
+    """What a reset's info holds beside ``information``: of steady states (…, 4), as ``Bank`` has them, and a note (…)."""
+    return {**dict(zip(STEADY_INFO, np.moveaxis(steady, -1, 0), strict=True)), "note": note}
 
 
 def information(motion: Motion) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.configuration import Count, Refused, checked
-from beamenv.patches import actuation, sensing
+from beamenv.patches import PatchResponse, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
@@ -43,12 +43,23 @@ class Blade:
     @cached_property
     def modal(self) -> ModalModel:
         """The modes of its design plant."""
-        return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
+        if _is_thesis(self.config) or self.config.modes > self.beam.space.size:
+            return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
+        return self._every_mode.first(self.config.modes)
+
+    @cached_property
+    def _every_mode(self) -> ModalModel:
+        return truncate(self.beam, self.config.speed, self.beam.space.size, self.config.gyroscopic)
+
+    @cached_property
+    def at_rest(self) -> PatchResponse | None:
+        """What voltages on its patches do to it at rest; None in the thesis' model."""
+        return None if _is_thesis(self.config) else local_response(self.beam, self.config.patches)
 
     @cached_property
     def full(self) -> FullModel:
         """What acts on it and what is seen of it."""
-        return full_model(self.beam, self.config.patches, self.config.speed)
+        return full_model(self.beam, self.config.patches, self.config.speed, self.at_rest)
 
     @cached_property
     def plant(self) -> Plant:
@@ -62,7 +73,7 @@ class Blade:
         wanted = config.modes if config.truth_modes is None and _is_thesis(config) else config.truth_modes
         if wanted == config.modes:
             return self.modal
-        every = truncate(self.beam, config.speed, size, config.gyroscopic)
+        every = self._every_mode
         if wanted is not None:
             return every.first(checked("blade.truth_modes", wanted, Count(1, size)))
         below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
@@ -77,15 +88,19 @@ class Blade:
         config, plant = self.config, self.plant
         if _is_thesis(config) and config.truth_modes in (None, config.modes):
             return plant
-        bare = self._reduced(self.true_modal, float(plant.sensor_full_scale[0]))
+        return self._behind_electronics(self._reduced(self.true_modal, float(plant.sensor_full_scale[0])))
+
+    def _behind_electronics(self, bare: Plant) -> Plant:
+        """The plant behind amplifiers and filters, with the static share of modes that it leaves out; none of it in the thesis."""
+        config = self.config
         if _is_thesis(config):
             return bare
         electronics, rate = config.electronics, 2.0 * np.pi / config.control_interval
         bandwidth, cutoff = electronics.amplifier_bandwidth, electronics.filter_cutoff
         return behind_electronics(
             bare,
-            charge_residual=self._residual(self._static_charges(), self.full.charges),
-            tip_residual=self._residual(self.full.tip @ self._static, self.full.tip),
+            charge_residual=self._charge_residual(),
+            tip_residual=self._residual(self.full.tip),
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
             filter_cutoff=None if cutoff is None else cutoff * rate,
@@ -100,12 +115,18 @@ class Blade:
         """(p, m), C per V: exactly at rest, where patches so short raise strains beneath them alone, and by the trial functions
         what the rotation changes, which they can follow.
         """
-        beam, layout = self.beam, self.config.patches
-        at_rest = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
-        return np.asarray(self.full.response.charges + self.full.charges @ self._static - at_rest)
+        response = self.full.response
+        return np.asarray(response.charges + self.full.charges @ self._static - response.smooth_charges)
 
-    def _residual(self, static: Array, rows: Array) -> Array:
-        """(k, m) per V: of what is there at rest, what the modes of the true plant do not show by rows (k, N)."""
+    def _charge_residual(self) -> Array:
+        """(p, m), C per V: static charges that the modes of the true plant do not show."""
+        return self._less_modes(self._static_charges(), self.full.charges)
+
+    def _residual(self, rows: Array) -> Array:
+        """(k, m) per V: what rows (k, N) show of the static displacement, and not of the modes of the true plant."""
+        return self._less_modes(rows @ self._static, rows)
+
+    def _less_modes(self, static: Array, rows: Array) -> Array:
         modal = self.true_modal
         shapes = modal.mode_shapes
         return static_residual(static, rows @ shapes, shapes.T @ self.full.forces, modal.natural_frequencies)
@@ -129,6 +150,11 @@ class Blade:
         if not all(np.isfinite(getattr(plant, each.name)).all() for each in fields(plant)):
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
+
+    @property
+    def standing_strain(self) -> Array:
+        """(k,): what counts towards failure of the strain without vibration, where that of vibration is watched."""
+        return self.full.steady_strain if self.config.strain_limit == "total" else np.zeros(len(self.truth.strain))
 
     def changed(self, config: BladeConfig) -> Blade:
         """The blade of another configuration, with the parts of this one that do not depend on the difference."""
@@ -156,8 +182,7 @@ class Blade:
         if truth.electronic_states and self.config.electronics.amplifier_bandwidth is not None:
             m = truth.B.shape[1]
             flat = lag_flap_twist.reshape(-1, lag_flap_twist.shape[-1])
-            residual = self._residual(flat @ self._static, flat)
-            operator[..., -m:] = (residual * drive_limit(truth)).reshape(*operator.shape[:-1], m)
+            operator[..., -m:] = (self._residual(flat) * drive_limit(truth)).reshape(*operator.shape[:-1], m)
         return operator
 
 
@@ -168,6 +193,7 @@ def _is_thesis(config: BladeConfig) -> bool:
 _BEAM = ("beam", "patches", "model")
 _MADE_OF = {
     "beam": _BEAM,
+    "at_rest": _BEAM,
     "modal": (*_BEAM, "speed", "modes", "gyroscopic"),
     "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
     "full": (*_BEAM, "speed"),

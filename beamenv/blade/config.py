@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
-from beamenv.configuration import Choice, Count, Flag, Number, Positive, Range, Whole, configuration
+from beamenv.configuration import Choice, Count, Flag, Number, Positive, Range, Refused, Whole, configuration
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.patches import PatchLayout
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
@@ -22,6 +22,8 @@ from beamenv.structure.walls.laminate import PLY_ANGLES
 MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6})
 
 ON_EVERY_WALL = "all"
+
+STRAIN_LIMIT = Choice(("vibration", "total"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +137,9 @@ class BladeConfig:
     """Of every mode."""
     effort_weight: Positive = 0.5
     """ρ in R = ρ FᵀK⁻¹F: with ½, uᵀRu is the energy (J) that the actuators store in the blade at rest."""
+    strain_limit: Annotated[str, STRAIN_LIMIT] = "vibration"
+    """Which strain fails the blade where it exceeds what its patches are rated for: that of "vibration" alone, or the "total", with
+    the steady state's."""
     white_load: Annotated[float, Number(ge=0.0, unit="N/m")] = 3.0
     """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""
     sensor_noise_fraction: Annotated[float, Number(ge=0.0)] = 0.02
@@ -154,3 +159,5 @@ class BladeConfig:
     def __post_init__(self) -> None:
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
+        if self.strain_limit == "total" and self.model == "thesis":
+            raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

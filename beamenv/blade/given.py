@@ -1,8 +1,9 @@
 """A blade that moves as the modes of a plant file say, in place of the beam's.
 
-Damping (unless the file has its own), noise, drive limits, the sensors' range and the control interval are the configuration's. So
-is the weight of effort R: it is the energy that the patches store in the beam of the configuration, for a file has no stiffness to
-compute it from, and costs on both compare.
+Damping (unless the file has its own), noise, amplifiers and filters, drive limits, the sensors' range and the control interval are
+the configuration's. So is the weight of effort R: it is the energy that the patches store in the beam of the configuration, for a
+file has no stiffness to compute it from, and costs on both compare. Charges that modes beyond the file take up at once are those of
+the beam's patches, less the share of the file's modes; they hardly displace the blade, and how is not known.
 
 A file has no mode shapes along the span either. What needs them is told by the beam's: pictures, the strain where the file has no
 rows for it, and the state in the coordinates of a design. Each mode of the file is taken for the one mode of the beam that answers
@@ -21,6 +22,7 @@ from scipy.optimize import linear_sum_assignment
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Refused
+from beamenv.plant.electronics import static_residual
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant
 from beamenv.plant.read_only import sealed
@@ -37,9 +39,9 @@ NEAR = 0.25
 
 @dataclass(frozen=True)
 class GivenBlade(Blade):
-    """A blade of the configuration's electronics and patches that moves as ``model`` says; its design plant is the beam's."""
+    """A blade of the configuration that moves as the plant ``given`` says; its design plant is the beam's."""
 
-    model: ModalPlant
+    given: ModalPlant
 
     @cached_property
     def as_beam(self) -> Blade:
@@ -50,14 +52,14 @@ class GivenBlade(Blade):
 
     @cached_property
     def true_modal(self) -> ModalModel:
-        """The model's modes; the shapes, by the beam's trial functions, are those of their counterparts."""
-        gyroscopic = self.model.gyroscopic if self.config.gyroscopic else np.zeros_like(self.model.gyroscopic)
-        return ModalModel(self.model.natural_frequencies, self._shapes(), gyroscopic)
+        """The modes of the file; the shapes, by the beam's trial functions, are those of their counterparts."""
+        gyroscopic = self.given.gyroscopic if self.config.gyroscopic else np.zeros_like(self.given.gyroscopic)
+        return ModalModel(self.given.natural_frequencies, self._shapes(), gyroscopic)
 
     @cached_property
     def truth(self) -> Plant:
         """The plant that moves."""
-        config, model, omega = self.config, self.model, self.model.natural_frequencies
+        config, model, omega = self.config, self.given, self.given.natural_frequencies
         strain = self.full.strain @ self.true_modal.mode_shapes if model.strain is None else model.strain
         plant = reduced_plant(
             ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic),  # its trial functions are its modes
@@ -68,6 +70,7 @@ class GivenBlade(Blade):
                 tip=model.tip,
                 strain=strain,
                 steady_strain=self.full.steady_strain,
+                steady=self.full.steady,
                 response=self.full.response,
             ),
             damping_ratio=config.damping_ratio if model.damping_ratio is None else model.damping_ratio,
@@ -78,21 +81,30 @@ class GivenBlade(Blade):
             voltage_limits=config.voltage_limits,
             control_interval=config.control_interval,
         )
-        return replace(plant, input_weight=self.plant.input_weight)
+        return self._behind_electronics(replace(plant, input_weight=self.plant.input_weight))
+
+    def _charge_residual(self) -> Array:
+        """(p, m), C per V: the beam's static charges, strains beneath the patches above all, less what the file's modes show."""
+        model = self.given
+        return static_residual(self._static_charges(), model.charges, model.actuation, model.natural_frequencies)
+
+    def _residual(self, rows: Array) -> Array:
+        """(k, m) per V: nothing, for a file does not tell how its further modes would displace the blade."""
+        return np.zeros((len(rows), self.given.actuation.shape[1]))
 
     def changed(self, config: BladeConfig) -> GivenBlade:
         """The same modes behind other electronics; ``ValueError`` for another beam, model, speed or other patches."""
         for name in ("beam", "patches", "model", "speed"):
             if getattr(config, name) != getattr(self.config, name):
                 raise ValueError(f"blade.{name} cannot be changed where a plant file says how the blade moves.")
-        beam, other = self.as_beam.changed(config), GivenBlade(config, self.model)
+        beam, other = self.as_beam.changed(config), GivenBlade(config, self.given)
         vars(other).update(beam=beam.beam, modal=beam.modal, full=beam.full)
         return other
 
     def _shapes(self) -> Array:
         """(N, r)."""
-        modes = min(self.beam.space.size, max(self.config.modes, len(self.model.natural_frequencies)))
-        beam, full, model = self.as_beam.changed(replace(self.config, modes=modes)).modal, self.full, self.model
+        modes = min(self.beam.space.size, max(self.config.modes, len(self.given.natural_frequencies)))
+        beam, full, model = self.as_beam.changed(replace(self.config, modes=modes)).modal, self.full, self.given
         shapes = beam.mode_shapes
         own = shapes.T @ full.forces, (full.charges @ shapes).T, shapes.T @ full.line_load, (full.tip @ shapes).T
         given = model.actuation, model.charges.T, model.line_load, model.tip.T
@@ -119,6 +131,10 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
         )
     if model.speed is not None and model.speed != config.speed:
         raise Refused("blade.speed", config.speed, f"that of the plant {source!r}, {model.speed:g} rad/s")
+    if model.strain is not None and config.strain_limit == "total":
+        raise Refused(
+            "blade.strain_limit", config.strain_limit, f"'vibration', for the plant {source!r} has strains of vibration alone"
+        )
     return GivenBlade(config, model.first(modes))
 
 

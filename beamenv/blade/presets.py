@@ -9,11 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.configuration import Refused, read
 from beamenv.patches import PatchLayout
+from beamenv.patches.layout import OUTERMOST
 
 THESIS = BladeConfig()
+SOUND_EDGES = tuple(np.linspace(THESIS.beam.depth, OUTERMOST * THESIS.beam.length - THESIS.patches.length, 4).tolist())
+"""m: equally spaced as the thesis' patches are, the first one a section's depth away from the clamp."""
 CHANDRA_CHOPRA = BladeConfig(
     beam=BeamConfig(
         length=0.84455,
@@ -33,10 +36,18 @@ CHANDRA_CHOPRA = BladeConfig(
     patches=PatchLayout(width=0.007),
     speed=2.0 * np.pi * 1000.0 / 60.0,
 )
+SOUND = replace(
+    THESIS,
+    beam=BeamConfig(ply_angles_deg=((ON_EVERY_WALL, (75.0, -75.0) * 3),)),
+    patches=PatchLayout(actuators=SOUND_EDGES, sensors=SOUND_EDGES),
+    speed=100.0,
+    strain_limit="total",
+)
 
 PRESETS: Mapping[str, BladeConfig] = MappingProxyType(
     {
         "thesis": THESIS,
+        "sound-blade": SOUND,
         "thesis-untwisted": replace(THESIS, beam=BeamConfig(pretwist_deg=0.0)),
         "thesis-pretwisted": replace(THESIS, beam=BeamConfig(presetting_deg=30.0)),
         "chandra-chopra": CHANDRA_CHOPRA,
@@ -44,7 +55,19 @@ PRESETS: Mapping[str, BladeConfig] = MappingProxyType(
 )
 """thesis: θ = 30°, pretwist 30°, 200 rad/s, four MFC actuators over four sensors; thesis-untwisted: Figs. 5.10–5.12;
 thesis-pretwisted: with 30° presetting too, Figs. 5.2 and 5.7; chandra-chopra: the CAS box of Table 3.2 at 1000 rev/min with
-7 mm wide MFC (M-8507-P1)."""
+7 mm wide MFC (M-8507-P1).
+
+No real blade could turn as the thesis' does: at 200 rad/s its tip moves at 445 m/s, faster than sound, and its steady rotation
+alone strains its outer face by 2.9 %, stretches it by 33 mm and unwinds half of its pretwist. Its patches are rated for 0.45 %, and
+a ply of AS4/3501-6 breaks at 1.4 % along and 0.44 % across its fibres (Soden, Hinton and Kaddour 1998). What is limited there is
+the strain of vibration alone.
+
+sound-blade: the same box and hub, as a blade that could be built. Plies at ±75°, 15° either way of the span, so that fibres carry
+the centrifugal pull: the outer face is strained by 0.03 % at 100 rad/s, where the tip moves at 223 m/s as a helicopter's does (a
+UH-60A's at 221), and by 0.27 % at 300 rad/s, to which the scenario spin-up takes it. Its limit is on the total strain. The first
+patches begin a section's depth away from the clamp. 1500 V on all patches move the tip as far as 2.7 to 4.9 N/m of line load do,
+whichever way it is to go; on the thesis' blade as far as 1.3 to 6.3 N/m. The first mode is at 231, the eleventh at 5551 rad/s,
+below the Nyquist frequency, 6283 rad/s."""
 
 
 def blade_config(

@@ -22,7 +22,17 @@ from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.simulation.motion import Motion
-from beamenv.task import INFO, Task, checked_action, checked_task, information, reset_options, resolve_task
+from beamenv.task import (
+    INFO,
+    STEADY_INFO,
+    Task,
+    checked_action,
+    checked_task,
+    information,
+    reset_options,
+    resolve_task,
+    steady_information,
+)
 
 if TYPE_CHECKING:
     from beamenv.rendering import BatchRenderer
@@ -109,6 +119,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         else:
             blades = _mixed(tasks, self.num_envs)
         self.task, self._blades = tasks[0], blades
+        self._notes = np.resize(np.array([task.note for task in tasks], dtype=object), self.num_envs)
         self.single_action_space = self.task.action_space()
         self.single_observation_space = self.task.observation_space()
         self.action_space = batch_space(self.single_action_space, self.num_envs)
@@ -175,7 +186,15 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         motion = self._blades.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._pictures is not None:
             self._pictures.begin(self._blades, motion)
-        return motion.observation, _masked(information(motion))
+        return motion.observation, {**_masked(information(motion)), **self._begun(np.arange(self.num_envs))}
+
+    def _begun(self, rows: Rows) -> dict[str, Any]:
+        """What info tells besides of ``rows`` whose episode begins, with Gymnasium's masks."""
+        steady, notes = np.zeros((self.num_envs, len(STEADY_INFO))), np.full(self.num_envs, None, dtype=object)
+        mask = np.zeros(self.num_envs, dtype=np.bool_)
+        steady[rows], notes[rows], mask[rows] = self._blades.steady[rows], self._notes[rows], True
+        told = steady_information(steady, notes)
+        return {**told, **{f"_{name}": mask.copy() for name in told}}
 
     def _seed(self, seed: int | Sequence[int] | None) -> None:
         if seed is None:
@@ -209,7 +228,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             self._over = rows
         elif resting is not None:
             self._over = np.arange(0)
-        return motion.observation, motion.reward, motion.failed, truncated, _masked(info)
+        info = _masked(info) if resting is None else {**_masked(info), **self._begun(resting)}
+        return motion.observation, motion.reward, motion.failed, truncated, info
 
     def _begin(self, rows: Rows, motion: Motion) -> None:
         """Begin another episode of ``rows`` and put its start into their rows of ``motion``."""
@@ -232,7 +252,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._begin(rows, motion)
         if self._pictures is not None:
             self._pictures.begin(self._blades, motion, rows)
-        info = _masked(information(motion))
+        info = {**_masked(information(motion)), **self._begun(rows)}
         info.update(final_obs=final_obs, _final_obs=over, final_info=_masked(final, over), _final_info=over.copy())
         return motion.observation, reward, terminated, truncated, info
 

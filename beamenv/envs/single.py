@@ -14,7 +14,7 @@ from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.motion import Motion
-from beamenv.task import Task, checked_action, checked_task, information, reset_options, resolve_task
+from beamenv.task import Task, checked_action, checked_task, information, reset_options, resolve_task, steady_information
 
 if TYPE_CHECKING:
     from beamenv.rendering import BladeRenderer, Instant
@@ -247,7 +247,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         motion = self._blade.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._renderer is not None:
             self._renderer.begin(self._instant(motion))
-        return motion.observation, information(motion)
+        return motion.observation, {**information(motion), **steady_information(self._blade.steady, self.task.note)}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """Hold the voltages over one control interval."""

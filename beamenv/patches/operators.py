@@ -13,7 +13,7 @@ from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam, check_fit
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.trial_functions import LEAST, Stations
 
 Array = NDArray[np.float64]
 
@@ -45,10 +45,9 @@ def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: f
 def work_on_section(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float) -> tuple[SectionsAlong, Array]:
     """The sections of a blade, and the work (V, STRAINS) per volt and metre that a patch does on the strains of each of them."""
     sections = beam.exact.cut_for(wall, width)
-    under = np.array([edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in sections.solid.ring.edges])
     outer = 0.5 * beam.section.thickness
-    stress = patch.stress_in_wall()[[0, 1, 2]] / patch.electrode_spacing
-    return sections, sections.solid.layer_force(under, outer - patch.thickness, outer, stress)
+    hoop, span, shear = (patch.stress_in_wall() / patch.electrode_spacing).tolist()
+    return sections, sections.solid.layer_force(wall, width, outer - patch.thickness, outer, (hoop, span, shear))
 
 
 def patch_force(
@@ -77,6 +76,12 @@ def patch_forces(
     for start in starts:
         check_fit(beam, patch.inlay(wall, start, length, width))
     under = [stations_under(beam, start, start + length) for start in starts]
+    if beam.model == "blade":
+        sections, work = work_on_section(beam, patch, wall, width)
+        z, weight = (np.concatenate([getattr(stations, name) for stations in under]) for name in ("z", "weight"))
+        each = np.repeat(np.eye(len(under)), [len(stations.z) for stations in under], axis=0)
+        works = (weight[:, None] * sections.at(z, work))[..., None] * each[:, None]
+        return beam.exact.generalised_force(z, beam.at(speed), works)
     per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]), speed)
     ends = np.cumsum([len(stations.z) for stations in under])
     return np.column_stack([stations.weight @ part for stations, part in zip(under, np.split(per_span, ends[:-1]), strict=True)])
@@ -87,7 +92,8 @@ def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length) if start < edge < end]
     breakpoints = np.unique([start, *edges, end])  # a patch on the opposite wall changes the shear flow where it ends
     apart = np.append(True, np.diff(breakpoints) > 1e-9 * beam.length)
-    return Stations.between(breakpoints[apart], beam.space.terms + EXTRA_STATIONS)
+    few = int(np.ceil(LEAST + (beam.space.terms + EXTRA_STATIONS) * (end - start) / beam.length))
+    return Stations.between(breakpoints[apart], few if beam.model == "blade" else beam.space.terms + EXTRA_STATIONS)
 
 
 def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
@@ -114,6 +120,8 @@ class PatchResponse:
     """(m, m), J/V²: twice the energy that the actuators store."""
     charges: Array
     """(p, m), C/V: what the sensors show of it."""
+    smooth_charges: Array
+    """(p, m), C/V: what the trial functions can follow of that, C_s K_e⁻¹F."""
 
 
 def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
@@ -137,4 +145,5 @@ def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
     whole = np.einsum("s,ski,skl,slj->ij", stations.weight, each, stiffness, each, optimize=True)
     m = len(sides[0][1])
     gang = np.ones((m, 1)) if layout.ganged else np.eye(m)
-    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang)
+    smooth = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
+    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang, smooth)

@@ -17,6 +17,7 @@ from beamenv.plant.plant import Plant
 from beamenv.plant.read_only import ReadOnly
 from beamenv.structure import RotatingBeam
 from beamenv.structure.modes import normal_modes
+from beamenv.structure.steady_deformation import AT_CLAMP, INTERVALS, STILL, SteadyDeformation, deformed, face_strain
 
 Array = NDArray[np.float64]
 
@@ -61,7 +62,7 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
     return ModalModel(frequencies, shapes, coupling)
 
 
-STRAIN_STATIONS = (1e-6, 0.25, 0.5, 0.75)
+STRAIN_STATIONS = (AT_CLAMP, 0.25, 0.5, 0.75)
 """Of the span: where strains are watched."""
 
 
@@ -87,28 +88,42 @@ class FullModel(ReadOnly):
     """(k, N)."""
     steady_strain: Array
     """(k,): what the steady state strains the blade there; zero in the thesis' model."""
+    steady: SteadyDeformation
     response: PatchResponse
     """Of the patches on the blade at rest; in the thesis' model FᵀK⁻¹F and C_s K⁻¹F at the speed, by the trial functions."""
 
 
-def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float) -> FullModel:
-    """That of a blade which carries the inlays of passive patches, at a speed in rad/s."""
+def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float, at_rest: PatchResponse | None = None) -> FullModel:
+    """That of a blade which carries the inlays of passive patches, at a speed in rad/s; ``at_rest`` is its ``local_response``, if
+    that is known already.
+    """
     tip = beam.displacements(np.array([beam.length]))
     forces, charges = actuation(beam, layout, speed), sensing(beam, layout, speed)
     if beam.model == "thesis":
         static = np.linalg.solve(beam.at(speed).stiffness, forces)
-        response = PatchResponse(forces.T @ static, charges @ static)
+        response = PatchResponse(forces.T @ static, charges @ static, charges @ static)
     else:
-        response = local_response(beam, layout)
+        response = local_response(beam, layout) if at_rest is None else at_rest
+    steady, steady_strain = _steady(beam, speed)
     return FullModel(
         forces=forces,
         charges=charges,
         line_load=beam.line_load(),
         tip=np.vstack([tip["u"], tip["v"]]),
         strain=surface_strain(beam, speed),
-        steady_strain=beam.steady_strain(beam.length * np.array(STRAIN_STATIONS), speed).ravel(),
+        steady_strain=steady_strain,
+        steady=steady,
         response=response,
     )
+
+
+def _steady(beam: RotatingBeam, speed: float) -> tuple[SteadyDeformation, Array]:
+    """What the steady state does to a blade, and its strains (k,) where those of vibration are watched."""
+    if beam.model == "thesis":
+        return STILL, np.zeros(len(surface_strain(beam, speed)))
+    strain = face_strain(beam, speed)
+    watched = [round(INTERVALS * share) for share in STRAIN_STATIONS]
+    return deformed(beam, speed, strain), strain[watched].ravel()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

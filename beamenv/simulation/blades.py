@@ -83,7 +83,7 @@ class Blades:
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
-        self._safe_energy = safe_energy(self.bank.strain)
+        self._safe_energy = safe_energy(self.bank.strain, self.bank.standing)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
         self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
@@ -171,6 +171,12 @@ class Blades:
         """(…,) rad/s: what a tachometer shows."""
         speeds = self.bank.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
+
+    @property
+    def steady(self) -> Array:
+        """(…, 4): stretch, untwist, largest strain and its place of the blades as their episodes begin and nothing vibrates."""
+        steady = self.bank.steady[self.plants.index]
+        return steady if self._shape else steady[0]
 
     def begin(
         self,
@@ -327,6 +333,6 @@ class Blades:
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either
             rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
-            state = np.atleast_2d(self.moving)[rows]
-            np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[self.plants.index[rows]], state)
+            state, index = np.atleast_2d(self.moving)[rows], self.plants.index[rows]
+            np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[index], self.bank.standing[index], state)
         return failed

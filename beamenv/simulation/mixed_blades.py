@@ -60,6 +60,11 @@ class MixedBlades:
         """(N,) rad/s."""
         return _in_order([blades.speed for blades in self._parts], self._order)
 
+    @property
+    def steady(self) -> Array:
+        """(N, 4): as ``Blades.steady``."""
+        return _in_order([blades.steady for blades in self._parts], self._order)
+
     def begin(
         self,
         generators: Generators,

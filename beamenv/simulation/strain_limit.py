@@ -1,4 +1,7 @@
-"""When a blade has failed: its spanwise strain at the outer face is beyond what its patches bear."""
+"""When a blade has failed: its spanwise strain at the outer face is beyond what its patches bear.
+
+Which strain that is says the blade's ``strain_limit``: that of vibration alone, or with the strain that it stands at without.
+"""
 
 from __future__ import annotations
 
@@ -12,16 +15,21 @@ FAILURE_STRAIN = 0.0045
 sheet); the laminate breaks later."""
 
 
-def safe_energy(strain: Array) -> float:
-    """Vibration energy, J, below which no state strains a blade too much, whichever of the rows (…, k, n), per √J, are its own.
+def safe_energy(strain: Array, standing: Array) -> float:
+    """Vibration energy, J, below which no state strains a blade too much, whichever of the rows (…, k, n), per √J, and of the
+    strains (…, k) without vibration are its own.
 
-    |cᵀx| ≤ ‖c‖‖x‖ and ½ xᵀx is the energy.
+    |s + cᵀx| ≤ |s| + ‖c‖‖x‖ and ½ xᵀx is the energy.
     """
-    steepest = float(np.sqrt((strain**2).sum(axis=-1)).max(initial=0.0))
-    return np.inf if steepest == 0.0 else 0.5 * (FAILURE_STRAIN / steepest) ** 2
+    steepness = np.sqrt((strain**2).sum(axis=-1))
+    left = np.maximum(FAILURE_STRAIN - np.abs(standing), 0.0)
+    longest = np.divide(left, steepness, out=np.full_like(left, np.inf), where=steepness > 0.0)
+    return 0.5 * float(longest.min(initial=np.inf)) ** 2
 
 
-def strained_too_much(strain: Array, state: Array) -> NDArray[np.bool_]:
-    """(N,) which of the states (N, n) strain their blades, with rows (N, k, n), beyond the limit, or are no longer finite."""
-    largest = np.abs(np.einsum("nki,ni->nk", strain, state)).max(axis=-1)
+def strained_too_much(strain: Array, standing: Array, state: Array) -> NDArray[np.bool_]:
+    """(N,) which of the states (N, n) strain their blades, with rows (N, k, n) beside strains (N, k) without vibration, beyond the
+    limit, or are no longer finite.
+    """
+    largest = np.abs(standing + np.einsum("nki,ni->nk", strain, state)).max(axis=-1)
     return np.asarray(~(largest <= FAILURE_STRAIN))

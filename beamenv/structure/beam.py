@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Annotated
 
@@ -25,6 +27,13 @@ Array = NDArray[np.float64]
 
 EXTRA_STATIONS = 6
 """Gauss stations beyond the number of terms on each piece of the span: pretwist and taper are then integrated to round-off."""
+
+CLAMP_REACH = 0.05
+"""Of a section's perimeter: distance over which warping that the clamp holds back grows by 1 − 1/e. Any value is an upper bound of
+the energy; here it is near the least for boxes, isotropic and of 30° plies."""
+
+CLAMP_PIECE = 5.0
+"""Piece of the span beside the clamp that has stations of its own, in reaches."""
 
 SHORTEST = 1e-9
 """Of the span: what lies closer together is in one place."""
@@ -81,15 +90,22 @@ class RotatingBeam:
     @cached_property
     def space(self) -> TrialSpace:
         """The trial functions."""
-        return TrialSpace(self.length, terms_of(self.model, self.terms), rigid=self.shear == "rigid", warping=self.model == "blade")
+        return TrialSpace(
+            length=self.length,
+            terms=terms_of(self.model, self.terms),
+            rigid=self.shear == "rigid",
+            warping=self.model == "blade",
+            clamp_reach=CLAMP_REACH * self.section.perimeter,
+        )
 
     @cached_property
     def exact(self) -> ExactBeam:
         """The geometrically exact beam on solid sections: what the blade's model computes with."""
         planform = Planform(self.length, np.radians(self.pretwist_deg), np.radians(self.presetting_deg), self.taper)
+        beside_clamp = CLAMP_PIECE * self.space.clamp_reach
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints(self._edges), self.space.terms + EXTRA_STATIONS),
+            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.space.terms + EXTRA_STATIONS),
             sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
@@ -98,7 +114,8 @@ class RotatingBeam:
     @cached_property
     def matrices(self) -> BeamMatrices:
         """M, K_e, K_Ω, G₁: assembled once, good at any speed; under the stresses of a linear steady state in the blade's model."""
-        matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
+        with in_scale():
+            matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
         return matrices
@@ -122,7 +139,8 @@ class RotatingBeam:
             return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
         known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_points", {})
         if speed not in known:
-            point = self.exact.at(speed)
+            with in_scale():
+                point = self.exact.at(speed)
             if len(known) > 1:  # one speed and rest are asked for in turn
                 del known[next(iter(known))]
             known[speed] = point
@@ -203,7 +221,7 @@ class RotatingBeam:
     def surface_strain(self, z: Array, speed: float = 0.0) -> Array:
         """Rows (stations, points, N): spanwise strain at points of the outer face, at z (m), of vibration at a speed in rad/s."""
         if self.model == "blade":
-            face = self.exact.sections.at(z, self.exact.sections.solid.face_strain())
+            face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
             return np.asarray(face @ self.exact.section_strains(z, self.at(speed)))
         walls = self.walls_at(z)
         outer = 0.5 * walls.laws.thickness[..., None]
@@ -217,7 +235,7 @@ class RotatingBeam:
         """
         if self.model == "thesis":
             return np.zeros(self.surface_strain(z).shape[:2])
-        face = self.exact.sections.at(z, self.exact.sections.solid.face_strain())
+        face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
         return np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
 
     def line_load(self) -> Array:
@@ -225,6 +243,18 @@ class RotatingBeam:
         stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
+
+
+@contextmanager
+def in_scale() -> Iterator[None]:
+    """``ValueError`` in one sentence for numbers of a beam that leave no digits or no finite ones to compute with."""
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except Refused:
+        raise
+    except (ValueError, OverflowError, np.linalg.LinAlgError):
+        raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}") from None
 
 
 def check_inlays(beam: RotatingBeam) -> None:

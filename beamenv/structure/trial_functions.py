@@ -33,6 +33,8 @@ class TrialSpace:
     rigid: bool
     warping: bool = False
     """Whether sections warp at will and shear, so that no slope need vanish at the clamp."""
+    clamp_reach: float = 1.0
+    """m: distance from the clamp over which sections come to warp at will."""
 
     def root_order(self, field: str) -> int:
         """The power of z with which a field leaves the clamp."""
@@ -87,6 +89,17 @@ def polynomial_table(xi: Array, power: int, terms: int, length: float) -> tuple[
         (root_first * value + root * first) / length,
         (root_second * value + 2.0 * root_first * first + root * second) / length**2,
     )
+
+
+def clamped_table(xi: Array, terms: int, length: float, reach: float) -> tuple[Array, Array]:
+    """P_j(2ξ − 1) − P_j(−1) exp(−z/reach) and its first derivative by z = ξL, each (stations, terms).
+
+    Zero at the clamp and polynomials beyond its reach (m), however slender the blade is.
+    """
+    value = legendre.legvander(2.0 * xi - 1.0, terms - 1)
+    slope = value @ (2.0 * legendre_derivative(terms)) / length
+    at_clamp = np.exp(-xi * length / reach)[:, None] * np.where(np.arange(terms) % 2, -1.0, 1.0)
+    return value - at_clamp, slope + at_clamp / reach
 
 
 @lru_cache

@@ -39,7 +39,9 @@ def assert_same(expected, actual):
     elif isinstance(expected, np.ndarray) and expected.dtype == object:
         assert [each is None for each in expected] == [each is None for each in actual]
         for each, other in zip(expected, actual, strict=True):
-            if each is not None:
+            if isinstance(each, str):
+                assert each == other
+            elif each is not None:
                 np.testing.assert_allclose(other, each, rtol=0, atol=1e-9)
     elif isinstance(expected, np.ndarray) and expected.dtype == bool:
         np.testing.assert_array_equal(actual, expected)

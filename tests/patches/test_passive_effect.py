@@ -51,6 +51,10 @@ def test_inlay_of_the_hosts_own_material_changes_nothing(shear, model):
     bare = RotatingBeam(SECTION, layup, length=2.0, model=model, shear=shear, pretwist_deg=30.0)
     inlays = tuple(Inlay(wall, START, LENGTH, WIDTH, Ply(GRAPHITE_EPOXY, 30.0), 3e-4) for wall in ("top", "bottom"))
     patched = replace(bare, inlays=inlays)
+    one, other = (beam.natural_frequencies(0.0, 8) for beam in (bare, patched))
+    assert other == pytest.approx(one, rel=1e-3)  # elements of another size: frequencies within 0.1 %
+    if model == "blade":
+        return
     for name in ("mass", "elastic_stiffness", "spin_stiffness", "gyroscopic"):
         one, other = getattr(bare.matrices, name), getattr(patched.matrices, name)
         assert other == pytest.approx(one, abs=1e-10 * np.abs(one).max())
@@ -69,7 +73,8 @@ def test_inlay_over_a_whole_wall_is_another_outermost_ply(model, shear_flow, wid
     whole = Inlay("top", 0.0, 2.0, width, Ply(MFC.lamina, 90.0), section.thickness / 6.0)
     inlaid = RotatingBeam(section, host, inlays=(whole,), **options)
     laid_up = RotatingBeam(section, covered, **options)
-    assert inlaid.natural_frequencies(200.0, 12) == pytest.approx(laid_up.natural_frequencies(200.0, 12), rel=1e-8)
+    same = 3e-3 if model == "blade" else 1e-8  # all sections of a blade distort in the shapes of the one without inlays
+    assert inlaid.natural_frequencies(200.0, 12) == pytest.approx(laid_up.natural_frequencies(200.0, 12), rel=same)
 
 
 def test_patch_force_on_a_fully_covered_wall_is_the_same_however_the_patch_got_there():
@@ -80,8 +85,11 @@ def test_patch_force_on_a_fully_covered_wall_is_the_same_however_the_patch_got_t
     laid_up = RotatingBeam(SECTION, covered, length=2.0)
     inlay = sheet.inlay("top", 0.0, 2.0, SECTION.width)
     inlaid = RotatingBeam(SECTION, Layup(default=plies), length=2.0, inlays=(inlay,))
-    one, other = (patch_force(beam, sheet, "top", 0.0, 2.0, SECTION.width) for beam in (laid_up, inlaid))
-    assert other == pytest.approx(one, abs=1e-9 * np.abs(one).max())
+    per_volt = []
+    for beam in (laid_up, inlaid):
+        bent = np.linalg.solve(beam.matrices.elastic_stiffness, patch_force(beam, sheet, "top", 0.0, 2.0, SECTION.width))
+        per_volt.append([rows[0] @ bent for name, rows in beam.displacements(2.0).items() if name in ("v", "s", "phi")])
+    assert per_volt[1] == pytest.approx(per_volt[0], rel=1e-3)
 
 
 def test_sensor_shares_of_mass_stop_at_its_edges():

@@ -49,18 +49,21 @@ def test_sensors_of_the_solid_are_its_actuators_on_the_opposite_wall():
     assert np.all(SOLID.gyroscopic[np.ix_(same, same)] < 0.05 * np.abs(SOLID.gyroscopic).max())
 
 
-def test_static_tip_deflection_of_the_solid_is_the_beams_within_five_percent():
+LINEAR = blade_config(overrides={"beam": {"steady_state": "linear"}, "patches": {"passive": False}})
+"""The bare blade with the linear prestress that the solid has."""
+
+
+def test_static_tip_deflection_of_the_solid_is_the_beams_within_three_percent():
     """T ω⁻² P of 20 modes; the beam's eleven hold 99.9 % of its own."""
-    beam = build_plant(blade_config())
+    beam = build_plant(LINEAR)
     solid = SOLID.tip @ (SOLID.line_load / SOLID.natural_frequencies[:, None] ** 2)
     static = -beam.tip_displacement @ np.linalg.solve(beam.A, beam.disturbance_input)
-    np.testing.assert_allclose(np.diag(solid), np.diag(static), rtol=0.05)
+    np.testing.assert_allclose(np.diag(solid), np.diag(static), rtol=0.03)
     assert np.abs(solid[0, 1]) + np.abs(solid[1, 0]) < 0.07 * solid[1, 1]
 
 
-def test_the_first_modes_of_solid_and_beam_are_as_far_apart_as_beam_theory_is_from_the_solid():
-    beam = build_plant(blade_config())
-    np.testing.assert_allclose(beam.natural_frequencies[:7], SOLID.natural_frequencies[:7], rtol=0.03)
+def test_the_first_eight_modes_of_the_solid_are_the_beams_within_three_percent():
+    np.testing.assert_allclose(build_plant(LINEAR).natural_frequencies[:8], SOLID.natural_frequencies[:8], rtol=0.03)
 
 
 @pytest.mark.parametrize(

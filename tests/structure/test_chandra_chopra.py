@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from numpy.polynomial.legendre import legvander
 
 from beamenv.structure import AS4_3501_6, BoxSection, Layup, RotatingBeam
+from beamenv.structure.geometrically_exact import at_stations
+from beamenv.structure.trial_functions import legendre_derivative
 
 INCH, RPM = 0.0254, 2.0 * np.pi / 60.0
 SECTION = BoxSection(width=(0.953 - 0.030) * INCH, depth=(0.537 - 0.030) * INCH, thickness=0.030 * INCH)
@@ -29,10 +32,27 @@ def hertz(beam):
     return np.array([beam.natural_frequencies(speed * RPM, 3) for speed in (0.0, 1000.0)]) / (2.0 * np.pi)
 
 
-def test_cas_beam_agrees_with_finite_elements_of_the_same_material(finite_elements, graphite_of_the_elements, deviation, world):
+def test_cas_walls_agree_with_finite_elements_of_the_same_material(
+    finite_elements, graphite_of_the_elements, deviation, thesis_world
+):
     """Ten terms: 19.93, 37.34, 124.40 Hz at rest and 27.63, 38.50, 132.20 Hz at 1000 rev/min, within 0.71 %."""
-    off = deviation(hertz(blade(graphite_of_the_elements, **world)), finite_elements)
+    off = deviation(hertz(blade(graphite_of_the_elements, **thesis_world)), finite_elements)
     assert np.abs(off).max() < 0.71
+
+
+def test_cas_beam_agrees_with_finite_elements_but_for_its_clamp(finite_elements, graphite_of_the_elements, deviation, monkeypatch):
+    """The elements are of a section far from its ends. A section of the beam cannot warp at the clamp, which is worth 1.2 %; one
+    that warps there too has their frequencies within 0.35 %.
+    """
+    clamped = deviation(hertz(blade(graphite_of_the_elements)), finite_elements)
+    assert np.all((clamped > 0.0) & (clamped < 1.45))
+
+    def unclamped(xi, terms, length, reach):
+        value = legvander(2.0 * xi - 1.0, terms - 1)
+        return value, value @ (2.0 * legendre_derivative(terms)) / length
+
+    monkeypatch.setattr(at_stations, "clamped_table", unclamped)
+    assert np.abs(deviation(hertz(blade(graphite_of_the_elements)), finite_elements)).max() < 0.35
 
 
 def test_cas_beam_of_the_thesis_material_agrees_too(finite_elements, deviation, thesis_world):

@@ -1,6 +1,7 @@
 """The command ``beamenv`` as a shell meets it."""
 
 import json
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 
 from beamenv.blade.build import build_beam
 from beamenv.blade.presets import blade_config
+from beamenv.structure.steady_deformation import steady_deformation
 from train.cli.app import app
 
 COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")
@@ -42,6 +44,22 @@ def test_frequencies_printed_are_the_beam_s():
     for each in speeds:
         np.testing.assert_allclose(each["natural_frequencies"], beam.natural_frequencies(each["speed"], 4), rtol=1e-12)
     assert speeds[0]["natural_frequencies"] != speeds[1]["natural_frequencies"]
+
+
+def test_frequencies_come_with_what_steady_rotation_does():
+    content = json.loads(run("frequencies", "--json").stdout)
+    still, turning = (each["static"] for each in content["speeds"])
+    state = steady_deformation(build_beam(blade_config()), 200.0)
+    assert turning == pytest.approx(asdict(state))
+    assert set(still.values()) == {0.0}
+    assert content["note"].startswith("Nearer to the clamp")
+    printed = " ".join(run("frequencies").stdout.split())
+    assert "tip 33.1 mm further out, untwisted by 15.3°" in printed
+    assert "up to 2.9 %, at 0 m, beyond the 0.45 %" in printed
+    assert "Nearer to the clamp" in printed
+    sound = " ".join(run("frequencies", "--preset", "sound-blade").stdout.split())
+    assert "up to 0.03 %" in sound
+    assert "beyond" not in sound and "clamp" not in sound
 
 
 @pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--seeds", "2"), ("train", "gradient", "--folder")])

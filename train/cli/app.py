@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -50,22 +51,31 @@ def frequencies(
     blade: BladeOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Natural frequencies of a blade, each with the family its motion belongs to."""
+    """Natural frequencies of a blade, each with the family its motion belongs to, and what steady rotation does to it."""
     with one_sentence():
         from beamenv.blade.build import build_beam
+        from beamenv.blade.clamp import clamp_note
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
+        from beamenv.structure.steady_deformation import steady_deformation
 
         config = blade_config(preset, load_config(blade) if blade else None)
         beam = build_beam(config) if patches else config.beam.build(model=config.model)
         speeds = speed or sorted({0.0, config.speed})
         found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
+        steady = [steady_deformation(beam, each) for each in speeds]
+        note = clamp_note(config) if patches else ""
     if as_json:
         rows = [
-            {"speed": each, "natural_frequencies": modes.natural_frequencies.tolist(), "families": list(modes.families)}
-            for each, modes in zip(speeds, found, strict=True)
+            {
+                "speed": each,
+                "natural_frequencies": modes.natural_frequencies.tolist(),
+                "families": list(modes.families),
+                "static": asdict(state),
+            }
+            for each, modes, state in zip(speeds, found, steady, strict=True)
         ]
-        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows})
+        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
         return
     table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
     table.add_column("mode", justify="right")
@@ -74,6 +84,23 @@ def frequencies(
     for mode in range(count):
         table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
     Console().print(table)
+    for each, state in zip(speeds, steady, strict=True):
+        if each > 0.0 and config.model != "thesis":
+            Console().print(_turning(each, state), soft_wrap=True)
+    if note:
+        Console().print(note, soft_wrap=True)
+
+
+def _turning(speed: float, state: Any) -> str:
+    """What steady rotation does to the blade, in one sentence."""
+    from beamenv.simulation.strain_limit import FAILURE_STRAIN
+
+    strain, rated = 100.0 * state.strain, 100.0 * FAILURE_STRAIN
+    beyond = f", beyond the {rated:g} % that patches are rated for" if abs(strain) > rated else ""
+    return (
+        f"turning steadily at {speed:g} rad/s: tip {1e3 * state.stretch:.3g} mm further out, untwisted by {state.untwist:.3g}°; "
+        f"spanwise strain up to {strain:.2g} %, at {state.strain_at:.3g} m{beyond}"
+    )
 
 
 def _frequency(modes: Any, mode: int) -> str:

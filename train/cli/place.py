@@ -87,6 +87,8 @@ def show(sides: list[PlacedSide], console: Console) -> None:
         console.print(positions)
         console.print(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
         console.print(damping_table(side))
+        if side.note:
+            console.print(side.note, soft_wrap=True)
 
 
 def damping_table(side: PlacedSide) -> Table:

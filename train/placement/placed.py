@@ -31,6 +31,14 @@ class PlacedSide:
     placed: Array
     """… with the patches where they were put."""
 
+    @property
+    def note(self) -> str:
+        """On patches next to the clamp; empty where there are none."""
+        from beamenv.blade.clamp import clamp_note
+        from beamenv.blade.layouts import with_positions
+
+        return clamp_note(with_positions(self.problem.config, {self.placement.side: self.placement.positions}))
+
     def to_dict(self) -> dict[str, Any]:
         """What ``--json`` prints."""
         placement = asdict(self.placement)
@@ -40,6 +48,7 @@ class PlacedSide:
             "trace": unit[0],
             "unit": unit[1],
             "uniform": {"positions": self.problem.bounds.uniform().tolist(), "cost": self.uniform_cost},
+            "note": self.note,
             "gap_to_uniform": 1.0 - self.placement.cost / self.uniform_cost,
             "damping_ratios": {
                 "without_control": self.left_alone.tolist(),

@@ -47,6 +47,11 @@ class Bank(ReadOnly):
     """(K, m, m), J s: uᵀRu Δt of normalised voltages."""
     to_design: Array | None
     """(K, n, d): state to the design plant's coordinates; None where the two blades' displacements cannot be compared."""
+    standing: Array
+    """(K, k): strains without vibration that count towards failure."""
+    steady: Array
+    """(K, 4): stretch, untwist, largest strain and its place, as ``SteadyDeformation`` has them; of plants that follow one another
+    those of the first."""
     start: Array | None = None
     """(groups, n): what a blade's state at the start of an episode is increased by."""
     runs: bool = False
@@ -100,6 +105,8 @@ class Bank(ReadOnly):
             speeds=speeds,
             effort_weight=sealed(np.stack([unit.input_weight * unit.control_interval for unit in units])),
             to_design=to_design,
+            standing=sealed(np.zeros((len(plants), len(plant.strain)))),
+            steady=sealed(np.zeros((len(plants), 4))),
         )
 
     def in_cost_axes(self) -> Bank:
@@ -141,5 +148,5 @@ class Bank(ReadOnly):
         )
 
 
-_BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight")
+_BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")
 _ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale")

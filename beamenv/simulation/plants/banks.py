@@ -12,7 +12,8 @@ from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
-from beamenv.simulation.plants.spin_up import spin_up_bank
+from beamenv.simulation.plants.spin_up import Cycloid, RunUp, spin_up_bank
+from beamenv.simulation.plants.standing import about_moving_equilibrium, about_steady_states
 
 Array = NDArray[np.float64]
 
@@ -20,19 +21,20 @@ Array = NDArray[np.float64]
 def build_bank(blade: Blade, design: Blade, variation: PlantVariation, steps: int) -> Bank:
     """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals."""
     if variation.spin_up is not None:
-        return spin_up_bank(blade, design, variation.spin_up, steps)
+        run_up = RunUp.of(blade, Cycloid(*variation.spin_up, steps * blade.config.control_interval))
+        return about_moving_equilibrium(spin_up_bank(blade, design, variation.spin_up, steps), blade, run_up)
     return drawn_bank(blade, design, variation)
 
 
 def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
     """The bank that each episode draws its plant from; of one plant where nothing varies."""
     if not variation.varies:
-        return Bank.single(blade.truth, blade.config.speed, seen_from(blade, design))
+        return about_steady_states(Bank.single(blade.truth, blade.config.speed, seen_from(blade, design)), [blade])
     blades = list(varied_blades(blade, variation))
     views = [seen_from(each, design) for each in blades]
     to_design = None if any(view is None for view in views) else np.stack(views)  # type: ignore[arg-type]
     plants, speeds = [each.truth for each in blades], np.array([each.config.speed for each in blades])
-    return Bank.gather(blade.truth, plants, speeds, to_design).in_cost_axes()
+    return about_steady_states(Bank.gather(blade.truth, plants, speeds, to_design).in_cost_axes(), blades)
 
 
 def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:

@@ -129,6 +129,11 @@ class RunUp:
         coefficients = solved.reshape(NODES, r)
         return coefficients, np.vstack([rate * chebyshev.chebder(coefficients, axis=0), np.zeros((1, r))])
 
+    def departure(self, time: Array) -> Array:
+        """η_s (K, r) at times (K,) less the static equilibrium of the speed then: what Euler's force and the change of speed do."""
+        static = np.linalg.solve(self.stiffness(time), (self.course.speed(time)[:, None] ** 2 * self.centrifugal)[..., None])
+        return np.asarray(chebyshev.chebval(2.0 * time / self.course.duration - 1.0, self.equilibrium()[0]).T - static[..., 0])
+
     def initial_vibration(self) -> tuple[Array, Array]:
         """η and η̇ (r,) at t = 0: the static equilibrium of the first speed less the moving one."""
         start = np.zeros(())

@@ -22,7 +22,7 @@ from beamenv.structure.geometrically_exact.rotations import rotation, rotation_v
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES, STRAINS
-from beamenv.structure.trial_functions import Stations, TrialSpace, polynomial_table
+from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clamped_table, polynomial_table
 
 Array = NDArray[np.float64]
 
@@ -148,11 +148,13 @@ class BladeAtStations:
         """The sections' inertia where the blade is."""
         return SpinningSections.of(placement, self.section_inertia, self.arm)
 
-    def mass(self, inertia: SpinningSections, strain_rows: Array) -> Array:
-        """M (N, N), with that of the shapes."""
-        follow = self.amplitudes(strain_rows)
-        shapes = self._shape_form(self.shape_mass, self.value, self.value)
-        return symmetric(self.form(inertia.mass_form) + follow.T @ shapes @ follow)
+    def mass(self, inertia: SpinningSections, following: Array) -> Array:
+        """M (N, N), with that of the shapes, whose amplitudes follow (AMPLITUDES × terms, N)."""
+        return symmetric(self.form(inertia.mass_form) + following.T @ self._shapes_mass @ following)
+
+    @cached_property
+    def _shapes_mass(self) -> Array:
+        return self._shape_form(self.shape_mass, self.value, self.value)
 
     def newton_step(self, q: Array, speed: float) -> Array:
         """Increment (N,) of displacements and spins towards the steady state from coefficients q."""
@@ -201,27 +203,32 @@ class BladeAtStations:
         placement = Placement.of(self.rows @ q, self.frames)
         resultants, stiffness = self._stressed(placement)
         strain_rows = placement.strain_rows @ self.rows
-        inertia = self.inertia(placement)
+        inertia, following = self.inertia(placement), self.amplitudes(strain_rows)
         return OperatingPoint(
             speed=speed,
-            mass=self.mass(inertia, strain_rows),
+            mass=self.mass(inertia, following),
             stiffness=self._tangent(placement, resultants, stiffness, inertia, strain_rows, speed),
             gyroscopic=speed * self.form(inertia.gyroscopic),
             steady=SteadyState(q, self.amplitudes(placement.strain)),
+            following=following,
         )
 
 
 def increment_rows(space: TrialSpace, z: Array) -> Array:
     """(S, 12, N): [u, c, u′, c′] at stations z (m), per coefficient."""
-    tables = space.evaluate(z)
-    order = ("u", "v", "s", "theta_x", "theta_y", "phi")
-    return np.stack([tables[name, derivative] for derivative in (0, 1) for name in order], axis=1)
+    if space.rigid:
+        tables = space.evaluate(z)
+        return np.stack([tables[name, derivative] for derivative in (0, 1) for name in FIELDS], axis=1)
+    rows = np.zeros((len(z), INCREMENT, space.size))
+    for order, table in enumerate(polynomial_table(z / space.length, 1, space.terms, space.length)[:2]):
+        for k in range(len(FIELDS)):
+            rows[:, len(FIELDS) * order + k, space.terms * k : space.terms * (k + 1)] = table
+    return rows
 
 
 def shape_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
     """Values and slopes (S, terms) of the amplitudes' trial functions."""
-    value, slope, _ = polynomial_table(z / space.length, 1, space.terms, space.length)
-    return value, slope
+    return clamped_table(z / space.length, space.terms, space.length, space.clamp_reach)
 
 
 def without_shear(energy: Array) -> Array:

@@ -14,6 +14,7 @@ from beamenv.structure.geometrically_exact.at_stations import BladeAtStations, i
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES
 from beamenv.structure.trial_functions import Stations, TrialSpace
 
@@ -21,6 +22,9 @@ Array = NDArray[np.float64]
 
 ITERATIONS = 30
 """Most Newton steps to the steady state; five or six do."""
+
+HALVINGS = 5
+"""Most halvings of a step in Ω² towards a steady state that Newton's method does not find from the linear one."""
 
 CONVERGED = 1e-4
 """Largest increment, m or rad, after which no further step is made: steps shrink as their squares, so the next were of 1e-9."""
@@ -43,11 +47,23 @@ class ExactBeam:
 
     def section_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS, N): strains of the sections at stations z (m) per coefficient, of vibration about the steady state."""
-        at = self.at_stations
-        coefficients = self._about(point)
-        beam = self.placement(z, coefficients).strain_rows @ increment_rows(self.space, z)
-        follow = at.amplitudes(self.placement(self.stations.z, coefficients).strain_rows @ at.rows)
-        return self._with_shapes(z, beam, follow)
+        assert point.following is not None
+        rows = increment_rows(self.space, z)
+        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        return self._with_shapes(z, placement.strain_rows @ rows, point.following)
+
+    def generalised_force(self, z: Array, point: OperatingPoint, work: Array) -> Array:
+        """(N, k): force of k actions that do ``work`` (S, STRAINS, k) per strain of the sections at stations z (m)."""
+        assert point.following is not None
+        rows = increment_rows(self.space, z)
+        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        on_increments = placement.strain_rows.swapaxes(-1, -2) @ work[:, :RIGID]
+        actions = work.shape[-1]
+        force = rows.reshape(-1, self.space.size).T @ on_increments.reshape(-1, actions)
+        for table, part in zip(shape_tables(self.space, z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
+            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.terms, AMPLITUDES, actions)
+            force += point.following.T @ on_shapes.swapaxes(0, 1).reshape(-1, actions)
+        return np.asarray(force)
 
     def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
@@ -99,11 +115,15 @@ class ExactBeam:
         spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening)
         spin += at.strain_form(under_stress(moments), at.strain_rows)
         return BeamMatrices(
-            mass=at.mass(inertia, at.strain_rows),
+            mass=at.mass(inertia, self._following_at_rest),
             elastic_stiffness=elastic,
             spin_stiffness=symmetric(spin),
             gyroscopic=at.form(inertia.gyroscopic),
         )
+
+    @cached_property
+    def _following_at_rest(self) -> Array:
+        return self.at_stations.amplitudes(self.at_stations.strain_rows)
 
     @cached_property
     def linear_steady_state(self) -> SteadyState:
@@ -117,18 +137,43 @@ class ExactBeam:
         if not self.nonlinear or speed == 0.0:
             linear, matrices = self.linear_steady_state, self.matrices
             steady = SteadyState(speed**2 * linear.coefficients, speed**2 * linear.amplitudes)
-            return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, steady)
+            return OperatingPoint(
+                speed,
+                matrices.mass,
+                matrices.stiffness(speed),
+                speed * matrices.gyroscopic,
+                steady,
+                self._following_at_rest,
+            )
         return self.at_stations.about(self._steady_state(speed, near), speed)
 
     def _steady_state(self, speed: float, near: SteadyState | None) -> Array:
-        """Newton's method from a steady state nearby, or from the linear one."""
+        """Newton's method from a steady state nearby, or from the linear one, by way of those at lower speeds where it must be."""
+        found = None if near is None else self._newton(near.coefficients, speed)
+        if found is None:
+            found = self._by_steps(None, 0.0, speed, HALVINGS)
+        if found is None:
+            raise Refused("speed", speed, "a speed at which the blade has a steady state")
+        return found
+
+    def _by_steps(self, state: Array | None, low: float, high: float, halvings: int) -> Array | None:
+        """From the steady state at one speed (None: at rest) to that at a higher one, halving the step in Ω² where Newton fails."""
+        found = self._newton(high**2 * self.linear_steady_state.coefficients if state is None else state, high)
+        if found is not None or halvings == 0:
+            return found
+        middle = float(np.sqrt(0.5 * (low**2 + high**2)))
+        between = self._by_steps(state, low, middle, halvings - 1)
+        return None if between is None else self._by_steps(between, middle, high, halvings - 1)
+
+    def _newton(self, q: Array, speed: float) -> Array | None:
+        """Coefficients of the steady state, or None where it is not found."""
         at = self.at_stations
-        q = speed**2 * self.linear_steady_state.coefficients if near is None else near.coefficients
         for _ in range(ITERATIONS):
             step = at.newton_step(q, speed)
-            if not np.all(np.isfinite(step)):
-                break
+            largest = np.abs(at.rows[:, : SPIN.stop] @ step).max()
+            if not np.isfinite(largest):
+                return None
             q = at.moved(q, step)
-            if np.abs(at.rows[:, : SPIN.stop] @ step).max() <= CONVERGED:
+            if largest <= CONVERGED:
                 return q
-        raise Refused("speed", speed, "a speed at which the blade has a steady state")
+        return None

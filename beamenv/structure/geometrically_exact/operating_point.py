@@ -32,6 +32,8 @@ class OperatingPoint:
     """(N, N)"""
     steady: SteadyState | None
     """None where the model has no steady state of its own."""
+    following: Array | None = None
+    """(terms × AMPLITUDES, N): amplitudes of the sections' shapes per coefficient of the vibration."""
 
     def restricted(self, columns: NDArray[np.intp]) -> OperatingPoint:
         """The matrices of some coefficients alone, the others held at zero."""

@@ -96,7 +96,7 @@ def _corners(tangent: Array, thickness: float) -> tuple[Array, Array, NDArray[np
 def _corner_elements(length: Array, intrusion: Array, thickness: float, wall: str) -> Array:
     """How far (S, 2), m, the corners at both ends of an edge disturb it; ``ValueError`` where they leave no wall between them."""
     free = length - intrusion.sum(axis=1)
-    if not np.all(free > 0.0):
+    if np.any(free <= 0.0):
         raise Refused("thickness", thickness, f"small enough that the corners leave some of the {wall} wall between them")
     return np.minimum(np.maximum(CORNER_ELEMENT * thickness, 2.0 * intrusion), intrusion + 0.4 * free[:, None])
 

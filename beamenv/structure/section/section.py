@@ -67,6 +67,11 @@ class Section(ABC):
         return vertices - 0.5 * (length @ (vertices + following)) / length.sum()
 
     @property
+    def perimeter(self) -> float:
+        """Length (m) of the mid-line."""
+        return float(np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T).sum())
+
+    @property
     @abstractmethod
     def thickness_limit(self) -> float:
         """Wall thickness (m) at which the walls would fill the section."""

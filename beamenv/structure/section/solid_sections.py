@@ -8,7 +8,8 @@ beam is as stiff as the (6, 6) matrix says; at the clamp they vanish, which Sain
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,7 @@ class SolidSections:
     """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, 6) per Saint-Venant's beam strain."""
     saint_venant: Array
     """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
+    _forces: dict[tuple[str, float, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Nobody writes to what many share."""
@@ -101,6 +103,7 @@ class SolidSections:
         """(V, K, 2), m: where lines between elements reach the outer face."""
         return self.ring.points + 0.5 * self.ring.thickness * self.ring.directions
 
+    @cached_property
     def face_strain(self) -> Array:
         """Spanwise strain (V, K, STRAINS) there, per strain of the section."""
         every = np.arange(self.ring.points.shape[0] * self.ring.points.shape[1])
@@ -109,10 +112,17 @@ class SolidSections:
         sections, count = self.ring.points.shape[:2]
         return self._strain(start, every)[..., 0, 5, :].reshape(sections, count, STRAINS)
 
-    def layer_force(self, under: NDArray[np.bool_], low: float, high: float, stress: Array) -> Array:
+    def layer_force(self, wall: str, width: float, low: float, high: float, stress: tuple[float, float, float]) -> Array:
         """Work (V, STRAINS) per strain of the section and per metre, of stresses (ss, zz, sz), Pa, in a layer from ``low`` to
-        ``high`` (m from the mid-line) of the elements ``under`` (K,).
+        ``high`` (m from the mid-line) of the strip that is ``width`` (m) wide in the middle of a wall. Worked out once.
         """
+        key = wall, width, low, high, stress
+        if key not in self._forces:
+            self._forces[key] = self._layer_force(wall, width, low, high, np.array(stress))
+        return self._forces[key]
+
+    def _layer_force(self, wall: str, width: float, low: float, high: float, stress: Array) -> Array:
+        under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in self.ring.edges]
         members = np.flatnonzero(np.tile(under, len(self.shapes)))
         along, weight_along = gauss_rule(self.ring.order + 1)
         depth, weight = gauss_rule(2)

@@ -1,0 +1,73 @@
+"""What blades are like as they turn and nothing vibrates: what resets tell of it, and what of it counts towards failure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, replace
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from beamenv.blade.build import Blade
+from beamenv.simulation.plants.bank import Bank
+from beamenv.simulation.plants.spin_up import RunUp
+from beamenv.simulation.strain_limit import FAILURE_STRAIN
+
+Array = NDArray[np.float64]
+
+NODES = 8
+"""Squared speeds between whose steady states those of a run-up are interpolated."""
+
+
+def about_steady_states(bank: Bank, blades: Sequence[Blade]) -> Bank:
+    """The bank of as many blades, with their steady states.
+
+    ``ValueError`` for a blade whose steady state alone is beyond its strain limit.
+    """
+    for blade in blades:
+        if blade.config.strain_limit == "total":
+            check_strain(blade.full.steady.strain, blade.config.speed)
+    steady = np.array([astuple(blade.full.steady) for blade in blades])
+    return replace(bank, steady=steady, standing=np.stack([blade.standing_strain for blade in blades]))
+
+
+def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
+    """The bank of a run-up, with the steady state of the first speed and what the moving equilibrium strains the blade.
+
+    That is the strain of each speed's steady state, and that of what the equilibrium of the modes departs from their static one.
+    ``ValueError`` where one of these steady states alone is beyond the blade's strain limit.
+    """
+    first = blade.changed(replace(blade.config, speed=run_up.course.first)).full.steady
+    bank = replace(bank, steady=np.tile(astuple(first), (len(bank), 1)))
+    if blade.config.strain_limit == "vibration":
+        return bank
+    times = np.linspace(0.0, run_up.course.duration, len(bank), endpoint=False)
+    omega, reference = bank.plant.natural_frequencies, bank.plant.strain
+    moving = run_up.departure(times) @ (reference[:, : len(omega)] * omega).T
+    return replace(bank, standing=standing_strains(blade, run_up.course.speed(times)) + moving)
+
+
+def check_strain(strain: float, speed: float) -> None:
+    """``ValueError`` for a strain, of a steady state at a speed in rad/s, that fails the blade."""
+    if not abs(strain) <= FAILURE_STRAIN:
+        raise ValueError(
+            f"blade.strain_limit is 'total', but the blade's steady state at {speed:.4g} rad/s alone strains it by "
+            f"{100.0 * abs(strain):.2g} %, beyond the {100.0 * FAILURE_STRAIN:g} % at which it fails."
+        )
+
+
+def standing_strains(blade: Blade, speeds: Array) -> Array:
+    """(K, k): strains of a blade's steady states at speeds (K,), rad/s, where those of vibration are watched.
+
+    They are smooth in the square of the speed, and interpolated in it. ``ValueError`` where one is beyond the limit.
+    """
+    low, high = float(speeds.min()) ** 2, float(speeds.max()) ** 2
+    places = chebyshev.chebpts2(NODES)
+    nodes = np.sqrt(0.5 * (low + high) + 0.5 * (high - low) * places)
+    states = [blade.changed(replace(blade.config, speed=float(speed))).full for speed in nodes]
+    for speed, state in zip(nodes, states, strict=True):
+        check_strain(state.steady.strain, speed)
+    coefficients = chebyshev.chebfit(places, np.stack([state.steady_strain for state in states]), NODES - 1)
+    reached = (2.0 * speeds**2 - low - high) / max(high - low, np.finfo(np.float64).tiny)
+    return np.asarray(chebyshev.chebval(reached, coefficients).T)
