@@ -5,22 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from baselines.placement import PlacementProblem
 from baselines.placement.model.contributions import contributions
 from baselines.placement.model.intervals import Intervals, PatchEdges
 from baselines.placement.model.layout_model import layout_matrices, matrix_slopes
-from beamenv.blade.build import build_beam
+from beamenv.blade.build import build_beam, build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.patches import actuation, sensing
 from beamenv.structure.modes import normal_modes
 
 CASES = {
-    "thesis": ("thesis", {}),
+    "uniform": ("thesis", {}),
     "tapered": ("thesis", {"beam": {"taper": 2.0}}),
     "rigid": ("thesis", {"beam": {"shear": "rigid"}}),
     "at rest": ("thesis", {"speed": 0.0}),
     "without passive effect": ("thesis", {"patches": {"passive": False}}),
     "PZT": ("thesis", {"patches": {"material": "PZT"}}),
-    "thesis' shear flow": ("thesis", {"model": "thesis"}),
+    "consistent shear flow": ("thesis", {"beam": {"shear_flow": "consistent"}}),
     "CAS box": ("chandra-chopra", {}),
 }
 SHARES = {"actuators": (0.01, 0.2, 0.4, 0.58), "sensors": (0.0, 0.12, 0.41, 0.595)}
@@ -47,7 +48,8 @@ def assembled(config, layout):
 
 @pytest.mark.parametrize("case", CASES)
 def test_contributions_add_up_to_the_assembled_blade(case):
-    config = blade_config(*CASES[case])
+    preset, changes = CASES[case]
+    config = blade_config(preset, changes | {"model": "thesis"})
     parts, layout = contributions(config), layout_of(config)
     actuators, sensors = (np.array([layout[side]]) for side in ("actuators", "sensors"))
     found = layout_matrices(parts, actuators, sensors, config.patches.length, config.patches.passive)
@@ -60,8 +62,35 @@ def test_contributions_add_up_to_the_assembled_blade(case):
         assert error <= 1e-8 * np.abs(scale * expected).max(), name
 
 
-def test_matrix_slopes_are_their_central_differences():
-    config = blade_config()
+ERRORS = {
+    "uniform": (4e-4, 0.016),
+    "tapered": (4e-4, 0.016),
+    "rigid": (4e-4, 0.016),
+    "at rest": (4e-4, 0.016),
+    "without passive effect": (1e-7, 1e-4),
+    "PZT": (6e-3, 0.06),
+    "CAS box": (9e-3, 0.021),
+}
+"""In frequencies, and in B and C beside the largest of them: a patch at the clamp and two pairs that overlap."""
+
+
+@pytest.mark.parametrize("case", ERRORS)
+def test_a_layout_is_the_plant_of_the_patched_blade_but_for_what_patches_do_elsewhere(case):
+    config = blade_config(*CASES[case])
+    layout = layout_of(config)
+    problem = PlacementProblem.of(replace(config, patches=replace(config.patches, sensors=layout["sensors"])), "actuators", 4)
+    found = problem.reduced(np.array([layout["actuators"]]))
+    plant = build_plant(problem.configuration(layout["actuators"]))
+    in_frequency, in_patches = ERRORS[case]
+    np.testing.assert_allclose(found.natural_frequencies[0], plant.natural_frequencies, rtol=in_frequency)
+    for ours, theirs in ((found.input[0], plant.B), (found.output[0], plant.C)):
+        assert np.abs(np.abs(ours) - np.abs(theirs)).max() <= in_patches * np.abs(theirs).max()
+    np.testing.assert_allclose(found.input_weight[0], plant.input_weight, rtol=1e-4, atol=1e-9 * plant.input_weight.max())
+
+
+@pytest.mark.parametrize("model", ["thesis", "blade"])
+def test_matrix_slopes_are_their_central_differences(model):
+    config = blade_config(overrides={"model": model})
     parts, length, step = contributions(config), config.patches.length, 1e-4
     start = np.array([0.02, 0.31, 0.82, 1.2, 0.05, 0.29, 0.8, 1.25])
     slopes = matrix_slopes(parts, start[:4], start[4:], length, True)
@@ -69,13 +98,14 @@ def test_matrix_slopes_are_their_central_differences():
     def at(moved):
         return layout_matrices(parts, moved[None, :4], moved[None, 4:], length, True)
 
-    for name in ("stiffness", "mass", "gyroscopic", "forces", "charges"):
+    stored = ("stored_energy",) if model == "blade" else ()
+    for name in ("stiffness", "mass", "gyroscopic", "forces", "charges", *stored):
         for k in range(8):
             shift = step * np.eye(8)[k]
             wide, narrow = (getattr(at(start + r * shift), name)[0] - getattr(at(start - r * shift), name)[0] for r in (2, 1))
             numeric = (8.0 * narrow - wide) / (12.0 * step)
             exact = getattr(slopes, name)[k]
-            assert np.abs(numeric - exact).max() <= 1e-6 * np.abs(exact).max(), (name, k)
+            assert np.abs(numeric - exact).max() <= 1e-6 * np.abs(getattr(slopes, name)).max(), (name, k)
 
 
 def test_intervals_know_what_covers_them():

@@ -28,11 +28,14 @@ def trace_of_the_plant(problem, positions):
 
 @pytest.mark.parametrize("side", ["actuators", "sensors"])
 @pytest.mark.parametrize(("preset", "changes"), CASES)
-def test_cost_is_the_trace_that_the_environments_plant_has(preset, changes, side):
-    problem = PlacementProblem.of(blade_config(preset, changes), side)
+@pytest.mark.parametrize(("model", "within"), [("thesis", 2e-8), ("blade", 0.01)])
+def test_cost_is_the_trace_that_the_environments_plant_has(preset, changes, side, model, within):
+    """To rounding in the thesis' model; about the bare blade's steady state within 1 %, on the small box, of which patches are a
+    greater part, within 8 %: layouts differ by a third."""
+    problem = PlacementProblem.of(blade_config(preset, changes | {"model": model}), side)
     layouts = problem.bounds.random(np.random.default_rng(1), 4)
     expected = [trace_of_the_plant(problem, layout) for layout in layouts]
-    assert problem.cost(layouts) == pytest.approx(expected, rel=2e-8)
+    assert problem.cost(layouts) == pytest.approx(expected, rel=within if preset == "thesis" or model == "thesis" else 8.0 * within)
 
 
 @pytest.mark.parametrize("side", ["actuators", "sensors"])
@@ -60,7 +63,7 @@ def test_permuting_patches_changes_nothing(order, seed, side):
 
 def test_trace_is_that_of_any_other_coordinates_of_the_same_modes():
     """Mixed modal coordinates q = V z, energies from the blade's own M and K, SciPy's equation: tr(P Wₑ⁻¹), ½xᵀWₑx the energy."""
-    problem = PlacementProblem.of(blade_config(), "actuators")
+    problem = PlacementProblem.of(blade_config(overrides={"model": "thesis"}), "actuators")
     layout = problem.bounds.uniform()
     config = problem.configuration(layout)
     beam = build_beam(config)
@@ -85,7 +88,7 @@ def test_trace_is_that_of_any_other_coordinates_of_the_same_modes():
 
 def test_trace_over_modes_is_the_mean_cost_of_a_joule_in_the_free_response():
     """Released with 1 J along each of the 2r states in turn, with u = −Kx: the mean of ∫(½xᵀx + uᵀRu)dt is tr(P)/r."""
-    problem = PlacementProblem.of(blade_config(), "actuators")
+    problem = PlacementProblem.of(blade_config(overrides={"model": "thesis"}), "actuators")
     layout = problem.bounds.uniform()
     plant = build_plant(problem.configuration(layout))
     _, gain = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)

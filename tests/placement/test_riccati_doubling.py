@@ -90,7 +90,14 @@ def test_sensors_opposite_the_actuators_see_what_these_move():
     """On an untwisted hoop-wound blade without gyroscopic coupling the top wall mirrors the bottom wall: the filter with the
     regulator's weights for noise has the regulator's trace, at every position."""
     config = blade_config(
-        "thesis-untwisted", {"beam": {"ply_angles_deg": [0.0] * 6}, "patches": {"passive": False}, "gyroscopic": False, "modes": 8}
+        "thesis-untwisted",
+        {
+            "model": "thesis",
+            "beam": {"ply_angles_deg": [0.0] * 6},
+            "patches": {"passive": False},
+            "gyroscopic": False,
+            "modes": 8,
+        },
     )
     problem = PlacementProblem.of(config, "actuators", 1)
     positions = np.linspace(0.0, problem.bounds.high, 7)[:, None]

@@ -124,7 +124,9 @@ class PlacementProblem:
         """With one voltage for all actuators, their forces are one."""
         if not self.config.patches.ganged:
             return matrices
-        return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True))
+        stored = matrices.stored_energy
+        whole = None if stored is None else stored.sum(axis=(-2, -1), keepdims=True)
+        return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True), stored_energy=whole)
 
 
 def check_noise(config: BladeConfig) -> None:
@@ -137,7 +139,7 @@ def check_noise(config: BladeConfig) -> None:
 def parts_of(config: BladeConfig) -> Contributions:
     """The contributions of a blade, kept from one problem to the next: they depend on neither side nor positions."""
     patches = replace(config.patches, actuators=1, sensors=1, ganged=False)
-    return _parts(BladeConfig(beam=config.beam, patches=patches, model=config.model, speed=config.speed))
+    return _parts(BladeConfig(beam=config.beam, patches=patches, model=config.model, speed=config.speed, modes=config.modes))
 
 
 _parts = lru_cache(maxsize=16)(contributions)

@@ -2,7 +2,8 @@
 
 Pretwist, taper and the walls' kinematics depend on z alone, so a patch from a to a + l adds I(a + l) − I(a) to a matrix, with
 I(z) = ∫₀ᶻ of what a covered section has and a bare one has not. I is smooth: a Chebyshev series holds it to round-off. Sections
-are bare, covered on top, below, or on both walls (the closed cell couples its walls, so "both" is not the sum).
+are bare, covered on top, below, or on both walls (the closed cell couples its walls, so "both" is not the sum). What follows is of
+the thesis' model, to rounding; ``solid_contributions`` has the blade's.
 
 The added mass m' also pulls: with T(z) = T₀(z) + ∫_z m'(R₀ + σ) dσ the centrifugal stiffening between two patch edges is
 ∫ T₀ S dz + c ∫ S dz − ∫ h S dz, where S = u'u' + v'v' + (I_p/m) φ'φ', h(z) = ∫₀ᶻ m'(R₀ + σ) dσ and c is constant there.
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.model.chebyshev import ChebyshevSpan
+from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
 from beamenv.blade.config import BladeConfig
 from beamenv.patches import force_per_span
@@ -30,6 +32,9 @@ Array = NDArray[np.float64]
 COVERED_WALLS = ((), (ACTUATOR_WALL,), (SENSOR_WALL,), (ACTUATOR_WALL, SENSOR_WALL))
 """What is covered in a section of kind 0 (bare), 1 (top), 2 (below), 3 (both)."""
 BARE, TOP, BELOW, BOTH = range(len(COVERED_WALLS))
+
+KEPT = 60
+"""Modes of a bare blade of solid sections that layouts are made of."""
 
 EXTRA_COEFFICIENTS = 12
 """Beyond two for each trial function (products of two of them are integrated): pretwist and taper then leave round-off only."""
@@ -63,10 +68,50 @@ class Contributions:
     """(2, k, N): per volt, with nothing below, and what a sensor below changes."""
     sensor_force: Array
     """(2, k, N): the same of a sensor, driven as an actuator, with nothing above and what an actuator above changes."""
+    actuator_energy: Array | None = None
+    """(2, k): twice the energy, J/V², that an actuator stores in the blade at rest, and what a sensor below changes; None in the
+    thesis' model, whose FᵀK⁻¹F is of the whole blade."""
 
 
 def contributions(config: BladeConfig) -> Contributions:
-    """The contributions of a configuration's patches, for any position of them; takes about 0.1 s."""
+    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second."""
+    return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
+
+
+def of_solid_sections(config: BladeConfig) -> Contributions:
+    """In the blade's model."""
+    layout, bare = config.patches, config.beam.build(model=config.model)
+    span = ChebyshevSpan(OUTERMOST * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    covering = Covering.of(config, bare, span)
+    exact = covering.bare(bare.exact)
+    point = exact.at(config.speed)
+    frequencies, shapes = normal_modes(point.mass, point.stiffness, min(max(KEPT, 2 * config.modes), bare.space.size))
+    basis = shapes / frequencies
+    blade = BareBlade.of(exact, point, span.nodes, basis)
+    sections = [covering.samples(kind, blade) for kind in range(len(COVERED_WALLS))]
+    tension = span.integral(np.stack([s.pull - sections[BARE].pull for s in sections], axis=1))
+    pull = span.values(span.nodes) @ tension
+    slopes = [s.per_tension * config.speed**2 for s in sections]
+    stiffness = [s.stiffness - pull[:, kind, None, None] * slopes[kind] for kind, s in enumerate(sections)]
+    top, below = (span.integral(np.stack([s.forces[side] for s in sections], axis=1)) for side in range(2))
+    energy = span.integral(np.stack([s.energy for s in sections], axis=1))
+    return Contributions(
+        span=span,
+        bare_frequencies=frequencies,
+        bare_gyroscopic=basis.T @ point.gyroscopic @ basis,
+        line_load=basis.T @ bare.line_load(),
+        stiffness=np.concatenate([beyond_bare(span, stiffness), stacked(span, slopes)]),
+        mass=beyond_bare(span, [s.mass for s in sections]),
+        gyroscopic=config.speed * beyond_bare(span, [s.gyroscopic for s in sections]),
+        tension=tension,
+        actuator_force=np.stack([top[:, TOP], top[:, BOTH] - top[:, TOP]]),
+        sensor_force=layout.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
+        actuator_energy=np.stack([energy[:, TOP], energy[:, BOTH] - energy[:, TOP]]),
+    )
+
+
+def of_walls(config: BladeConfig) -> Contributions:
+    """In the thesis' model."""
     layout = config.patches
     span = ChebyshevSpan(OUTERMOST * config.beam.length, 2 * terms_of(config.model, config.beam.terms) + EXTRA_COEFFICIENTS)
     bare = config.beam.build(model=config.model)

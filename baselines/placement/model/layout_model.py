@@ -28,6 +28,8 @@ class LayoutMatrices:
     """(N, n, a): per volt of every actuator."""
     charges: Array
     """(N, s, n): C per coordinate of every sensor."""
+    stored_energy: Array | None
+    """(N, a, a), J/V²: twice what the actuators store in the blade at rest; None: FᵀK⁻¹F."""
 
 
 def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, length: float, passive: bool) -> LayoutMatrices:
@@ -49,12 +51,18 @@ def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, leng
         gyroscopic=gyroscopic,
         forces=along(top, parts.actuator_force).swapaxes(1, 2),
         charges=along(below, parts.sensor_force),
+        stored_energy=stored(top, parts.actuator_energy),
     )
 
 
 def along(shares: Array, series: Array) -> Array:
     """Force vectors (…, n) from shares (…, 2, k) of the two series (2, k, n)."""
     return np.asarray(shares.reshape(*shares.shape[:-2], -1) @ series.reshape(-1, series.shape[-1]))
+
+
+def stored(shares: Array, series: Array | None) -> Array | None:
+    """Diagonal matrices (…, a, a) from shares (…, a, 2, k) of the two series (2, k): patches of one side do not overlap."""
+    return None if series is None else np.eye(shares.shape[-3]) * np.tensordot(shares, series, 2)[..., None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,6 +77,8 @@ class MatrixSlopes:
     """(p, n, a)."""
     charges: Array
     """(p, s, n)."""
+    stored_energy: Array | None
+    """(p, a, a)."""
 
 
 def matrix_slopes(parts: Contributions, actuators: Array, sensors: Array, length: float, passive: bool) -> MatrixSlopes:
@@ -89,4 +99,5 @@ def matrix_slopes(parts: Contributions, actuators: Array, sensors: Array, length
         gyroscopic=gyroscopic,
         forces=along(top[0], parts.actuator_force).swapaxes(1, 2),
         charges=along(below[0], parts.sensor_force),
+        stored_energy=stored(top[0], parts.actuator_energy),
     )

@@ -47,14 +47,16 @@ def layouts_in_modes(
 ) -> ReducedBlades:
     """Layouts in given mass-normalised modes, frequencies (N, r) and shapes (N, n, r); ``compliance`` is K⁻¹ (N, n, n)."""
     forces, across = matrices.forces, shapes.swapaxes(-1, -2)
-    size = omega.shape[-1]
+    size, stored = omega.shape[-1], matrices.stored_energy
+    if stored is None:
+        stored = forces.swapaxes(-1, -2) @ compliance @ forces
     coupling = across @ matrices.gyroscopic @ shapes if reduction.gyroscopic else np.zeros((1, size, size))
     return in_modes(
         ModalModel(omega, shapes, coupling),
         forces=forces,
         charges=matrices.charges,
         line_load=parts.line_load,
-        stored_energy=forces.swapaxes(-1, -2) @ compliance @ forces,
+        stored_energy=stored,
         damping_ratio=reduction.damping_ratio,
         effort_weight=reduction.effort_weight,
     )

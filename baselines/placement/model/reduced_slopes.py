@@ -91,6 +91,8 @@ def shape_slopes(omega: Array, modes: int, stiffness: Array, mass: Array) -> tup
 
 
 def weight_slopes(yielding: Array, slopes: MatrixSlopes) -> Array:
-    """Derivatives (p, a, a) of FᵀK⁻¹F, regularised; ``yielding`` is K⁻¹F (N, a)."""
+    """Derivatives (p, a, a) of the actuators' stored energy, regularised; ``yielding`` is K⁻¹F (N, a)."""
+    if slopes.stored_energy is not None:
+        return regularised(slopes.stored_energy)
     half = slopes.forces.swapaxes(1, 2) @ yielding
     return regularised(half + half.swapaxes(1, 2) - yielding.T @ slopes.stiffness @ yielding)

@@ -49,14 +49,14 @@ class ExactBeam:
         """(S, STRAINS, N): strains of the sections at stations z (m) per coefficient, of vibration about the steady state."""
         assert point.following is not None
         rows = increment_rows(self.space, z)
-        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        placement = Placement.of(rows @ self.about(point), self.sections.planform.frames(z))
         return self._with_shapes(z, placement.strain_rows @ rows, point.following)
 
     def generalised_force(self, z: Array, point: OperatingPoint, work: Array) -> Array:
         """(N, k): force of k actions that do ``work`` (S, STRAINS, k) per strain of the sections at stations z (m)."""
         assert point.following is not None
         rows = increment_rows(self.space, z)
-        placement = Placement.of(rows @ self._about(point), self.sections.planform.frames(z))
+        placement = Placement.of(rows @ self.about(point), self.sections.planform.frames(z))
         on_increments = placement.strain_rows.swapaxes(-1, -2) @ work[:, :RIGID]
         actions = work.shape[-1]
         force = rows.reshape(-1, self.space.size).T @ on_increments.reshape(-1, actions)
@@ -68,7 +68,7 @@ class ExactBeam:
     def steady_strains(self, z: Array, point: OperatingPoint) -> Array:
         """(S, STRAINS): strains of the sections at stations z (m) in the steady state."""
         assert point.steady is not None
-        if self._about(point).any():
+        if self.about(point).any():
             beam = self.placement(z, point.steady.coefficients).strain
         else:
             beam = (
@@ -76,7 +76,7 @@ class ExactBeam:
             )
         return self._with_shapes(z, beam[..., None], point.steady.amplitudes[:, None])[..., 0]
 
-    def _about(self, point: OperatingPoint) -> Array:
+    def about(self, point: OperatingPoint) -> Array:
         """Coefficients (N,) of the placement that vibration is about: that at rest where the steady state is linear."""
         if self.nonlinear and point.steady is not None:
             return point.steady.coefficients

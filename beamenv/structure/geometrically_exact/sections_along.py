@@ -98,7 +98,13 @@ class SectionsAlong:
         for bit, kind in enumerate(self.kinds):
             covered = np.any([inlay.covers(z) for inlay in self.inlays if _same_kind(inlay, kind)], axis=0)
             code += covered.astype(np.intp) << bit
-        which = np.searchsorted(self.codes, code)
+        return self._of(np.searchsorted(self.codes, code), z, values)
+
+    def under(self, code: int, z: Array, values: Array) -> Array:
+        """(S, …): what the sections have (V, …), at stations z (m), were the inlays there those of a combination's code."""
+        return self._of(np.full(len(z), np.searchsorted(self.codes, code)), z, values)
+
+    def _of(self, which: NDArray[np.intp], z: Array, values: Array) -> Array:
         sizes = self.planform.sizes
         if len(sizes) == 1:
             return values[which]
