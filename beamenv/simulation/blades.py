@@ -172,10 +172,11 @@ class Blades:
         speeds = self.bank.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
 
-    @property
-    def steady(self) -> Array:
-        """(…, 4): stretch, untwist, largest strain and its place of the blades as their episodes begin and nothing vibrates."""
-        steady = self.bank.steady[self.plants.index]
+    def steady(self, rows: Rows | None = None) -> Array:
+        """(…, 4): stretch, untwist, largest strain and its place of the blades, or of ``rows``, as their episodes begin and nothing
+        vibrates.
+        """
+        steady = self.bank.steady[self.plants.index if rows is None else self.plants.index[rows]]
         return steady if self._shape else steady[0]
 
     def begin(
