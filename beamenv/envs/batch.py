@@ -143,7 +143,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     @property
     def state(self) -> Array:
-        """(N, n) the true states, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
+        """(N, n) the true states, hidden from an agent: the blades' in energy coordinates, then the electronics'."""
         return self._blades.state
 
     @property

@@ -32,10 +32,11 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     bottom wall give a current in proportion to the rate of their strain. The aim is to damp the vibration with little
     actuator effort.
 
-    The plant is linear: the first 11 modes of the structural model (thesis chapters 2 to 5), advanced exactly from one sample
-    to the next, cost included. What is not linear is enforced here: the drive saturates, the sensors clip. The true plant
-    that moves and the design plant that a controller is built from are two arguments, and two attributes: `plant` and
-    `design_plant`.
+    The plant is linear, and advanced exactly from one sample to the next, cost included. What is not linear is enforced here:
+    the drive saturates, the sensors clip. The true plant that moves, `plant`, has all modes up to the Nyquist frequency, what
+    the others follow at once, the amplifiers' lag and anti-aliasing filters. The design plant that a controller is built from,
+    `design_plant`, has the blade's first 11 modes and no electronics; `design` may make it another blade's. In the thesis'
+    world (`blade={"model": "thesis"}`) the two are one.
 
     The default blade is the thesis' box (2.023 m, plies at 30°, pretwist 30°) at 200 rad/s with 4 actuators and 4 sensors
     equally spaced over 0 … 0.7 of the span. No real blade could turn like that: steady rotation alone strains its outer face by
@@ -114,7 +115,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     | `off-speed`  | rotor speed 0.7 … 1.3 times the design's, one of 128 plants drawn for each episode                     |
     | `off-model`  | ply angles, moduli and mass within 10 %, damping ratio 0.003 … 0.02: one of 128 plants                 |
     | `spin-up`    | 100 to 300 rad/s within the episode, on a cycloid, with Euler's force; no need of a load to vibrate    |
-    | `spillover`  | 22 modes, of which the design plant has 5                                                              |
+    | `spillover`  | the design plant has 5 modes                                                                           |
     | `hysteresis` | free strain of the actuators with a loop of 20 % of the stroke; drive −500 … 1500 V                    |
     | `delay`      | voltages 1 … 3 control intervals late; 5 % of the readings lost: the last one is shown again           |
     | `failure`    | one actuator dead; one sensor dead (noise alone), or biased by 5 … 20 % of full scale                  |
@@ -171,7 +172,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     `reset(options={"load": {...}})` fixes the load case of one episode: "case", and as a number or a range any of "magnitude"
     (N/m), "direction_deg" (0: lag, 90: flap), "onset" (s), "duration" (s), "frequency_ratio" and "phase_deg". What is left
-    out is drawn as ever. `reset(options={"initial_state": x})` starts in the state x (n,), in energy coordinates.
+    out is drawn as ever. `reset(options={"initial_state": x})` starts in the state x (n,), in energy coordinates, or in the
+    blade's own states (the first of them) with the electronics at rest.
 
     A bad argument, option or action raises ValueError in one sentence, and nothing has changed.
 
@@ -251,7 +253,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     @property
     def state(self) -> Array:
-        """(n,) the true state, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
+        """(n,) the true state, hidden from an agent: the blade's in energy coordinates, ½ xᵀx in joules, then the electronics'."""
         return self._blade.state
 
     @property
