@@ -55,13 +55,19 @@ class ClippedLQG(Law):
 
 
 def clipped_lqg(
-    plant: Plant, persistent_load: PersistentLoad | None = None, *, Q: ArrayLike | None = None, R: ArrayLike | None = None
+    plant: Plant,
+    persistent_load: PersistentLoad | None = None,
+    *,
+    rate_weight: float = 0.0,
+    Q: ArrayLike | None = None,
+    R: ArrayLike | None = None,
 ) -> ClippedLQG:
     """The sampled LQG of a design plant, with a filter that knows that readings end at full scale; ``lqg`` while none does.
 
-    ``persistent_load`` adds a load that lasts to the state, and ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``.
+    ``persistent_load`` adds a load that lasts to the state, and ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``;
+    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``.
     """
-    held, _, K, L = sampled_design(weighted(plant, Q, R), persistent_load)
+    held, _, K, L = sampled_design(weighted(plant, Q, R), persistent_load, rate_weight=rate_weight)
     return ClippedLQG(
         name="LQG, clipping known" if persistent_load is None else "LQG with load estimate, clipping known",
         instruments=Instruments.of(plant),

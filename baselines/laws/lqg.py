@@ -13,8 +13,10 @@ from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController
 from baselines.design.load_model import Load, with_load
 from baselines.design.persistent_load import PersistentLoad
+from baselines.design.rate_penalty import with_rate_penalty
 from baselines.design.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
 from baselines.design.weights import weighted
+from beamenv.configuration import Number, checked
 from beamenv.plant.hold import hold
 from beamenv.plant.plant import Plant, SampledPlant, sample
 
@@ -71,10 +73,19 @@ def compensator(plant: Plant, name: str, held: SampledPlant, K: Array, L: Array)
     return observer(plant, name, held.A @ correct, held.A @ L, held.B, -K @ correct, -K @ L)
 
 
-def sampled_design(plant: Plant, *loads: Load | None) -> tuple[SampledPlant, Array, Array, Array]:
-    """The sampled plant, with the states of whatever ``loads`` are given, its regulator's P and K, and its filter's L."""
+def sampled_with_loads(plant: Plant, *loads: Load | None) -> SampledPlant:
+    """The sampled plant, with the states of whatever ``loads`` are given."""
     models = [load.model(plant.control_interval) for load in loads if load is not None]
-    held = with_load(sample(plant), reduce(add, models)) if models else sample(plant)
+    return with_load(sample(plant), reduce(add, models)) if models else sample(plant)
+
+
+def sampled_design(plant: Plant, *loads: Load | None, rate_weight: float = 0.0) -> tuple[SampledPlant, Array, Array, Array]:
+    """The sampled plant with its loads and, where quick changes have a price, the voltages before; P and K of its regulator, and
+    its filter's L.
+    """
+    held = sampled_with_loads(plant, *loads)
+    if checked("rate_weight", rate_weight, Number(ge=0.0)) > 0.0:
+        held = with_rate_penalty(held, rate_weight)
     E = held.disturbance_input
     P, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
     _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)

@@ -83,6 +83,7 @@ def mpc(
     persistent_load: PersistentLoad | None = None,
     move_blocks: Sequence[int] | None = None,
     *,
+    rate_weight: float = 0.0,
     Q: ArrayLike | None = None,
     R: ArrayLike | None = None,
 ) -> PredictiveController:
@@ -94,11 +95,11 @@ def mpc(
 
     The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h; by default they are
     ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike;
-    ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Raises ValueError for blocks that are not positive whole
-    numbers, ModuleNotFoundError without DAQP.
+    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``; ``Q`` and ``R`` are other weights than the plant's, as in
+    ``lqg``. Raises ValueError for blocks that are not positive whole numbers, ModuleNotFoundError without DAQP.
     """
     blocks = doubling_blocks(plant) if move_blocks is None else _checked(move_blocks)
-    held, P, K, L = sampled_design(weighted(plant, Q, R), persistent_load)
+    held, P, K, L = sampled_design(weighted(plant, Q, R), persistent_load, rate_weight=rate_weight)
     deviation, moves = _deviation(held, P, K, blocks), len(blocks)
     by_state, by_move = np.split(deviation, [len(held.A)], axis=1)
     lowest, highest = (np.tile(limit, moves) for limit in plant.voltage_limits)

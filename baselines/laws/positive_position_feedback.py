@@ -18,7 +18,7 @@ from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
 from beamenv.configuration import Count, Number, checked
 from beamenv.plant.hold import hold
-from beamenv.plant.plant import Plant
+from beamenv.plant.plant import Plant, sample
 
 POSITIVE = Number(gt=0.0)
 
@@ -58,7 +58,8 @@ def positive_position_feedback(
         return _law(plant, pairs, filters, np.broadcast_to(np.asarray(gains, dtype=np.float64), modes))
 
     if gain is None:
-        return law(_least_cost_gains(lambda gains: stationary_cost(plant, law(gains)), modes))
+        held = sample(plant)
+        return law(_least_cost_gains(lambda gains: stationary_cost(held, law(gains)), modes))
     return law(one_or_each("gain", gain, modes, "mode"))
 
 

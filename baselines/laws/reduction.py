@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +11,10 @@ from scipy.linalg import solve_discrete_lyapunov
 from baselines.analysis.stationary import closed_loop, stationary_cost
 from baselines.design.linear import LinearController
 from baselines.design.riccati import Array
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant, SampledPlant, sample
 
 
-def reduced(plant: Plant, law: LinearController, order: int) -> LinearController:
+def reduced(plant: Plant | SampledPlant, law: LinearController, order: int) -> LinearController:
     """The law with ``order`` numbers in its memory instead of ``law.order``.
 
     In the closed loop under the plant's white loads and sensor noise the memory has a covariance, and each direction of it a say in
@@ -23,23 +24,31 @@ def reduced(plant: Plant, law: LinearController, order: int) -> LinearController
     """
     if not 0 < order < law.order:
         raise ValueError(f"order = {order!r} must be a whole number from 1 to {law.order - 1}, below that of {law.name}.")
-    basis, dual = _balanced(plant, law)
-    onto, back = basis[:, :order], dual[:order]
-    shorter = replace(
-        law,
-        transition=back @ law.transition @ onto,
-        measurement_input=back @ law.measurement_input,
-        voltage_input=back @ law.voltage_input,
-        state_gain=law.state_gain @ onto,
-    )
+    shorter = truncations(plant, law)(order)
     if not np.isfinite(stationary_cost(plant, shorter)):
         raise ValueError(f"order = {order} leaves {law.name} unstable on its own plant: allowed are larger ones.")
     return shorter
 
 
-def _balanced(plant: Plant, law: LinearController) -> tuple[Array, Array]:
+def truncations(plant: Plant | SampledPlant, law: LinearController) -> Callable[[int], LinearController]:
+    """The law of each order, from one balancing; it may be unstable."""
+    basis, dual = _balanced(sample(plant) if isinstance(plant, Plant) else plant, law)
+
+    def of(order: int) -> LinearController:
+        onto, back = basis[:, :order], dual[:order]
+        return replace(
+            law,
+            transition=back @ law.transition @ onto,
+            measurement_input=back @ law.measurement_input,
+            voltage_input=back @ law.voltage_input,
+            state_gain=law.state_gain @ onto,
+        )
+
+    return of
+
+
+def _balanced(held: SampledPlant, law: LinearController) -> tuple[Array, Array]:
     """Basis and dual basis (s, k), (k, s) of the memory, the most important direction first; k of them are not lost in rounding."""
-    held = sample(plant)
     transition, noise_input, state_map, _, covariance = closed_loop(held, law)
     if np.abs(np.linalg.eigvals(transition)).max() >= 1.0:
         raise ValueError(f"law = {law.name} is unstable on the plant, and cannot be reduced there.")

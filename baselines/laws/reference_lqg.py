@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from baselines.analysis.stationary import stationary_cost
 from baselines.design.linear import LinearController
-from baselines.design.rate_penalty import with_rate_penalty
-from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
-from baselines.laws.lqg import compensator, known_sensor_noise
-from baselines.laws.reduction import reduced
-from beamenv.plant.plant import Plant, sample
+from baselines.design.load_model import Load
+from baselines.laws.lqg import compensator, sampled_design, sampled_with_loads
+from baselines.laws.reduction import reduced, truncations
+from beamenv.plant.plant import Plant
 
 RATE_WEIGHT = 1.0
 """Of changes of the voltage over that of the voltage itself: on the thesis' blade it costs 0.3 % and keeps the law in place where
@@ -23,46 +22,39 @@ ALLOWANCE = 0.005
 """Share of the mean cost that reducing the law may add."""
 
 
-def full_order_lqg(plant: Plant, rate_weight: float = RATE_WEIGHT) -> LinearController:
+def full_order_lqg(
+    plant: Plant, rate_weight: float = RATE_WEIGHT, *, load: Load | None = None, name: str = "LQG"
+) -> LinearController:
     """The sampled optimum for the plant's cost with ``rate_weight`` (u − u₋)ᵀ diag(R) (u − u₋) of each interval on top.
 
-    Raises ``ValueError`` for a weight that is negative and for a loop that comes out unstable.
+    ``load`` adds the states of a load that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``. Raises ``ValueError``
+    for a weight that is negative and for a loop that comes out unstable.
     """
-    if not rate_weight >= 0.0:
-        raise ValueError(f"rate_weight = {rate_weight!r} must be at least 0.")
-    held = with_rate_penalty(sample(plant), rate_weight)
-    E = held.disturbance_input
-    _, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
-    law = compensator(plant, "LQG", held, K, L)
+    held, _, K, L = sampled_design(plant, load, rate_weight=rate_weight)
+    law = compensator(plant, name, held, K, L)
     if not stationary_cost(plant, law) < float("inf"):
-        raise ValueError(f"rate_weight = {rate_weight!r} leaves LQG unstable on its own plant.")
+        raise ValueError(f"rate_weight = {rate_weight!r} leaves {name} unstable on its own plant.")
     return law
 
 
-def reference_lqg(plant: Plant, rate_weight: float = RATE_WEIGHT, order: int | None = None) -> LinearController:
+def reference_lqg(
+    plant: Plant, rate_weight: float = RATE_WEIGHT, order: int | None = None, *, load: Load | None = None, name: str = "LQG"
+) -> LinearController:
     """``full_order_lqg`` with ``order`` numbers in its memory; None: the least even number that adds no more than 0.5 % to the mean
-    cost under the plant's own noise.
+    cost under the plant's own noise and the ``load``.
 
     ``plant`` is all that is known of the blade, such as ``Design.full_plant``. Raises ``ValueError`` as its parts do.
     """
-    whole = full_order_lqg(plant, rate_weight)
+    whole, loaded = full_order_lqg(plant, rate_weight, load=load, name=name), sampled_with_loads(plant, load)
     if order is not None:
-        return reduced(plant, whole, order)
-    allowed = (1.0 + ALLOWANCE) * stationary_cost(plant, whole)
+        return reduced(loaded, whole, order)
+    allowed, of = (1.0 + ALLOWANCE) * stationary_cost(loaded, whole), truncations(loaded, whole)
     shortest, low, high = whole, 1, whole.order // 2
     while low < high:  # the cost falls with the order, but for rounding
         middle = (low + high) // 2
-        candidate = _reduced_or_none(plant, whole, 2 * middle)
-        if candidate is not None and stationary_cost(plant, candidate) <= allowed:
+        candidate = of(2 * middle)
+        if stationary_cost(loaded, candidate) <= allowed:
             shortest, high = candidate, middle
         else:
             low = middle + 1
     return shortest
-
-
-def _reduced_or_none(plant: Plant, law: LinearController, order: int) -> LinearController | None:
-    try:
-        return reduced(plant, law, order)
-    except ValueError:
-        return None

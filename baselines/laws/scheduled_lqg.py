@@ -15,7 +15,7 @@ from baselines.design.instruments import Instruments
 from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.persistent_load import PersistentLoad
-from baselines.laws.lqg import sampled_lqg
+from baselines.laws.lqg import compensator, sampled_design
 from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
@@ -81,8 +81,9 @@ def _mixed(weights: Array, rows: Array, matrices: Sequence[Array]) -> Array:
     return np.asarray(sum(weights[..., j, None] * (rows @ matrices[j]) for j in used))
 
 
-def scheduled_lqg(family: SpeedFamily, persistent_load: PersistentLoad | None = None) -> ScheduledLQG:
-    """The sampled LQG of each plant of a family, all in its common coordinates; ``persistent_load`` as in ``lqg``.
+def scheduled_lqg(family: SpeedFamily, persistent_load: PersistentLoad | None = None, *, rate_weight: float = 0.0) -> ScheduledLQG:
+    """The sampled LQG of each plant of a family, all in its common coordinates; ``persistent_load`` as in ``lqg``, and
+    ``rate_weight`` a price on quick changes as in ``full_order_lqg``.
 
     Raises ValueError for plants that differ in their sensors' range, drive or clock.
     """
@@ -91,15 +92,22 @@ def scheduled_lqg(family: SpeedFamily, persistent_load: PersistentLoad | None = 
         for name in ("sensor_full_scale", "voltage_limits", "control_interval"):
             if not np.array_equal(getattr(plant, name), getattr(first, name)):
                 raise ValueError(f"family has plants that differ in {name}, but one controller has one set of instruments")
-    laws = (_law(*each, persistent_load) for each in zip(family.plants, family.from_common, strict=True))
+    laws = (_law(*each, persistent_load, rate_weight) for each in zip(family.plants, family.from_common, strict=True))
     name = "LQG, scheduled with speed" if persistent_load is None else "LQG with load estimate, scheduled with speed"
     return ScheduledLQG(name, Instruments.of(first, "observation and speed"), family.speeds, tuple(laws))
 
 
 def scheduled_lqg_for(
-    config: BladeConfig, speeds: ArrayLike | None = None, persistent_load: PersistentLoad | None = None
+    config: BladeConfig,
+    speeds: ArrayLike | None = None,
+    persistent_load: PersistentLoad | None = None,
+    *,
+    full: bool = False,
+    rate_weight: float = 0.0,
 ) -> ScheduledLQG:
     """The scheduled LQG of a blade over ``speeds`` (rad/s), by default nine within 20 % of the configuration's own.
+
+    ``full`` designs it on all that is known of the blade, as ``speed_family`` has it, in place of the design plant.
 
     Raises ValueError for speeds that ``speed_family`` refuses, or for a blade that does not turn and has none to be scheduled with.
     """
@@ -107,12 +115,13 @@ def scheduled_lqg_for(
         if config.speed == 0.0:
             raise ValueError("speeds must be given for a blade at rest: there is no speed to choose them around")
         speeds = config.speed * _GRID
-    return scheduled_lqg(speed_family(config, speeds), persistent_load)
+    return scheduled_lqg(speed_family(config, speeds, full=full), persistent_load, rate_weight=rate_weight)
 
 
-def _law(plant: Plant, from_common: Array, persistent_load: PersistentLoad | None) -> LinearController:
-    """The LQG of a plant with its memory, x or [x; lasting load], in the common coordinates."""
-    law = sampled_lqg(plant, "LQG", persistent_load)
+def _law(plant: Plant, from_common: Array, persistent_load: PersistentLoad | None, rate_weight: float) -> LinearController:
+    """The LQG of a plant with its memory, x and then any lasting load and voltages before, in the common coordinates."""
+    held, _, K, L = sampled_design(plant, persistent_load, rate_weight=rate_weight)
+    law = compensator(plant, "LQG", held, K, L)
     there = block_diag(from_common, np.eye(len(law.transition) - len(from_common)))
     back = np.linalg.inv(there)
     return replace(

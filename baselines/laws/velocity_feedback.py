@@ -10,24 +10,30 @@ from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
 from baselines.design.linear import LinearController, static_law
 from baselines.design.matrix import one_or_each
-from beamenv.plant.plant import Plant
+from beamenv.plant.plant import Plant, sample
 
 _DECADES = np.linspace(-6.0, 1.0, 36)
 """Exponents of the common gains tried, in units of the gain that damps at about the first mode's own rate."""
 
 
-def velocity_feedback(plant: Plant, gain: ArrayLike | None = None) -> LinearController:
+def velocity_feedback(plant: Plant, gain: ArrayLike | None = None, *, tuned_on: Plant | None = None) -> LinearController:
     """u_j = −g_j y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
 
     ``gain`` in V/A is one number or one for each actuator. By default the gains are those with the least stationary cost under the
-    plant's white loads and sensor noise, found from the plant alone among those that keep the sampled loop stable. The thesis'
-    sensors lie across the section from their actuators and so feel bending alike but extension with the opposite sign: with one
-    gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between them. Raises
-    ValueError when sensors and actuators cannot be paired, or for a gain of another shape.
+    white loads and sensor noise of the plant, or of ``tuned_on``, such as ``Design.full_plant``, among those that keep that sampled
+    loop stable. The thesis' sensors lie across the section from their actuators and so feel bending alike but extension with the
+    opposite sign: with one gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between
+    them. Raises ValueError when sensors and actuators cannot be paired, for a plant with filters between blade and readings, which
+    hide what a pair feels, or for a gain of another shape.
     """
     pairs = pairing(plant, "velocity feedback")
-    gains = _least_cost_gains(plant, pairs) if gain is None else one_or_each("gain", gain, len(pairs), "actuator")
-    return _law(plant, "velocity feedback", pairs, gains)
+    felt = np.diag(pairs @ plant.C @ plant.B)
+    if not felt.any():
+        raise ValueError("plant hides what a pair feels behind filters: allowed is the design plant, with tuned_on= for this one")
+    pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
+    if gain is None:
+        return _law(plant, "velocity feedback", pairs, _least_cost_gains(plant, plant if tuned_on is None else tuned_on, pairs))
+    return _law(plant, "velocity feedback", pairs, one_or_each("gain", gain, len(pairs), "actuator"))
 
 
 def _law(plant: Plant, name: str, pairs: Array, gains: Array) -> LinearController:
@@ -35,7 +41,7 @@ def _law(plant: Plant, name: str, pairs: Array, gains: Array) -> LinearControlle
 
 
 def pairing(plant: Plant, name: str) -> Array:
-    """(m, p): which sensor each actuator answers, signed so that −(its current) takes energy out.
+    """(m, p): which sensor each actuator answers.
 
     Raises ValueError, with the ``name`` of the law, for a plant whose sensors and actuators do not make pairs.
     """
@@ -45,17 +51,17 @@ def pairing(plant: Plant, name: str) -> Array:
             f"plant has {m} actuators and {p} sensors, which {name} cannot pair: "
             "it needs one sensor to each actuator, or one ganged actuator"
         )
-    pairs = np.eye(p) if m == p else np.full((1, p), 1.0 / p)
-    return pairs * np.sign(np.diag(pairs @ plant.C @ plant.B))[:, None]
+    return np.eye(p) if m == p else np.full((1, p), 1.0 / p)
 
 
-def _least_cost_gains(plant: Plant, pairs: Array) -> Array:
+def _least_cost_gains(plant: Plant, tuned_on: Plant, pairs: Array) -> Array:
     """(m,): first the best common gain, by decades, then each for itself from there (Nelder and Mead's simplex)."""
     collocated = np.abs(np.diag(pairs @ plant.C @ plant.B)).max()
     unit = float(plant.natural_frequencies[0] / collocated)  # damps at about the first mode's own rate
+    held = sample(tuned_on)
 
     def cost(gains: Array) -> float:
-        return stationary_cost(plant, _law(plant, "trial", pairs, unit * gains))
+        return stationary_cost(held, _law(plant, "trial", pairs, unit * gains))
 
     common = min((10.0**decade for decade in _DECADES), key=lambda gain: cost(np.asarray(gain)))
     start = np.full(len(pairs), common)

@@ -142,7 +142,7 @@ class RotatingBeam:
             with in_scale():
                 point = self.exact.at(speed)
             if len(known) > 1:  # one speed and rest are asked for in turn
-                del known[next(iter(known))]
+                del known[next(each for each in known if each != 0.0)]
             known[speed] = point
         return known[speed]
 

@@ -15,6 +15,7 @@ from baselines import (
     lqr,
     no_control,
     positive_position_feedback,
+    reference_lqg,
     rotor_lqg,
     stationary_cost,
     velocity_feedback,
@@ -82,6 +83,16 @@ def test_measured_cost_of_lqg_is_the_analytic_optimum(model):
     error, optimum = costs.std(ddof=1) / np.sqrt(EPISODES), stationary_cost(plant, law)
     assert error < 0.01 * optimum
     assert abs(costs.mean() - optimum) < SIGMAS * error
+
+
+def test_measured_cost_of_the_reference_is_the_analytic_one():
+    """On the blade with all its modes and electronics, of which its memory holds a part."""
+    envs = unlimited("blade")
+    law = reference_lqg(envs.unwrapped.task.design.full_plant)
+    costs = mean_costs(law, envs)
+    expected = stationary_cost(envs.unwrapped.plant, law)
+    assert expected < 1.01 * stationary_cost(envs.unwrapped.plant, lqg(envs.unwrapped.plant))
+    assert abs(costs.mean() - expected) < SIGMAS * costs.std(ddof=1) / np.sqrt(EPISODES)
 
 
 @pytest.mark.parametrize("name", OTHERS)

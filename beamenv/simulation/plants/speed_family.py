@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import block_diag
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
@@ -18,6 +19,9 @@ Array = NDArray[np.float64]
 
 _LEAST_IN_COMMON = 0.5
 """Smallest principal cosine between the retained modes of two speeds at which they still span much the same motions."""
+
+_SPARE = 6
+"""Modes beyond the Nyquist frequency that a full plant may be given, where two change places within a family."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,20 +36,43 @@ class SpeedFamily:
     """(k, n, n): takes a state in the common coordinates, those of the configuration's own speed, to each plant's."""
 
 
-def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike) -> SpeedFamily:
+def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike, *, full: bool = False) -> SpeedFamily:
     """The plants of ``config`` at ``speeds`` (rad/s), its sensors' range as fitted at its own speed.
 
     With modes ΨᵀMΨ = I at one speed and Ψ₀ at the configuration's own, a motion Ψ₀ η₀ has the coordinates η = ΨᵀMΨ₀ η₀; as states
-    are [ωη; η̇], signs and order of the modes do not matter. Raises ValueError for speeds that do not ascend, lie beyond the
-    critical speed, or are so far away that the retained modes are others.
+    are [ωη; η̇], signs and order of the modes do not matter. With ``full`` the plants are all that is known of the blade, as
+    ``Design.full_plant`` is, with the same number of modes at every speed, and what the electronics hold is common. Raises
+    ValueError for speeds that do not ascend, lie beyond the critical speed, or are so far away that the retained modes are others.
     """
     given = (speeds,) if np.ndim(speeds) == 0 else speeds
     grid = np.array(checked("speeds", given, Numbers(Number(ge=0.0, unit="rad/s"), least=1)), dtype=np.float64)
     if np.any(np.diff(grid) <= 0.0):
         raise ValueError(f"speeds = {speeds!r} must be one or more numbers in rad/s, each greater than the one before")
     own = Blade(config).with_fixed_range()
-    family = [own.changed(replace(own.config, speed=float(speed))) for speed in grid]
-    return SpeedFamily(grid, tuple(each.plant for each in family), np.stack([_from_common(own, each) for each in family]))
+    if full:
+        known = _known_at_all(own, grid)
+        own = own.changed(replace(own.config, modes=known, truth_modes=known))
+    plants, views = zip(*(_at(own, speed, full) for speed in grid), strict=True)
+    return SpeedFamily(grid, plants, np.stack(views))
+
+
+def _at(own: Blade, speed: float, full: bool) -> tuple[Plant, Array]:
+    """The plant at one speed, and what takes states in the common coordinates to it."""
+    there = own.changed(replace(own.config, speed=float(speed)))
+    plant = there.truth if full else there.plant
+    return plant, block_diag(_from_common(own, there), np.eye(plant.electronic_states))
+
+
+def _known_at_all(own: Blade, grid: Array) -> int:
+    """How many modes: those of the full plant and the fewest beyond, if more are known, that move alike at all speeds."""
+    known, size = len(own.true_modal.natural_frequencies), own.beam.space.size
+    if own.config.truth_modes is not None or own.config.model == "thesis":
+        return known
+    wide = own.changed(replace(own.config, modes=min(known + _SPARE, size)))
+    many = wide.config.modes
+    seen = [between(wide.modal, wide.changed(replace(wide.config, speed=float(speed))))[many:, many:] for speed in grid]
+    cosines = [min(np.linalg.svd(each[:k, :k], compute_uv=False).min() for each in seen) for k in range(known, many + 1)]
+    return known + next((k for k, cosine in enumerate(cosines) if cosine >= _LEAST_IN_COMMON), 0)
 
 
 def _from_common(own: Blade, other: Blade) -> Array:

@@ -29,7 +29,7 @@ PER_LINE = 3 * (ACROSS + 1)
 PASSES = 40
 """Most iterations for the pretwist's terms, each some 50 times smaller than the one before on a blade."""
 
-CONVERGED = 1e-7
+CONVERGED = 1e-6
 
 
 def equilibrium(pretwist: float) -> Array:

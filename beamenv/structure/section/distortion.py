@@ -20,8 +20,8 @@ solid elements; with none its second torsion mode is 9 % too high. Slower shapes
 bending, which Saint-Venant's shapes already do; they bring no frequency nearer, but a tip's deflection per volt 2 to 5 % off, since
 a force that acts on the mean motion of the mass raises them over the whole span."""
 
-ROUNDS = 3
-"""Of subspace iteration."""
+ROUNDS = 1
+"""Of subspace iteration: from polynomials, one leaves no frequency of a blade more than 3e-6 off."""
 
 
 def distortion_shapes(system: Factorised) -> Array:

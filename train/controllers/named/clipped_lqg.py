@@ -1,6 +1,7 @@
-"""LQG whose filter knows that readings clip at full scale."""
+"""LQG of all that is known of the blade, with a filter that knows that readings clip at full scale."""
 
 from baselines import Controller, clipped_lqg
+from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Design
 
 KIND = "fixed"
@@ -8,4 +9,4 @@ KIND = "fixed"
 
 def build(design: Design) -> Controller:
     """LQG itself while no reading clips."""
-    return clipped_lqg(design.plant)
+    return clipped_lqg(design.full_plant, rate_weight=RATE_WEIGHT)

@@ -1,6 +1,7 @@
 """LQG that knows of clipping and estimates a load that lasts."""
 
 from baselines import Controller, PersistentLoad, clipped_lqg
+from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Design
 
 KIND = "fixed"
@@ -8,4 +9,4 @@ KIND = "fixed"
 
 def build(design: Design) -> Controller:
     """The load is part of the state."""
-    return clipped_lqg(design.plant, persistent_load=PersistentLoad())
+    return clipped_lqg(design.full_plant, PersistentLoad(), rate_weight=RATE_WEIGHT)

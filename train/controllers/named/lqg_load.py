@@ -1,6 +1,6 @@
-"""LQG whose filter also estimates a load that lasts."""
+"""The reference LQG with a filter that also estimates a load that lasts."""
 
-from baselines import Controller, PersistentLoad, lqg
+from baselines import Controller, PersistentLoad, reference_lqg
 from beamenv import Design
 
 KIND = "fixed"
@@ -8,4 +8,4 @@ KIND = "fixed"
 
 def build(design: Design) -> Controller:
     """The load is part of the state."""
-    return lqg(design.plant, persistent_load=PersistentLoad())
+    return reference_lqg(design.full_plant, load=PersistentLoad(), name="LQG with load estimate")

@@ -1,6 +1,7 @@
-"""Model-predictive control within the drive limits, with the filter of the sampled LQG."""
+"""Model-predictive control within the drive limits, with the filter of LQG, of all that is known of the blade."""
 
 from baselines import Controller, mpc
+from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Design
 
 KIND = "predictive"
@@ -8,4 +9,4 @@ KIND = "predictive"
 
 def build(design: Design) -> Controller:
     """A quadratic program at every instant in which a limit is in sight."""
-    return mpc(design.plant)
+    return mpc(design.full_plant, rate_weight=RATE_WEIGHT)

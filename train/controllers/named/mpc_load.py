@@ -1,6 +1,7 @@
 """Model-predictive control whose filter also estimates a load that lasts."""
 
 from baselines import Controller, PersistentLoad, mpc
+from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Design
 
 KIND = "predictive"
@@ -8,4 +9,4 @@ KIND = "predictive"
 
 def build(design: Design) -> Controller:
     """The load is part of the state, of filter and plan alike."""
-    return mpc(design.plant, persistent_load=PersistentLoad())
+    return mpc(design.full_plant, PersistentLoad(), rate_weight=RATE_WEIGHT)

@@ -8,4 +8,4 @@ KIND = "fixed"
 
 def build(design: Design) -> Controller:
     """A filter for each of three modes on each pair of patches."""
-    return positive_position_feedback(design.plant)
+    return positive_position_feedback(design.full_plant)

@@ -1,6 +1,6 @@
-"""LQG with a model of the loads at one to four per revolution."""
+"""The reference LQG with a model of the loads at one to four per revolution."""
 
-from baselines import Controller, RotorHarmonics, rotor_lqg
+from baselines import Controller, RotorHarmonics, reference_lqg
 from beamenv import Design
 
 KIND = "fixed"
@@ -8,4 +8,4 @@ KIND = "fixed"
 
 def build(design: Design) -> Controller:
     """Tuned to the speed of the design."""
-    return rotor_lqg(design.plant, RotorHarmonics(design.config.speed))
+    return reference_lqg(design.full_plant, load=RotorHarmonics(design.config.speed), name="LQG with rotor harmonics")

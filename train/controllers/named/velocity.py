@@ -8,4 +8,4 @@ KIND = "fixed"
 
 def build(design: Design) -> Controller:
     """One gain for each pair of actuator and sensor."""
-    return velocity_feedback(design.plant)
+    return velocity_feedback(design.plant, tuned_on=design.full_plant)
