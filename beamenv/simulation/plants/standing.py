@@ -45,8 +45,9 @@ def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
     if blade.config.strain_limit == "vibration":
         return bank
     times = np.linspace(0.0, run_up.course.duration, len(bank), endpoint=False)
-    omega, reference = bank.plant.natural_frequencies, bank.plant.strain
-    moving = run_up.departure(times) @ (reference[:, : len(omega)] * omega).T
+    patches = run_up.patches(times)
+    assert patches is not None  # in the thesis' model the limit is on vibration
+    moving = np.einsum("tkr,tr->tk", patches[2], run_up.departure(times))
     return replace(bank, standing=standing_strains(blade, run_up.course.speed(times)) + moving)
 
 
