@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.design import Design
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
@@ -32,10 +33,11 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     bottom wall give a current in proportion to the rate of their strain. The aim is to damp the vibration with little
     actuator effort.
 
-    The plant is linear: the first 11 modes of the structural model (thesis chapters 2 to 5), advanced exactly from one sample
-    to the next, cost included. What is not linear is enforced here: the drive saturates, the sensors clip. The true plant
-    that moves and the design plant that a controller is built from are two arguments, and two attributes: `plant` and
-    `design_plant`.
+    The plant is linear: every mode of the structural model up to the Nyquist frequency, behind amplifiers and anti-aliasing
+    filters, advanced exactly from one sample to the next, cost included. What is not linear is enforced here: the drive
+    saturates, the sensors clip. The true blade that moves and the one that a controller is built from are two arguments, and
+    two attributes: `plant` and `design`, which has the thesis' 11 modes alone, `design_plant`, and all that is known of the
+    blade, `design.full_plant`. What knows eleven modes alone is mostly unstable on the true plant.
 
     The default blade is the thesis' box (2.023 m, plies at 30°, pretwist 30°) at 200 rad/s with 4 actuators and 4 sensors
     equally spaced over 0 … 0.7 of the span.
@@ -220,8 +222,13 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     @property
     def design_plant(self) -> Plant:
-        """The plant controllers are to be designed for."""
+        """The plant controllers are to be designed for, of few modes and without electronics."""
         return self.task.design_plant
+
+    @property
+    def design(self) -> Design:
+        """All that a controller may be built from: ``design.full_plant`` has every mode that is known and the electronics."""
+        return self.task.design
 
     @property
     def state(self) -> Array:
