@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
-from beamenv.configuration import Refused
+from beamenv.configuration import Count, Refused, checked
 from beamenv.patches import PatchResponse, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
@@ -69,15 +69,15 @@ class Blade:
     @cached_property
     def true_modal(self) -> ModalModel:
         """The modes of its true plant."""
-        config = self.config
-        wanted = config.truth_modes
-        if _is_thesis(config) or (wanted is not None and wanted > self.beam.space.size):
-            return truncate(self.beam, config.speed, wanted or config.modes, config.gyroscopic)
-        if wanted is not None:
-            return self._every_mode.first(wanted)
+        config, size = self.config, self.beam.space.size
+        wanted = config.modes if config.truth_modes is None and _is_thesis(config) else config.truth_modes
+        if wanted == config.modes:
+            return self.modal
         every = self._every_mode
+        if wanted is not None:
+            return every.first(checked("blade.truth_modes", wanted, Count(1, size)))
         below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
-        return every.first(max(below, min(config.modes, self.beam.space.size)))
+        return every.first(max(below, config.modes))
 
     @cached_property
     def truth(self) -> Plant:

@@ -76,7 +76,8 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. `reset()` never re-seeds.
 
     **Info.** `volts` (N, m) asked for, after saturation, `tip_displacement` (N, 2), `energy`, `effort` and `cost_increment` (N,),
-    each with Gymnasium's mask `_volts`, ….
+    each with Gymnasium's mask `_volts`, …. `reset`, and a step with which blades begin another episode, tell of these the
+    `static_stretch`, `static_untwist`, `static_strain`, `static_strain_at` (N,) and `note` of `RotatingBeamEnv` too.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 50, "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -148,7 +149,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     @property
     def state(self) -> Array:
-        """(N, n) the true states, hidden from an agent: in energy coordinates, ½ xᵀx in joules."""
+        """(N, n) the true states, hidden from an agent: the blades' in energy coordinates, then the electronics'."""
         return self._blades.state
 
     @property
@@ -198,7 +199,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """What info tells besides of ``rows`` whose episode begins, with Gymnasium's masks."""
         steady, notes = np.zeros((self.num_envs, len(STEADY_INFO))), np.full(self.num_envs, None, dtype=object)
         mask = np.zeros(self.num_envs, dtype=np.bool_)
-        steady[rows], notes[rows], mask[rows] = self._blades.steady[rows], self._notes[rows], True
+        steady[rows], notes[rows], mask[rows] = self._blades.steady(rows), self._notes[rows], True
         told = steady_information(steady, notes)
         return {**told, **{f"_{name}": mask.copy() for name in told}}
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import changed_blade
 from beamenv.simulation.plants.banks import varied
-from beamenv.simulation.plants.spin_up import Cycloid, RunUp
+from beamenv.simulation.plants.run_up import Cycloid, RunUp
 from beamenv.task import Task
 
 Array = NDArray[np.float64]
@@ -44,9 +44,11 @@ class Deformation:
 
     def _running_operator(self, run_up: RunUp, plant: int) -> Array:
         """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K."""
-        blade = self._task.blade
-        root = np.linalg.cholesky(run_up.stiffness(np.asarray(plant * blade.config.control_interval)))
+        blade, time = self._task.blade, np.asarray(plant * self._task.config.control_interval)
+        root = np.linalg.cholesky(run_up.stiffness(time))
         operator = blade.displacement_operator(self._stations).copy()
+        rows = blade.beam.displacements(self._stations)
         r = len(root)
-        operator[..., :r] = operator[..., :r] @ (blade.true_modal.natural_frequencies[:, None] * np.linalg.inv(root).T)
+        lag_flap_twist = np.stack([rows["u"], rows["v"], rows["phi"]])
+        operator[..., :r] = lag_flap_twist @ run_up.shapes(time) @ np.linalg.inv(root).T
         return operator

@@ -14,7 +14,7 @@ from beamenv.scenarios.drawing import load_cases
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, draw
-from beamenv.simulation.kernel import advance, row_dot, row_product
+from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
 from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment
@@ -103,6 +103,8 @@ class Blades:
         else:
             arrays = [np.zeros((*self._shape, width)) for width in widths]
         *memories, self._weighted, self._squares = arrays
+        self._halves = np.full(b, 0.5)
+        """Weights of the squares of the blade's states, which are kept from one instant to the next, in the energy."""
         self._now, self._then = (
             _Instant(
                 joined=each[..., :size],
@@ -124,6 +126,7 @@ class Blades:
         *arguments, joined, disturbances, electronics, index = state
         self.__init__(*arguments)  # type: ignore[misc]
         self._now.joined[...] = joined
+        np.square(self._now.energetic, out=self._squares)
         self._disturbances, self.electronics = disturbances, electronics
         self.plants.load_state_dict({"index": index})
 
@@ -169,10 +172,11 @@ class Blades:
         speeds = self.bank.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
 
-    @property
-    def steady(self) -> Array:
-        """(…, 4): stretch, untwist, largest strain and its place of the blades as their episodes begin and nothing vibrates."""
-        steady = self.bank.steady[self.plants.index]
+    def steady(self, rows: Rows | None = None) -> Array:
+        """(…, 4): stretch, untwist, largest strain and its place of the blades, or of ``rows``, as their episodes begin and nothing
+        vibrates.
+        """
+        steady = self.bank.steady[self.plants.index if rows is None else self.plants.index[rows]]
         return steady if self._shape else steady[0]
 
     def begin(
@@ -209,6 +213,7 @@ class Blades:
         at = self._lie.rows_of(rows)
         self._now.joined[at] = 0.0
         self._now.state[at] = state
+        self._squares[at] = state[:, : self.plant.blade_states] ** 2
         motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
@@ -261,7 +266,7 @@ class Blades:
         _, reading, tip, increment = advance(self.plants.operators, now.joined, then.product, self._multiply, self._squares)
         self._now, self._then = then, now  # the product begins with the next state
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
-        energy = 0.5 * row_dot(then.energetic, then.energetic)
+        energy = weighted(np.square(then.energetic, out=self._squares), self._halves)
         effort = row_dot(self._multiply(now.voltages, self.plants.effort_weight, self._weighted), now.voltages)
         self.elapse()
         if self._shape:
@@ -298,6 +303,7 @@ class Blades:
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict``, of arrays or of what NumPy makes arrays of."""
         self._now.joined[...] = np.asarray(state["joined"])
+        np.square(self._now.energetic, out=self._squares)
         self.plants.load_state_dict(state["plants"])
         self.disturbances.load_state_dict(state["disturbances"])
         if self.electronics is not None:

@@ -87,15 +87,15 @@ def advance(
     ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
     increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., w) may be given to hold the product, and the first
-    three arrays are then views of it, and ``squares`` (..., b) to hold squares of the state. ``multiply`` stands in for
-    ``row_product``.
+    three arrays are then views of it. ``squares`` (..., b) are those of the first b states, where they are known. ``multiply``
+    stands in for ``row_product``.
     """
     read, tip, cost, diagonal = operators.reads, operators.tips, operators.costs, operators.weights.shape[-1]
     product = (multiply or row_product)(joined, operators.fused, out)
     crossing = joined[..., operators.crossing :]
     increment = row_dot(product[..., cost : cost + crossing.shape[-1]], crossing)
     if diagonal:
-        increment = increment + weighted_squares(joined[..., :diagonal], operators.weights, squares)
+        increment = increment + weighted(joined[..., :diagonal] ** 2 if squares is None else squares, operators.weights)
     state = product[..., : operators.states] if not operators.lagging else _with_amplifiers(operators, joined, product, out)
     return state, product[..., read : read + operators.outputs], product[..., tip : tip + 2], increment
 
@@ -111,9 +111,8 @@ def _with_amplifiers(operators: Operators, joined: Any, product: Any, out: Any) 
     return product[..., :n]
 
 
-def weighted_squares(rows: Any, weights: Any, out: Any = None) -> Any:
-    """Σ weight x² (...,) over the last axis, with weights (b,) or (..., b); with NumPy, ``out`` may hold the squares."""
-    squares = rows * rows if out is None else np.multiply(rows, rows, out)
+def weighted(squares: Any, weights: Any) -> Any:
+    """Sums (...,) of squares (..., b) times weights (b,) or (..., b)."""
     return squares @ weights if weights.ndim == 1 else row_dot(squares, weights)
 
 

@@ -60,10 +60,10 @@ class MixedBlades:
         """(N,) rad/s."""
         return _in_order([blades.speed for blades in self._parts], self._order)
 
-    @property
-    def steady(self) -> Array:
-        """(N, 4): as ``Blades.steady``."""
-        return _in_order([blades.steady for blades in self._parts], self._order)
+    def steady(self, rows: Rows | None = None) -> Array:
+        """(…, 4): as ``Blades.steady``."""
+        steady = _in_order([blades.steady() for blades in self._parts], self._order)
+        return steady if rows is None else steady[rows]
 
     def begin(
         self,

@@ -1,4 +1,4 @@
-"""Inertia loads of the undeformed blade that rotates: centrifugal, and Euler's where the speed changes.
+"""Inertia loads of the blade that rotates: centrifugal, and Euler's where the speed changes.
 
 A point at (x, y, R₀ + z) has the acceleration −Ω²(x, 0, R₀ + z) + Ω̇(R₀ + z, 0, −x), so that by d'Alembert
 
@@ -33,8 +33,12 @@ class BaseLoads:
     """Per Ω̇, rad/s²."""
 
 
-def base_loads(beam: RotatingBeam) -> BaseLoads:
-    """The loads of a blade, from the section inertia that its mass matrix is made of."""
+def base_loads(beam: RotatingBeam, speed: float = 0.0) -> BaseLoads:
+    """The loads of a blade, from the section inertia that its mass matrix is made of; in the blade's model where it stands at a
+    speed, rad/s.
+    """
+    if beam.model == "blade":
+        return BaseLoads(*beam.exact.base_forces(beam.at(speed)))
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length)]
     stations = Stations.between(beam.breakpoints(edges), beam.space.terms + EXTRA_STATIONS)
     inertia = beam.walls_at(stations.z).inertia()

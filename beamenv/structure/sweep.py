@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from beamenv.configuration import Count, Refused, checked
 from beamenv.structure.assembly import BeamMatrices
 from beamenv.structure.beam import RotatingBeam
+from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
+from beamenv.structure.geometrically_exact.operating_point import SteadyState
 from beamenv.structure.geometrically_exact.sections_along import between
 from beamenv.structure.modes import diverged_frequencies, reduced, stable_frequencies
 
@@ -18,6 +20,9 @@ Array = NDArray[np.float64]
 
 NODES = 8
 """Speeds at which steady states are worked out for a sweep of more."""
+
+SLOWEST = 1e-3
+"""rad/s: of the lowest node of steady states over Ω²."""
 
 STACK = 64
 """Eigenproblems solved in one call: beyond this a larger stack only takes more memory."""
@@ -51,7 +56,7 @@ def _sweep(beam: RotatingBeam, speeds: Array, count: int, motions: tuple[str, ..
     below, beyond = np.flatnonzero(speeds < critical), np.flatnonzero(speeds >= critical)
     about_moving = beam.model == "blade" and beam.exact.nonlinear
     for diverged, group, nonlinear in ((False, below, about_moving), (True, beyond, False)):
-        family = SteadyFamily.of(beam, columns, speeds[group]) if nonlinear else LinearFamily.of(beam, columns)
+        family = SteadyFamily.of(beam.exact, columns, speeds[group]) if nonlinear else LinearFamily.of(beam, columns)
         for start in range(0, len(group), STACK):
             picked = group[start : start + STACK]
             frequencies[picked] = _stack(*family.at(speeds[picked]), gyroscopic, diverged)[:, :count]
@@ -79,35 +84,41 @@ class LinearFamily:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyFamily:
-    """The same about the non-linear steady states, of which few are worked out: between them K and G/Ω, smooth functions of Ω²,
-    follow a polynomial.
+    """The same about the non-linear steady states, of which few are worked out: between them coefficients follow a polynomial.
+
+    K itself must not: a polynomial of matrices mixes what is stiff at one speed into what is soft at another.
     """
 
+    beam: ExactBeam
+    columns: NDArray[np.intp]
     nodes: Array
     """Ω² (n,)."""
-    stiffness: Array
-    coupling: Array
-    """(n, N, N)"""
+    coefficients: Array
+    """Over Ω² (n, all)."""
 
     @classmethod
-    def of(cls, beam: RotatingBeam, columns: NDArray[np.intp], speeds: Array) -> SteadyFamily:
+    def of(cls, beam: ExactBeam, columns: NDArray[np.intp], speeds: Array) -> SteadyFamily:
         """For speeds (S,) in any order; where they are few each is worked out itself."""
-        nodes = np.unique(speeds**2) if len(np.unique(speeds)) <= NODES else _chebyshev(speeds.min() ** 2, speeds.max() ** 2)
-        stiffness, coupling, near = [], [], None
+        moving = np.maximum(speeds, SLOWEST) ** 2
+        nodes = np.unique(moving) if len(np.unique(moving)) <= NODES else _chebyshev(moving.min(), moving.max())
+        coefficients: list[Array] = []
+        near: SteadyState | None = None
         for square in nodes.tolist():
-            point = beam.exact.at(float(np.sqrt(square)), near)
-            near = point.steady
-            point = point.restricted(columns)
-            root = np.asarray(np.linalg.cholesky(point.mass), dtype=np.float64)
-            stiffness.append(reduced(root, point.stiffness))
-            coupling.append(reduced(root, point.gyroscopic) / max(np.sqrt(square), 1.0))
-        return cls(nodes, np.array(stiffness), np.array(coupling))
+            near = beam.at(float(np.sqrt(square)), near).steady
+            assert near is not None
+            coefficients.append(near.coefficients / square)
+        return cls(beam, columns, nodes, np.array(coefficients))
 
     def at(self, speeds: Array) -> tuple[Array, Array]:
         """(S, N, N) each."""
-        weights = between(self.nodes, speeds**2)
-        coupling = np.einsum("sn,nij->sij", weights, self.coupling)
-        return np.einsum("sn,nij->sij", weights, self.stiffness), np.maximum(speeds, 1.0)[:, None, None] * coupling
+        states = speeds[:, None] ** 2 * (between(self.nodes, speeds**2) @ self.coefficients)
+        stiffness, coupling = [], []
+        for speed, state in zip(speeds.tolist(), states, strict=True):
+            point = self.beam.at_stations.about(state, speed).restricted(self.columns)
+            root = np.asarray(np.linalg.cholesky(point.mass), dtype=np.float64)
+            stiffness.append(reduced(root, point.stiffness))
+            coupling.append(reduced(root, point.gyroscopic))
+        return np.array(stiffness), np.array(coupling)
 
 
 def _chebyshev(low: float, high: float) -> Array:

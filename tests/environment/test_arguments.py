@@ -11,11 +11,14 @@ from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv, SensorHistory, Vecto
 from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
 from beamenv.task import resolve_task
 
+STATES = len(resolve_task().plant.A)
+
 WRONG = [
     ({"preset": "wing"}, "preset is 'wing', but must be one of thesis"),
     ({"speed": 1e5}, "speed = 100000.0 rad/s must be at least 0 and below the critical speed"),
     ({"blade": {"beam": {"thickness": -0.01}}}, "thickness"),
     ({"blade": {"beam": {"colour": "red"}}}, "colour"),
+    ({"blade": {"strain_limit": "static"}}, "blade.strain_limit is 'static', but must be one of vibration, total"),
     ({"blade": {"patches": {"actuators": (0.0, 0.01)}}}, "overlap"),
     ({"blade": {"patches": {"sensors": (2.0,)}}}, "sensors"),
     ({"design": "wing"}, "'wing'"),
@@ -107,9 +110,9 @@ def test_a_huge_but_finite_action_only_saturates():
         ({"load": {"size": 3.0}}, r"options.load has no field 'size': its fields are case, magnitude"),
         ({"load": {"case": "gust"}}, r"options.load.case is 'gust', but must be one of step, pulse"),
         ({"load": {"magnitude": -3.0}}, "options.load.magnitude is -3.0"),
-        ({"initial_state": np.zeros(5)}, r"options.initial_state has shape \(5,\), but must have shape \(52,\)"),
-        ({"initial_state": np.full(52, np.nan)}, r"options.initial_state strains the blade by nan, but must be finite"),
-        ({"initial_state": np.full(52, 1e3)}, r"options.initial_state strains the blade by"),
+        ({"initial_state": np.zeros(5)}, r"options.initial_state has shape \(5,\), but must have shape \(" + str(STATES)),
+        ({"initial_state": np.full(STATES, np.nan)}, r"options.initial_state strains the blade by nan, but must be finite"),
+        ({"initial_state": np.full(STATES, 1e3)}, r"options.initial_state strains the blade by"),
         ({"initial_state": "rest"}, r"options.initial_state is 'rest', but must be an array of numbers"),
     ],
 )

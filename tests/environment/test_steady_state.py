@@ -12,7 +12,7 @@ from beamenv.envs.batch import RotatingBeamVectorEnv
 from beamenv.envs.single import RotatingBeamEnv
 from beamenv.scenarios.scenario import scenario
 from beamenv.simulation.plants.banks import build_bank
-from beamenv.simulation.plants.spin_up import Cycloid
+from beamenv.simulation.plants.run_up import Cycloid
 from beamenv.simulation.strain_limit import FAILURE_STRAIN, safe_energy
 from beamenv.structure.base_motion import base_loads
 from beamenv.structure.steady_deformation import steady_deformation

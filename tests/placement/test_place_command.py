@@ -33,6 +33,16 @@ def test_json_tells_positions_traces_and_damping():
     assert np.min(told["damping_ratios"]["placed"]) > np.max(told["damping_ratios"]["without_control"])
 
 
+def test_patches_next_to_the_clamp_are_told(sides):
+    for side in sides:
+        near = [z for z in side.placement.positions if z < blade_config().beam.depth]
+        assert near and side.note.startswith("Nearer to the clamp")
+        assert side.note.count(" at ") == len(near)
+        assert side.to_dict()["note"] == side.note
+    (told,) = json.loads(run("--actuators", "1", "--method", "sqp", "--preset", "sound-blade", "--json").stdout)
+    assert bool(told["note"]) is (told["positions"][0] < blade_config("sound-blade").beam.depth)
+
+
 def test_speed_blade_and_passive_effect_are_options(tmp_path):
     blade = tmp_path / "blade.json"
     blade.write_text(json.dumps({"patches": {"sensors": 1}, "speed": 50.0}))

@@ -69,7 +69,7 @@ def test_a_plant_keeps_its_numbers_when_the_array_it_was_made_of_changes():
 def test_each_says_in_one_line_what_it_is(kind):
     told = repr(SHARED[kind]())
     assert "\n" not in told and len(told) < 120
-    assert re.search(r"(22|54) states, 4 voltages, 4 sensors; .*rad/s; 0\.5 ms", told)
+    assert re.search(r"\d\d states, 4 voltages, 4 sensors; .*rad/s; 0\.5 ms", told)
 
 
 def test_a_plant_tells_its_first_and_last_frequency_its_clock_and_its_limits():

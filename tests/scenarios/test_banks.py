@@ -62,9 +62,10 @@ def test_patches_without_mass_and_stiffness_leave_frequencies_to_the_laminate():
 
 
 def test_sums_of_squared_frequencies_are_concave_in_the_squared_speed():
-    """Ky Fan: K_e + Ω² K_Ω is linear in Ω², so that ω₁² + … + ω_k² lies above its chord for every k; bending stiffens."""
+    """Ky Fan: K_e + Ω² K_Ω, linear in Ω² in the thesis' world, has ω₁² + … + ω_k² above its chord for every k; bending stiffens."""
+    thesis = replace(CONFIG, model="thesis")
     slow, design, fast = (
-        build_plant(changed_blade(CONFIG, ratio, 1.0, 1.0, 1.0, 0.01)).natural_frequencies for ratio in (0.7, 1, 1.3)
+        build_plant(changed_blade(thesis, ratio, 1.0, 1.0, 1.0, 0.01)).natural_frequencies for ratio in (0.7, 1, 1.3)
     )
     share = (1.0 - 0.7**2) / (1.3**2 - 0.7**2)
     chord = (1.0 - share) * np.cumsum(slow**2) + share * np.cumsum(fast**2)
@@ -124,7 +125,8 @@ def spillover():
 
 def test_design_and_truth_share_their_first_modes():
     true, design = spillover()
-    assert (len(true.A), true.blade_states, len(design.A)) == (52, 40, 10)
+    assert len(design.A) == 10
+    assert true.natural_frequencies[-1] > 0.8 * np.pi / true.control_interval
     np.testing.assert_allclose(design.natural_frequencies, true.natural_frequencies[:5], rtol=1e-9)
 
 
@@ -138,7 +140,7 @@ def test_five_mode_lqg_spills_over_into_the_modes_it_does_not_know():
 
 
 def test_on_the_true_blade_five_mode_lqg_is_worse_than_none():
-    """J of 16 short episodes some 20 times that of the blade left alone, LQG of all 22 modes below it."""
+    """J of 16 short episodes some six times that of the blade left alone, LQG of all modes and the electronics below it."""
     costs = {}
     for name, controller in (("none", None), ("five", lqg(spillover()[1])), ("all", lqg(spillover()[0]))):
         envs = RotatingBeamVectorEnv(16, scenario="spillover", duration=0.25)
@@ -150,5 +152,5 @@ def test_on_the_true_blade_five_mode_lqg_is_worse_than_none():
             observation, *_, info = envs.step(action)
             total += info["cost_increment"].sum()
         costs[name] = total
-    assert costs["five"] > 10.0 * costs["none"]
+    assert costs["five"] > 4.0 * costs["none"]
     assert costs["all"] < 0.7 * costs["none"]

@@ -49,6 +49,8 @@ SHARE_OF_CRITICAL_SPEED = st.floats(0.0, 0.98)
 MODERATE = 0.15
 """Of the critical speed: up to here a blade keeps its shape by and large, as the thesis has it at every speed."""
 few = settings(max_examples=40)
+fewer = settings(max_examples=12)
+"""Where solid sections of the blade's model take their time."""
 
 
 @few
@@ -80,7 +82,7 @@ def test_the_gyroscopic_matrix_is_the_virtual_work_of_the_coriolis_force(beam):
     assert beam.matrices.gyroscopic == pytest.approx(work, rel=0.0, abs=1e-11 * np.abs(work).max())
 
 
-@few
+@fewer
 @given(beam=blades())
 def test_mass_and_elastic_stiffness_are_positive_definite(beam):
     """Every motion has kinetic energy and every deformation strain energy."""
@@ -89,7 +91,7 @@ def test_mass_and_elastic_stiffness_are_positive_definite(beam):
         assert np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min() > 0.0
 
 
-@few
+@fewer
 @given(beam=blades(), share=st.floats(0.0, MODERATE))
 def test_no_mode_is_unstable_at_moderate_speed(beam, share):
     assert np.all(beam.natural_frequencies(share * beam.critical_speed, beam.space.size) > 0.0)
@@ -118,7 +120,7 @@ def test_the_critical_speed_is_the_first_at_which_a_mode_loses_its_stiffness(bea
     assert above == 0.0 < below
 
 
-@few
+@fewer
 @given(beam=blades(terms=st.integers(2, 6)), share=SHARE_OF_CRITICAL_SPEED)
 def test_more_terms_never_raise_a_frequency_without_gyroscopic_coupling(beam, share):
     """Rayleigh and Ritz: the trial spaces are nested. About one shape, that is: at rest, or at any speed in the thesis' model."""
@@ -129,7 +131,7 @@ def test_more_terms_never_raise_a_frequency_without_gyroscopic_coupling(beam, sh
     assert finer.critical_speed <= beam.critical_speed * (1.0 + 1e-7)
 
 
-@few
+@fewer
 @given(beam=blades(pretwist=st.just(0.0)), angle=st.floats(-180.0, 180.0))
 def test_presetting_changes_no_frequency_at_rest(beam, angle):
     turned = replace(beam, presetting_deg=angle)
@@ -145,7 +147,7 @@ def test_presetting_changes_no_stretch_and_twist_stiffness_of_the_walls(beam, an
     assert other == pytest.approx(one, rel=1e-9, abs=1e-9 * one[0, 0])
 
 
-@few
+@fewer
 @given(beam=blades(layup=st.builds(Layup.uniform, st.just(GRAPHITE_EPOXY), ANGLES)), share=SHARE_OF_CRITICAL_SPEED)
 def test_a_blade_and_its_mirror_image_whirl_alike(beam, share):
     """Reflection in the plane of rotation: ply angles, pretwist and presetting change sign, the spin does not."""
@@ -155,7 +157,7 @@ def test_a_blade_and_its_mirror_image_whirl_alike(beam, share):
     assert mirror.natural_frequencies(speed) == pytest.approx(beam.natural_frequencies(speed), rel=1e-6)
 
 
-@few
+@fewer
 @given(beam=blades(), factor=st.floats(0.2, 5.0))
 def test_frequencies_scale_with_the_root_of_modulus_over_density_and_inversely_with_size(beam, factor):
     """A blade of the same shape, ``factor`` times as large: all frequencies and the critical speed divided by it."""

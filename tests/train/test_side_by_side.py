@@ -57,14 +57,19 @@ def test_a_critic_is_told_which_scenario_a_blade_is_in():
 
 
 def test_a_mode_keeps_its_place_whatever_the_order_of_the_plant():
-    """Spillover's plant has 22 modes, nominal's 11: displacements fill the first half, velocities the second."""
-    envs, own = several(), batch(0).reset()
-    states = envs.reset()[:2, envs.seen : -3]
-    assert states.shape[1] == 44
-    np.testing.assert_array_equal(states[:, :11], own[:, envs.seen : envs.seen + 11])
-    np.testing.assert_array_equal(states[:, 22:33], own[:, envs.seen + 11 :])
-    assert not states[:, 11:22].any()
-    assert not states[:, 33:].any()
+    """The solid has 11 modes, nominal's blade more: first displacements, then velocities, then electronics."""
+    both = [resolve_task(duration=0.01, scenario=name) for name in ("nominal", "solid")]
+    batches = [TrainingVecEnv(2, task, 0, history=3, shows_state=True) for task in both]
+    envs, own = SideBySide(batches), TrainingVecEnv(2, both[1], 0, history=3, shows_state=True).reset()
+    states = envs.reset()[2:, envs.seen : -2]
+    modes, plant = 11, batches[0].blades.plant
+    most = len(plant.natural_frequencies)
+    assert most > modes and states.shape[1] == len(plant.A)
+    np.testing.assert_array_equal(states[:, :modes], own[:, envs.seen : envs.seen + modes])
+    np.testing.assert_array_equal(states[:, most : most + modes], own[:, envs.seen + modes : envs.seen + 2 * modes])
+    np.testing.assert_array_equal(states[:, 2 * most :], own[:, envs.seen + 2 * modes :])
+    assert not states[:, modes:most].any()
+    assert not states[:, most + modes : 2 * most].any()
 
 
 def test_rewards_are_in_units_of_no_control_s_cost():

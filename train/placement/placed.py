@@ -33,11 +33,12 @@ class PlacedSide:
 
     @property
     def note(self) -> str:
-        """On patches next to the clamp; empty where there are none."""
+        """On those of them that are next to the clamp; empty where none is."""
         from beamenv.blade.clamp import clamp_note
         from beamenv.blade.layouts import with_positions
 
-        return clamp_note(with_positions(self.problem.config, {self.placement.side: self.placement.positions}))
+        side = self.placement.side
+        return clamp_note(with_positions(self.problem.config, {side: self.placement.positions}), (side,))
 
     def to_dict(self) -> dict[str, Any]:
         """What ``--json`` prints."""

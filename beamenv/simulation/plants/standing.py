@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
 from beamenv.simulation.plants.bank import Bank
-from beamenv.simulation.plants.spin_up import RunUp
+from beamenv.simulation.plants.run_up import RunUp
 from beamenv.simulation.strain_limit import FAILURE_STRAIN
 
 Array = NDArray[np.float64]

@@ -76,6 +76,18 @@ class ExactBeam:
             )
         return self._with_shapes(z, beam[..., None], point.steady.amplitudes[:, None])[..., 0]
 
+    def base_forces(self, point: OperatingPoint) -> tuple[Array, Array]:
+        """Centrifugal force per Ω² and Euler's per Ω̇, (N,) each, where the blade stands that vibration is about."""
+        at = self.at_stations
+        inertia = at.inertia(Placement.of(at.rows @ self.about(point), at.frames))
+        return at.force(inertia.centrifugal), at.force(inertia.euler)
+
+    def steady_state_slope(self, point: OperatingPoint) -> Array:
+        """W (N,): by how much the steady state moves and turns per Ω²."""
+        if not self.nonlinear:
+            return self.linear_steady_state.coefficients
+        return np.asarray(np.linalg.solve(point.stiffness, self.base_forces(point)[0]))
+
     def about(self, point: OperatingPoint) -> Array:
         """Coefficients (N,) of the placement that vibration is about: that at rest where the steady state is linear."""
         if self.nonlinear and point.steady is not None:

@@ -18,15 +18,21 @@ Array = NDArray[Any]
 class SideBySide(VecEnv):
     """Batches one after the other. After what the actor sees, an observation has the state and which batch it is from.
 
-    States of plants of different order are padded by zeros, displacements and velocities apart: a mode keeps its place.
+    States of plants of different order are padded by zeros, displacements, velocities and the electronics' states apart: a mode
+    keeps its place.
     """
 
     def __init__(self, batches: Sequence[TrainingVecEnv]) -> None:
         self.batches = list(batches)
         first = self.batches[0]
         self.seen, self.held = first.seen, first.held
-        self._half = max((int(np.prod(batch.observation_space.shape or ())) - batch.seen) // 2 for batch in self.batches)
-        width = self.seen + 2 * self._half + len(self.batches)
+        self._told = int(np.prod(first.observation_space.shape or ())) > self.seen
+        """Whether observations have the state."""
+        plants = [batch.blades.plant for batch in self.batches if self._told]
+        self._half = max((plant.blade_states // 2 for plant in plants), default=0)
+        electronic = max((plant.electronic_states for plant in plants), default=0)
+        self._last = self.seen + 2 * self._half + electronic
+        width = self._last + len(self.batches)
         count = sum(batch.num_envs for batch in self.batches)
         self._width = width
         super().__init__(count, Box(-np.inf, np.inf, (width,), np.float32), first.action_space)
@@ -44,12 +50,14 @@ class SideBySide(VecEnv):
 
     def _widened(self, index: int, observations: Array) -> Array:
         """Observations (…, seen + n) of one batch as all have them."""
-        order = (observations.shape[-1] - self.seen) // 2
         wide = np.zeros((*observations.shape[:-1], self._width), np.float32)
         wide[..., : self.seen] = observations[..., : self.seen]
-        wide[..., self.seen : self.seen + order] = observations[..., self.seen : self.seen + order]
-        wide[..., self.seen + self._half : self.seen + self._half + order] = observations[..., self.seen + order :]
-        wide[..., self.seen + 2 * self._half + index] = 1.0
+        wide[..., self._last + index] = 1.0
+        if self._told:
+            order = self.batches[index].blades.plant.blade_states // 2
+            parts = np.split(observations, np.cumsum([self.seen, order, order]), axis=-1)
+            for place, part in zip((self.seen, self.seen + self._half, self.seen + 2 * self._half), parts[1:], strict=True):
+                wide[..., place : place + part.shape[-1]] = part
         return wide
 
     def step_async(self, actions: Array) -> None:

@@ -130,5 +130,5 @@ def typical_state(task: Task, reference: float | None = None) -> Array:
     drive = held.B * (0.2 * drive_limit(task.plant))
     excitation = drive @ drive.T + held.disturbance_input @ held.process_noise @ held.disturbance_input.T
     variance = np.diag(solve_discrete_lyapunov(held.A, excitation))
-    energy = 0.5 * float(variance.sum()) * task.steps * held.interval
+    energy = 0.5 * float(variance[: task.plant.blade_states].sum()) * task.steps * held.interval
     return np.sqrt(variance * max(1.0, (reference or 0.0) / energy))
