@@ -14,7 +14,7 @@
 import gymnasium as gym
 
 import beamenv
-from baselines import evaluate, lqg
+from baselines import evaluate, reference_lqg
 from beamenv.task import resolve_task
 from train.learning.through_plant.gradient import GradientSettings, train_gradient
 
@@ -29,7 +29,7 @@ print(f"J / J without control while training: {learning[0].cost:.2f} at first, {
 # %%
 envs = gym.make_vec(beamenv.ENV_ID, num_envs=32, scenario="deflection")
 learnt = evaluate(policy, envs, seeds=range(32))
-optimal = evaluate(lqg(envs.unwrapped.design_plant), envs, seeds=range(32), reference=learnt.reference)
+optimal = evaluate(reference_lqg(envs.unwrapped.design.full_plant), envs, seeds=range(32), reference=learnt.reference)
 for result in (learnt, optimal):
     cost = result.relative_cost
     print(f"{result.name:>16}: J / J without control = {cost.value:.3f} [{cost.low:.3f}, {cost.high:.3f}]")

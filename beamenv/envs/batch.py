@@ -15,6 +15,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.design import Design
 from beamenv.configuration import Count, checked
 from beamenv.envs.batch_arguments import chosen_mode, drawn_rows, elapsed_intervals, own_seeds
 from beamenv.plant.plant import Plant
@@ -138,8 +139,13 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     @property
     def design_plant(self) -> Plant:
-        """The plant controllers are to be designed for."""
+        """The plant controllers are to be designed for, of few modes and without electronics."""
         return self.task.design_plant
+
+    @property
+    def design(self) -> Design:
+        """All that a controller may be built from: ``design.full_plant`` has every mode that is known and the electronics."""
+        return self.task.design
 
     @property
     def state(self) -> Array:

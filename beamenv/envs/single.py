@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.design import Design
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
@@ -35,8 +36,9 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     The plant is linear, and advanced exactly from one sample to the next, cost included. What is not linear is enforced here:
     the drive saturates, the sensors clip. The true plant that moves, `plant`, has all modes up to the Nyquist frequency, what
     the others follow at once, the amplifiers' lag and anti-aliasing filters. The design plant that a controller is built from,
-    `design_plant`, has the blade's first 11 modes and no electronics; `design` may make it another blade's. In the thesis'
-    world (`blade={"model": "thesis"}`) the two are one.
+    `design_plant`, has the blade's first 11 modes and no electronics; the argument `design` may make it another blade's. In
+    the thesis' world (`blade={"model": "thesis"}`) the two are one. Elsewhere most of what knows 11 modes alone is unstable on
+    the true plant; all that is known of the design's blade is the attribute `design.full_plant`.
 
     The default blade is the thesis' box (2.023 m, plies at 30°, pretwist 30°) at 200 rad/s with 4 actuators and 4 sensors
     equally spaced over 0 … 0.7 of the span. No real blade could turn like that: steady rotation alone strains its outer face by
@@ -248,8 +250,13 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     @property
     def design_plant(self) -> Plant:
-        """The plant controllers are to be designed for."""
+        """The plant controllers are to be designed for, of few modes and without electronics."""
         return self.task.design_plant
+
+    @property
+    def design(self) -> Design:
+        """All that a controller may be built from: ``design.full_plant`` has every mode that is known and the electronics."""
+        return self.task.design
 
     @property
     def state(self) -> Array:

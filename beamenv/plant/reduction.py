@@ -108,7 +108,7 @@ def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float, at_rest: P
         response = PatchResponse(forces.T @ static, charges @ static, charges @ static)
     else:
         response = local_response(beam, layout) if at_rest is None else at_rest
-    steady, steady_strain = _steady(beam, speed)
+    steady, steady_strain = steady_and_strain(beam, speed)
     return FullModel(
         forces=forces,
         charges=charges,
@@ -121,8 +121,8 @@ def full_model(beam: RotatingBeam, layout: PatchLayout, speed: float, at_rest: P
     )
 
 
-def _steady(beam: RotatingBeam, speed: float) -> tuple[SteadyDeformation, Array]:
-    """What the steady state does to a blade, and its strains (k,) where those of vibration are watched."""
+def steady_and_strain(beam: RotatingBeam, speed: float) -> tuple[SteadyDeformation, Array]:
+    """What the steady state at a speed in rad/s does to a blade, and its strains (k,) where those of vibration are watched."""
     if beam.model == "thesis":
         return STILL, np.zeros(len(surface_strain(beam, speed)))
     strain = face_strain(beam, speed)

@@ -79,7 +79,7 @@ def test_isotropic_untwisted_blade_at_rest_has_pure_families_in_the_order_of_the
     modes = beam.modes(0.0, 9)
     motions = ("lag", "flap", "extension", "twist")
     alone = sorted((frequency, motion) for motion in motions for frequency in beam.natural_frequencies(0.0, 6, (motion,)))[:9]
-    assert modes.natural_frequencies == pytest.approx([frequency for frequency, _ in alone], rel=1e-9)
+    assert modes.natural_frequencies == pytest.approx([frequency for frequency, _ in alone], rel=1e-8)
     assert modes.families == tuple(motion for _, motion in alone)
     assert modes.families[:5] == ("flap", "lag", "flap", "twist", "flap")
     assert modes.participation.max(axis=1) == pytest.approx(1.0, abs=1e-9)

@@ -33,7 +33,7 @@ from train.shared.held_out import HELD_OUT, SEEDS, held_out
 
 Array = NDArray[np.float64]
 
-CLASSICAL = ("none", "velocity", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
+CLASSICAL = ("none", "velocity", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
 """The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
 
 
@@ -92,7 +92,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     write_tables(folder, evaluations)
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
     levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
-    drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "lqg-thesis", "lqg")]
+    drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "positive-position-feedback", "lqg")]
     curves = {name: read_curve(folder, name) for name in agents}
     write_figures(folder, plant, evaluations, drawn, curves, levels)
     configuration = json.loads((folder / "configuration.json").read_text())

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 import beamenv
-from baselines import Controller, lqg, no_control
+from baselines import Controller, no_control, reference_lqg
 from baselines.evaluation.loop import instants
 from beamenv.configuration.writing import write_whole
 
@@ -72,8 +72,9 @@ def animation(sheets: Sequence[Image.Image]) -> bytes:
 
 def write_animation(folder: Path, count: int = PICTURES) -> None:
     """Write ``blade.webp`` of ``count`` pictures and ``blade.png``, whole or not at all."""
-    plant = gymnasium.make(beamenv.ENV_ID).unwrapped.design_plant  # type: ignore[attr-defined]
-    episodes = [(title, pictures(law, count)) for title, law in (("no control", no_control(plant)), ("LQG", lqg(plant)))]
+    design = gymnasium.make(beamenv.ENV_ID).unwrapped.design  # type: ignore[attr-defined]
+    laws = (("no control", no_control(design.plant)), ("LQG", reference_lqg(design.full_plant)))
+    episodes = [(title, pictures(law, count)) for title, law in laws]
     write_whole(folder / "blade.webp", animation([sheet([(title, shown[k]) for title, shown in episodes]) for k in range(count)]))
     still = io.BytesIO()
     Image.fromarray(episodes[-1][1][min(STILL, count - 1)]).save(still, "PNG", optimize=True)

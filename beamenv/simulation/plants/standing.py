@@ -10,9 +10,11 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
+from beamenv.plant.reduction import steady_and_strain
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.run_up import RunUp
 from beamenv.simulation.strain_limit import FAILURE_STRAIN
+from beamenv.structure.steady_deformation import steady_deformation
 
 Array = NDArray[np.float64]
 
@@ -38,13 +40,14 @@ def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
     That is the strain of each speed's steady state, and that of what the equilibrium of the modes departs from their static one.
     ``ValueError`` where one of these steady states alone is beyond the blade's strain limit.
     """
-    first = blade.changed(replace(blade.config, speed=run_up.course.first)).full.steady
+    first = steady_deformation(blade.beam, run_up.course.first)
     bank = replace(bank, steady=np.tile(astuple(first), (len(bank), 1)))
     if blade.config.strain_limit == "vibration":
         return bank
     times = np.linspace(0.0, run_up.course.duration, len(bank), endpoint=False)
-    omega, reference = bank.plant.natural_frequencies, bank.plant.strain
-    moving = run_up.departure(times) @ (reference[:, : len(omega)] * omega).T
+    patches = run_up.patches(times)
+    assert patches is not None  # in the thesis' model the limit is on vibration
+    moving = np.einsum("tkr,tr->tk", patches[2], run_up.departure(times))
     return replace(bank, standing=standing_strains(blade, run_up.course.speed(times)) + moving)
 
 
@@ -65,9 +68,9 @@ def standing_strains(blade: Blade, speeds: Array) -> Array:
     low, high = float(speeds.min()) ** 2, float(speeds.max()) ** 2
     places = chebyshev.chebpts2(NODES)
     nodes = np.sqrt(0.5 * (low + high) + 0.5 * (high - low) * places)
-    states = [blade.changed(replace(blade.config, speed=float(speed))).full for speed in nodes]
-    for speed, state in zip(nodes, states, strict=True):
-        check_strain(state.steady.strain, speed)
-    coefficients = chebyshev.chebfit(places, np.stack([state.steady_strain for state in states]), NODES - 1)
+    states = [steady_and_strain(blade.beam, float(speed)) for speed in nodes]
+    for speed, (state, _) in zip(nodes, states, strict=True):
+        check_strain(state.strain, speed)
+    coefficients = chebyshev.chebfit(places, np.stack([strain for _, strain in states]), NODES - 1)
     reached = (2.0 * speeds**2 - low - high) / max(high - low, np.finfo(np.float64).tiny)
     return np.asarray(chebyshev.chebval(reached, coefficients).T)

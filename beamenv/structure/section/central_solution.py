@@ -26,8 +26,12 @@ Array = NDArray[np.float64]
 PER_LINE = 3 * (ACROSS + 1)
 """Displacements on a line across the wall."""
 
-PASSES = 40
-"""Most iterations for the pretwist's terms, each some 50 times smaller than the one before on a blade."""
+PASSES = 10
+"""Most iterations for the pretwist's terms before they are extrapolated; on a blade each is some 50 times smaller than the last,
+while in thin, wide, strongly pretwisted walls they may grow."""
+
+CYCLES = 8
+"""Most extrapolations."""
 
 CONVERGED = 1e-6
 
@@ -146,21 +150,43 @@ def central_solution(system: Factorised, pretwist: float) -> CentralSolution:
     T, one = equilibrium(pretwist), np.broadcast_to(np.eye(RIGID), (sections, RIGID, RIGID))
     warping = np.zeros((sections, sums.lines, PER_LINE, RIGID))
     strain = np.zeros((sections, RIGID, RIGID))
-    for _ in range(PASSES):
-        here = sums.gather(warping)
-        onward = here @ T
-        stress = sums.cross.swapaxes(-1, -2) @ here + sums.derivative @ onward + sums.derivative_strain @ strain[:, None]
-        loads = stress @ T - sums.cross @ onward
-        resultants = one - (sums.derivative_strain.swapaxes(-1, -2) @ onward).sum(axis=1)
-        before, (warping, strain) = strain, system.solve(loads, resultants)
-        if np.abs(strain - before).max() <= CONVERGED * np.abs(strain).max():
+    for _ in range(CYCLES):
+        passes = [(warping, strain)]
+        for _ in range(PASSES):
+            here = sums.gather(warping)
+            onward = here @ T
+            stress = sums.cross.swapaxes(-1, -2) @ here + sums.derivative @ onward + sums.derivative_strain @ strain[:, None]
+            loads = stress @ T - sums.cross @ onward
+            resultants = one - (sums.derivative_strain.swapaxes(-1, -2) @ onward).sum(axis=1)
+            before, (warping, strain) = strain, system.solve(loads, resultants)
+            passes.append((warping, strain))
+            if converged := bool(np.abs(strain - before).max() <= CONVERGED * np.abs(strain).max()):
+                break
+        if converged:
             break
+        warping, strain = extrapolated(passes)
     here = sums.gather(warping)
     compliance = sums.energy(here, here @ T, strain)
     inverse = np.linalg.inv(compliance)
     mean = mean_motion(sums, warping)
     strain = strain + mean @ T + T.T @ mean
     return CentralSolution(without(sums, warping, mean), strain, 0.5 * (inverse + inverse.swapaxes(-1, -2)))
+
+
+def extrapolated(passes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Limit of an iteration that need not converge, from its passes: the mean of them that the next pass changes least.
+
+    Reduced rank extrapolation (Smith, Ford and Sidi, SIAM Review 29, 1987).
+    """
+    warpings, strains = (np.stack(each) for each in zip(*passes, strict=True))
+    changes = np.diff(warpings, axis=0)
+    warping, strain = np.empty_like(warpings[0]), np.empty_like(strains[0])
+    for v in range(len(warping)):
+        change = changes[:, v].reshape(len(changes), -1)
+        share, *_ = np.linalg.lstsq((change[1:] - change[0]).T, -change[0], rcond=None)
+        weight = np.concatenate([[1.0 - share.sum()], share])
+        warping[v], strain[v] = (np.tensordot(weight, each[:-1, v], axes=1) for each in (warpings, strains))
+    return warping, strain
 
 
 def mean_motion(sums: ElementSums, warping: Array) -> Array:

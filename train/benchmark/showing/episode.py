@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from baselines import lqg
 from beamenv.scenarios.scenario import scenario
 from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
+from train.controllers.named import named
 from train.controllers.shipped import load_shipped, shipped
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
@@ -24,13 +24,13 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
         return None, ""
     best = min(candidates, key=lambda row: row.estimates["difference_to_lqg"].value)
     arguments = {**environment, "scenario": best.scenario}
-    plant = resolve_task(**arguments).design_plant
+    task = resolve_task(**arguments)
     try:
-        agent = load_shipped(ships[best.controller], _home(best), plant=plant)
+        agent = load_shipped(ships[best.controller], _home(best), plant=task.design_plant)
     except ValueError:  # the table's blade is another one than that which agents ship for
         return None, ""
     note = f"Scenario {best.scenario}, held-out episode of seed {HELD_OUT}: LQG, and the agent that gains most on it."
-    return record_episode(arguments, HELD_OUT, (lqg(plant), agent)), note
+    return record_episode(arguments, HELD_OUT, (named("lqg").build_for(task), agent)), note
 
 
 def _home(row: Row) -> str:
