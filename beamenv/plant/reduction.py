@@ -50,7 +50,9 @@ class ModalModel(ReadOnly):
 
 
 def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = True) -> ModalModel:
-    """The modal model of a blade; ``ValueError`` at or beyond the critical speed or for more modes than trial functions."""
+    """The modal model of a blade; ``ValueError`` at or beyond the critical speed, where the steady
+    state is unstable, or for more modes than trial functions.
+    """
     if not (np.isfinite(speed) and 0.0 <= speed < beam.critical_speed):
         raise ValueError(
             f"speed = {float(speed)!r} rad/s must be at least 0 and below the critical speed, {beam.critical_speed:.6g} rad/s."
@@ -58,6 +60,8 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
     modes = checked("blade.modes", modes, Count(1, beam.space.size))  # so many trial functions
     point = beam.at(speed)
     frequencies, shapes = normal_modes(point.mass, point.stiffness, modes)
+    if not frequencies[0] > 0.0:
+        raise ValueError(f"speed = {float(speed)!r} rad/s must be one at which the blade's steady state is stable.")
     coupling = shapes.T @ point.gyroscopic @ shapes if gyroscopic else np.zeros((modes, modes))
     return ModalModel(frequencies, shapes, coupling)
 

@@ -140,4 +140,12 @@ def _stack(stiffness: Array, gyroscopic: Array, coupled: bool, diverged: bool) -
     if not (coupled and np.any(gyroscopic)):
         symmetric = 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
         return np.sqrt(np.maximum(np.linalg.eigvalsh(symmetric), 0.0))
-    return diverged_frequencies(stiffness, gyroscopic) if diverged else stable_frequencies(stiffness, gyroscopic)
+    if diverged:
+        return diverged_frequencies(stiffness, gyroscopic)
+    try:
+        return stable_frequencies(stiffness, gyroscopic)
+    except np.linalg.LinAlgError:  # a steady state may be unstable below the critical speed
+        if len(stiffness) == 1:
+            return diverged_frequencies(stiffness, gyroscopic)
+        each = range(len(stiffness))
+        return np.concatenate([_stack(stiffness[k : k + 1], gyroscopic[k : k + 1], coupled, diverged) for k in each])

@@ -42,7 +42,7 @@ def test_cas_walls_agree_with_finite_elements_of_the_same_material(
 
 def test_cas_beam_agrees_with_finite_elements_but_for_its_clamp(finite_elements, graphite_of_the_elements, deviation, monkeypatch):
     """The elements are of a section far from its ends. A section of the beam cannot warp at the clamp, which is worth 1.2 %; one
-    that warps there too has their frequencies within 0.35 %.
+    that warps there too has their frequencies within 0.4 %.
     """
     clamped = deviation(hertz(blade(graphite_of_the_elements)), finite_elements)
     assert np.all((clamped > 0.0) & (clamped < 1.45))
@@ -52,7 +52,7 @@ def test_cas_beam_agrees_with_finite_elements_but_for_its_clamp(finite_elements,
         return value, value @ (2.0 * legendre_derivative(terms)) / length
 
     monkeypatch.setattr(at_stations, "clamped_table", unclamped)
-    assert np.abs(deviation(hertz(blade(graphite_of_the_elements)), finite_elements)).max() < 0.35
+    assert np.abs(deviation(hertz(blade(graphite_of_the_elements)), finite_elements)).max() < 0.4
 
 
 def test_cas_beam_of_the_thesis_material_agrees_too(finite_elements, deviation, thesis_world):

@@ -12,7 +12,8 @@ worked out at few speeds and interpolated. ξ = Ψ(s) η, with the modes Ψ₀ o
 by one step of inverse iteration, K⁻¹MΨ₀, so that a line which is bent otherwise is still not stretched; ΨᵀMΨ = 1, as near to Ψ₀ as
 that allows. Damping C = 2ζω₀ acts in these coordinates. Left out are Ψ′ṡ beside η̇, stresses that Euler's force raises, of 2 % of
 the centrifugal ones in the default run-up (Ω̇/Ω²), and with the square of Ω̇ the turning of the sections' axes. The higher modes
-take part in q̄, but not in ξ.
+take part in q̄, but not in ξ. Beside the whole non-linear blade integrated in time, from 100 to 130 rad/s in 0.1 s, the tip moves
+alike within 0.1 % in lag and 3 % of a ten times smaller motion in flap.
 
 In the thesis' model, which knows no steady state, displacements q are the blade's own,
 
