@@ -81,7 +81,7 @@ class SolidSections:
         )
 
     def aligned(self, other: SolidSections) -> SolidSections:
-        """The same sections with distortions that mean what the same amplitudes mean in ``other``, whose elements are cut elsewhere.
+        """The same sections with distortions that mean what equal amplitudes mean in ``other``, whose elements are cut elsewhere.
 
         A vibration's sign is anybody's choice, and of two with one frequency so is every mixture: here they move the lines that
         both have as nearly alike as may be (Procrustes).
