@@ -51,7 +51,10 @@ def test_together_they_stay_below_5_mb():
 
 @lru_cache
 def design_plant(scenario):
-    return resolve_task(**{"scenario": scenario}).design_plant
+    """In the world that agents which ship were trained in, until they are trained again."""
+    more = {"modes": 22} if scenario == "spillover" else {}
+    blade = {"model": "thesis", "beam": {"shear_flow": "consistent"}, **more}
+    return resolve_task(blade=blade, scenario=scenario).design_plant
 
 
 @pytest.mark.parametrize("each", shipped(), ids=lambda each: f"{each.agent}-{each.scenario}-{each.seed}")
@@ -63,3 +66,8 @@ def test_each_tells_what_it_depends_on_and_acts_on_the_plants_it_was_trained_on(
         policy = load_shipped(each.agent, each.scenario, each.seed, design_plant(scenario))
         action, _ = policy.predict(np.full((2, 4), 0.05, np.float32))
         assert np.isfinite(action).all()
+
+
+def test_on_a_blade_that_it_was_not_trained_on_an_agent_is_refused_in_one_sentence():
+    with pytest.raises(ValueError, match=r"plant with the fingerprint .* is none of those the agent in .* was trained on: "):
+        load_shipped("residual", "generalist", 0, resolve_task().design_plant)
