@@ -26,7 +26,9 @@ QUICK = {
 
 @lru_cache
 def problem_of(side, count, preset="thesis", speed=200.0, model="blade"):
-    return PlacementProblem.of(blade_config(preset, {"model": model}, speed=speed), side, count)
+    return PlacementProblem.of(
+        blade_config(preset, {"model": model, "beam": {"shear_flow": "consistent"}}, speed=speed), side, count
+    )
 
 
 @lru_cache
