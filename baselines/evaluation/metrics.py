@@ -63,7 +63,7 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
         cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
         effort=np.nansum(episodes.effort, axis=0),
         settling_time=settling_time,
-        settled=(settling_time <= (1.0 - REST) * episodes.time[-1]).astype(float),
+        settled=((settling_time <= (1.0 - REST) * episodes.time[-1]) & ~episodes.failed).astype(float),
         peak_tip=np.nanmax(distance, axis=0),
         rms_tip=np.sqrt(np.nanmean(distance**2, axis=0)),
         peak_voltage=np.nanmax(magnitude, axis=(0, 2)),
