@@ -109,8 +109,8 @@ def test_saint_venants_blade_stretches_and_untwists_as_its_equations_say(slender
 
 
 def test_the_default_blade_at_200_rad_per_s():
-    """It stretches by 32.3 mm, untwists by 15.2° at the tip (solid elements 33 mm, 14 to 17°), its outer face strains by 2.85 %, and
-    the clamp takes 1.4 % from the stretch that Saint-Venant's equations give.
+    """It stretches by 32.3 mm, untwists by 15.2° at the tip (solid elements: 33 mm, 14 to 17°) and strains by 2.85 % outside; the
+    clamp takes 1.4 % from the stretch that Saint-Venant's equations give.
     """
     tip = np.array([BLADE.length])
     found = steady(BLADE, SPEED, tip)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -49,15 +50,19 @@ class Planform:
 
     @property
     def sizes(self) -> Array:
-        """Chebyshev points between the sizes of root and tip; one for a blade without taper."""
+        """Chebyshev points from the size of the root to that of the tip, both included; one for a blade without taper."""
         if self.taper == 1.0:
             return np.ones(1)
-        nodes = np.cos(np.pi * (np.arange(SIZES) + 0.5) / SIZES)
+        nodes = np.cos(np.pi * np.arange(SIZES) / (SIZES - 1))
         tip = 1.0 / self.taper
         return 0.5 * (1.0 + tip) + 0.5 * (1.0 - tip) * nodes
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+NOTHING = 1e-9
+"""Energy, over that of one strain alone, that rounding may take."""
+
+
+@dataclass(frozen=True, eq=False)
 class SectionsAlong:
     """Every section that a blade has, and which is where."""
 
@@ -110,7 +115,28 @@ class SectionsAlong:
         if len(sizes) == 1:
             return values[which]
         by_size = values.reshape(len(self.codes), len(sizes), *values.shape[1:])[which]
-        return np.einsum("sn,sn...->s...", between(sizes, self.planform.scale(z)), by_size)
+        return np.einsum("sn,sn...->s...", self._weights(self.planform.scale(z)), by_size)
+
+    def _weights(self, scale: Array) -> Array:
+        """(S, SIZES): of the sizes known, for sections of other sizes."""
+        sizes = self.planform.sizes
+        if self._smooth:
+            return between(sizes, scale)
+        order = np.argsort(sizes)
+        return np.stack([np.interp(scale, sizes[order], row[order]) for row in np.eye(len(sizes))], axis=-1)
+
+    @cached_property
+    def _smooth(self) -> bool:
+        """Whether the polynomial between sizes leaves every section some energy in every strain. That of very thin walls under
+        strong pretwist, which warp otherwise at every size, may not; then the mean of two neighbours does.
+        """
+        sizes = self.planform.sizes
+        halfway = between(sizes, np.linspace(sizes.min(), sizes.max(), 4 * len(sizes)))
+        energy = self.solid.energy.reshape(len(self.codes), len(sizes), -1)
+        size = self.solid.energy.shape[-1]
+        unit = 1.0 / np.sqrt(np.diagonal(self.solid.energy[0]))
+        every = np.einsum("sn,cne->cse", halfway, energy).reshape(-1, size, size) * np.outer(unit, unit)
+        return bool(np.linalg.eigvalsh(every).min() > -NOTHING)
 
 
 _ALIVE: WeakValueDictionary[Hashable, SolidSections] = WeakValueDictionary()
