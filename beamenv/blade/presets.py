@@ -58,7 +58,7 @@ thesis-pretwisted: with 30° presetting too, Figs. 5.2 and 5.7; chandra-chopra: 
 7 mm wide MFC (M-8507-P1).
 
 No real blade could turn as the thesis' does: at 200 rad/s its tip moves at 445 m/s, faster than sound, and its steady rotation
-alone strains its outer face by 2.9 %, stretches it by 33 mm and unwinds half of its pretwist. Its patches are rated for 0.45 %, and
+alone strains its outer face by 2.8 %, stretches it by 32 mm and unwinds half of its pretwist. Its patches are rated for 0.45 %, and
 a ply of AS4/3501-6 breaks at 1.4 % along and 0.44 % across its fibres (Soden, Hinton and Kaddour 1998). What is limited there is
 the strain of vibration alone.
 

@@ -32,25 +32,36 @@ def steady(beam, speed, z):
     return {name: rows @ coefficients for name, rows in beam.displacements(z).items()}
 
 
-@pytest.mark.parametrize("speed", [200.0, 1000.0, 1600.0])
+@pytest.mark.parametrize("speed", [20.0, 200.0, 1000.0])
 def test_an_isotropic_rod_stretches_as_its_equation_says(speed):
-    """EA w″ + m Ω² (R₀ + z + w) = 0: w = R₀ cos λz + B sin λz − R₀ − z, λ² = mΩ²/EA, w′(L) = 0. To 27 % strain."""
+    """N′ + m Ω² (R₀ + z + w) = 0 with N = EA (w′ + 3/2 w′²), Green's strain to second order: by collocation, to 5 % strain. At
+    20 rad/s that is w = R₀ cos λz + B sin λz − R₀ − z, λ² = mΩ²/EA, w′(L) = 0, to three halves of the strain, 2e-5.
+    """
     hub, length = 0.2, 2.0
     beam = RotatingBeam(BoxSection(0.2, 0.05, 0.004), Layup.uniform(ROD, [0]), length, hub_radius=hub)
-    wave = speed * np.sqrt(ROD.density / ROD.E1)
-    B = (1.0 + hub * wave * np.sin(wave * length)) / (wave * np.cos(wave * length))
-    z = np.linspace(0.0, length, 9)
-    expected = hub * np.cos(wave * z) + B * np.sin(wave * z) - hub - z
+    wave, z = speed * np.sqrt(ROD.density / ROD.E1), np.linspace(0.0, length, 9)
+
+    def slopes(z, y):
+        return np.stack([(np.sqrt(1.0 + 6.0 * y[1]) - 1.0) / 3.0, -(wave**2) * (hub + z + y[0])])
+
+    mesh = np.linspace(0.0, length, 41)
+    solution = solve_bvp(slopes, lambda a, b: np.array([a[0], b[1]]), mesh, np.zeros((2, 41)), tol=1e-9)
+    assert solution.success
     found = steady(beam, speed, z)
-    assert found["s"] == pytest.approx(expected, abs=1e-9 * length)
+    assert found["s"] == pytest.approx(solution.sol(z)[0], abs=1e-7 * length)
     others = ("u", "v", "theta_x", "theta_y", "phi")
     assert np.abs([found[name] for name in others]).max() < 1e-9
+    if speed == 20.0:
+        B = (1.0 + hub * wave * np.sin(wave * length)) / (wave * np.cos(wave * length))
+        closed = hub * np.cos(wave * z) + B * np.sin(wave * z) - hub - z
+        assert found["s"] == pytest.approx(closed, rel=6e-5, abs=1e-12)
 
 
 def stretch_and_twist(beam, speed, z):
     """w and φ of the blade's equations of extension and twist alone, which obey its symmetry, by collocation:
     N′ + m Ω² (R₀ + z + w) = 0 and M′ = ½ Ω² (I_x − I_y) sin 2(β + φ), N and M being conjugate to w′ and φ′ in
-    ½ EA w′² + K w′φ′ + ½ GJ φ′² + ½ (p w′ + q φ′) φ′², and p w′ + q φ′ the polar moment of the spanwise stress.
+    ½ EA w′² + K w′φ′ + ½ GJ φ′² + ½ (EA w′ + K φ′) w′² + ½ (p w′ + q φ′) φ′², and p w′ + q φ′ the polar moment of the
+    spanwise stress.
     """
     solid, length = beam.exact.sections.solid, beam.length
     stretch, twist = 2, 5
@@ -62,8 +73,10 @@ def stretch_and_twist(beam, speed, z):
     def strains(N, M):
         e, k = N / EA, np.zeros_like(N)
         for _ in range(30):  # Newton on both
-            residual = np.stack([EA * e + K * k + 0.5 * p * k**2 - N, K * e + GJ * k + p * e * k + 1.5 * q * k**2 - M])
-            a, b, d = EA * np.ones_like(e), K + p * k, GJ + p * e + 3.0 * q * k
+            along = EA * (e + 1.5 * e**2) + K * k * (1.0 + e) + 0.5 * p * k**2 - N
+            around = K * (e + 0.5 * e**2) + GJ * k + p * e * k + 1.5 * q * k**2 - M
+            residual = np.stack([along, around])
+            a, b, d = EA * (1.0 + 3.0 * e) + K * k, K * (1.0 + e) + p * k, GJ + p * e + 3.0 * q * k
             det = a * d - b * b
             e = e - (d * residual[0] - b * residual[1]) / det
             k = k - (a * residual[1] - b * residual[0]) / det
@@ -96,22 +109,22 @@ def test_saint_venants_blade_stretches_and_untwists_as_its_equations_say(slender
 
 
 def test_the_default_blade_at_200_rad_per_s():
-    """It stretches by 33.2 mm, untwists by 15.4° at the tip (solid elements 14 to 17°), and its outer face strains by 2.9 %; the
-    clamp takes 1.4 % from the stretch that Saint-Venant's equations give.
+    """It stretches by 32.3 mm, untwists by 15.2° at the tip (solid elements 33 mm, 14 to 17°), its outer face strains by 2.85 %, and
+    the clamp takes 1.4 % from the stretch that Saint-Venant's equations give.
     """
     tip = np.array([BLADE.length])
     found = steady(BLADE, SPEED, tip)
-    assert 1e3 * found["s"][0] == pytest.approx(33.2, abs=0.1)
-    assert np.degrees(found["phi"][0]) == pytest.approx(-15.4, abs=0.1)
+    assert 1e3 * found["s"][0] == pytest.approx(32.3, abs=0.1)
+    assert np.degrees(found["phi"][0]) == pytest.approx(-15.2, abs=0.1)
     strain = BLADE.steady_strain(BLADE.length * np.linspace(1e-6, 1.0, 60), SPEED)
-    assert np.abs(strain).max() == pytest.approx(0.029, abs=0.001)
+    assert np.abs(strain).max() == pytest.approx(0.0285, abs=0.0005)
     w, phi = stretch_and_twist(BLADE, SPEED, tip)
     assert 100.0 * (found["s"] / w - 1.0) == pytest.approx(-1.4, abs=0.3)
     assert found["phi"] == pytest.approx(phi, rel=0.04)
 
 
 def test_modes_five_and_six_part_about_the_true_steady_state():
-    """By +4.4 and −5.6 % from those of the linear one; 3-D elements found +5 and −5 %."""
+    """By +5.4 and −5.0 % from those of the linear one; 3-D elements found +5 and −5 %."""
     about, linear = (
         replace(BLADE, steady_state=state).natural_frequencies(SPEED, 6, gyroscopic=False) for state in ("nonlinear", "linear")
     )
@@ -186,4 +199,4 @@ def test_thin_walls_under_a_heavy_sheet_have_a_steady_state():
     layup = Layup(default=plies, walls={"top": (*plies[:5], Ply(MFC.lamina, 90.0))})
     beam = RotatingBeam(BoxSection(0.2, 0.05, 0.004), layup, length=2.0, pretwist_deg=30.0, hub_radius=0.2)
     tips = [steady(beam, speed, np.array([2.0]))["s"][0] / speed**2 for speed in (100.0, 200.0)]
-    assert tips[1] == pytest.approx(tips[0], rel=0.01)
+    assert tips[1] == pytest.approx(tips[0], rel=0.03)

@@ -54,8 +54,8 @@ def test_frequencies_come_with_what_steady_rotation_does():
     assert set(still.values()) == {0.0}
     assert content["note"].startswith("Nearer to the clamp")
     printed = " ".join(run("frequencies").stdout.split())
-    assert "tip 33.1 mm further out, untwisted by 15.3°" in printed
-    assert "up to 2.9 %, at 0 m, beyond the 0.45 %" in printed
+    assert "tip 32.2 mm further out, untwisted by 15.1°" in printed
+    assert "up to 2.8 %, at 0 m, beyond the 0.45 %" in printed
     assert "Nearer to the clamp" in printed
     sound = " ".join(run("frequencies", "--preset", "sound-blade").stdout.split())
     assert "up to 0.03 %" in sound

@@ -12,8 +12,8 @@ and an increment δu, ϑ (a spin: C becomes exp(ϑ̂) C) changes them by
 (Simo and Vu-Quoc, Computer Methods in Applied Mechanics and Engineering 58, 1986). Quadratic forms here are of increments
 [δu, ϑ, δu′, ϑ′], 12 numbers, at each of S stations.
 
-A fibre's extension has a quadratic part, ½ [(γx − κ₃ y)² + (γy + κ₃ x)²]: on it the spanwise stress works as well. It makes tension
-stiffen the twist (the trapeze effect) and the transverse shear.
+A fibre's extension, Green's, has a quadratic part, ½ [(γx − κ₃ y)² + (γy + κ₃ x)² + (ε + κ₁ y − κ₂ x)²]: on it the spanwise stress
+works as well. Tension then stiffens the twist (the trapeze effect), the transverse shear, and a little the stretch itself.
 """
 
 from __future__ import annotations
@@ -91,11 +91,8 @@ class FibreExtension:
     @classmethod
     def of(cls, strain: Array) -> FibreExtension:
         """At strains (S, 6)."""
-        gx, gy, twist = strain[:, 0], strain[:, 1], strain[:, 5]
-        zero = np.zeros_like(twist)
-        squares = np.stack([gx**2 + gy**2, 2.0 * twist * gy, -2.0 * twist * gx, twist**2, zero, twist**2], axis=-1)
         slopes = np.einsum("fij,sj->sfi", CURVATURES, strain)
-        return cls(squares, slopes)
+        return cls(0.5 * np.einsum("sfi,si->sf", slopes, strain), slopes)
 
     def resultants(self, moments: Array, per_strain: Array) -> Array:
         """(S, 6) of the energy ½ moments · squares, with moments (S, 6) = per_strain (S, 6, 6) strain."""
@@ -109,10 +106,12 @@ class FibreExtension:
 
 CURVATURES = np.zeros((6, 6, 6))
 """Second derivatives of the squares by the strains."""
-CURVATURES[0, [0, 1], [0, 1]] = 2.0
-CURVATURES[1, [1, 5], [5, 1]] = 2.0
-CURVATURES[2, [0, 5], [5, 0]] = -2.0
-CURVATURES[3, 5, 5] = CURVATURES[5, 5, 5] = 2.0
+CURVATURES[0, [0, 1, 2], [0, 1, 2]] = 2.0
+CURVATURES[1, [1, 5, 2, 4], [5, 1, 4, 2]] = 2.0, 2.0, -2.0, -2.0
+CURVATURES[2, [0, 5, 2, 3], [5, 0, 3, 2]] = -2.0, -2.0, 2.0, 2.0
+CURVATURES[3, [5, 4], [5, 4]] = 2.0
+CURVATURES[4, [3, 4], [4, 3]] = -2.0
+CURVATURES[5, [5, 3], [5, 3]] = 2.0
 CURVATURES.setflags(write=False)
 
 

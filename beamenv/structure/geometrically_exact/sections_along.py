@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -90,7 +90,8 @@ class SectionsAlong:
 
     def cut_for(self, wall: str, width: float) -> SectionsAlong:
         """The same sections, with the wall's elements cut where a strip of some width in its middle begins and ends."""
-        return SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [(wall, width)])
+        cut = SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [(wall, width)])
+        return replace(cut, solid=cut.solid.aligned(self.solid))
 
     def at(self, z: Array, values: Array) -> Array:
         """(S, …): what the sections have (V, …), at stations z (m)."""

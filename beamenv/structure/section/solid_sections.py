@@ -8,7 +8,7 @@ beam is as stiff as the (6, 6) matrix says; at the clamp they vanish, which Sain
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
 from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
-from beamenv.structure.section.elements import RIGID, Places, gauss_rule, places, strain_of_tables, turn_of_strains
+from beamenv.structure.section.elements import ACROSS, RIGID, Places, gauss_rule, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.mesh import Ring
 from beamenv.structure.walls.laminate import Laminate
 
@@ -78,6 +78,30 @@ class SolidSections:
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, central, pretwist),
             saint_venant=_saint_venant(central, unit, pretwist),
+        )
+
+    def aligned(self, other: SolidSections) -> SolidSections:
+        """The same sections with distortions that mean what equal amplitudes mean in ``other``, whose elements are cut elsewhere.
+
+        A vibration's sign is anybody's choice, and of two with one frequency so is every mixture: here they move the lines that
+        both have as nearly alike as may be (Procrustes).
+        """
+        apart = np.linalg.norm(self.ring.points[0][:, None] - other.ring.points[0][None], axis=-1)
+        mine, its = np.nonzero(apart < 1e-9 * np.abs(self.ring.points).max())
+        moved, wanted = (
+            solid.shapes[0, lines, : 3 * (ACROSS + 1), RIGID:].reshape(-1, AMPLITUDES - RIGID)
+            for solid, lines in ((self, mine), (other, its))
+        )
+        left, _, right = np.linalg.svd(moved.T @ wanted)
+        turn, strains = np.eye(AMPLITUDES), np.eye(STRAINS)
+        turn[RIGID:, RIGID:] = left @ right
+        strains[RIGID : RIGID + AMPLITUDES, RIGID : RIGID + AMPLITUDES] = strains[RIGID + AMPLITUDES :, RIGID + AMPLITUDES :] = turn
+        return replace(
+            self,
+            shapes=self.shapes @ turn,
+            energy=strains.T @ self.energy @ strains,
+            shape_mass=turn.T @ self.shape_mass @ turn,
+            _forces={},
         )
 
     @property
