@@ -43,7 +43,9 @@ class Deformation:
         return blade.displacement_operator(self._stations)
 
     def _running_operator(self, run_up: RunUp, plant: int) -> Array:
-        """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K."""
+        """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K. What patches bend beyond the
+        modes is that at the configured speed.
+        """
         blade, time = self._task.blade, np.asarray(plant * self._task.config.control_interval)
         root = np.linalg.cholesky(run_up.stiffness(time))
         operator = blade.displacement_operator(self._stations).copy()

