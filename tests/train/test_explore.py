@@ -186,7 +186,7 @@ def test_patches_side_by_side_at_an_end_give_figures(side, edges):
     [
         ({"actuators": [0.0, 50.0, 500.0, 900.0]}, "overlap"),
         ({"sensors": [0.0, 400.0, 800.0, 1900.0]}, "0.7"),
-        ({"speed": 2000.0}, "critical speed"),
+        ({"speed": 2000.0}, "steady state"),
         ({"taper": 6.0}, "thickness"),
         ({"ply_angle_deg": None}, "ply_angle_deg"),
         ({"load": "twist"}, "load"),
