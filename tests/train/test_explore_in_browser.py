@@ -86,7 +86,7 @@ def test_what_makes_no_blade_is_told_and_leaves_the_sliders_usable(show):
     browser = show()
     browser.execute_script("dash_clientside.set_props('speed', {value: 2000})")  # no slider goes that far
     wait(browser, "return document.getElementById('results').hidden")
-    assert "critical speed" in browser.find_element("id", "message").text
+    assert "steady state" in browser.find_element("id", "message").text
     press(browser, "speed", webdriver.Keys.ARROW_LEFT)
     wait(browser, f"return !document.getElementById('results').hidden && {IDLE}")
     assert browser.find_element("id", "message").text == ""
