@@ -24,15 +24,11 @@ LOCAL_STATIONS = 4
 """Gauss stations on each piece of a patch: its strains hardly change along it."""
 
 
-def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float, z: Array, speed: float = 0.0) -> Array:
-    """Generalised force (S, N) per volt and per metre of a patch at stations z (m) that it covers, on vibration at a speed (rad/s).
+def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float, z: Array) -> Array:
+    """Generalised force (S, N) per volt and per metre of a patch at stations z (m) that it covers, in the thesis' model.
 
-    The piezoelectric stress in the sheet times the strains of the solid section; in the thesis' model the condensed resultants
-    times every strain row of the wall (thesis Eq. 4.18, from the energy).
+    The condensed piezoelectric resultants times every strain row of the wall (thesis Eq. 4.18, from the energy).
     """
-    if beam.model == "blade":
-        sections, work = work_on_section(beam, patch, wall, width)
-        return np.asarray(np.einsum("sg,sgn->sn", sections.at(z, work), beam.exact.section_strains(z, beam.at(speed))))
     walls = beam.walls_at(z, cuts=((wall, width),))
     under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in walls.points.edges]
     covered = np.repeat(under, 2)
@@ -82,7 +78,7 @@ def patch_forces(
         each = np.repeat(np.eye(len(under)), [len(stations.z) for stations in under], axis=0)
         works = (weight[:, None] * sections.at(z, work))[..., None] * each[:, None]
         return beam.exact.generalised_force(z, beam.at(speed), works)
-    per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]), speed)
+    per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]))
     ends = np.cumsum([len(stations.z) for stations in under])
     return np.column_stack([stations.weight @ part for stations, part in zip(under, np.split(per_span, ends[:-1]), strict=True)])
 

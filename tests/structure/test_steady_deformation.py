@@ -60,7 +60,7 @@ def test_a_blade_at_rest_and_the_thesis_model_know_none():
 def test_the_thesis_blade_is_strained_beyond_what_it_is_made_of():
     config = PRESETS["thesis"]
     state = steady_deformation(config.beam.build(config.patches), config.speed)
-    assert state.strain == pytest.approx(0.030, rel=0.08)  # solid elements, of the blade without patches
+    assert state.strain == pytest.approx(0.0279, rel=0.01)  # 0.030 by solid elements, of the blade without patches
     assert state.stretch == pytest.approx(0.0322, abs=3e-4)  # 33 mm by solid elements
     assert 14.0 < state.untwist < 17.0  # solid elements
 

@@ -66,15 +66,7 @@ def frequencies(
         steady = [steady_deformation(beam, each) for each in speeds]
         note = clamp_note(config) if patches else ""
     if as_json:
-        rows = [
-            {
-                "speed": each,
-                "natural_frequencies": modes.natural_frequencies.tolist(),
-                "families": list(modes.families),
-                "static": asdict(state),
-            }
-            for each, modes, state in zip(speeds, found, steady, strict=True)
-        ]
+        rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
         print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
         return
     table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
@@ -89,6 +81,16 @@ def frequencies(
             Console().print(_turning(each, state), soft_wrap=True)
     if note:
         Console().print(note, soft_wrap=True)
+
+
+def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
+    """What JSON says of one speed."""
+    return {
+        "speed": speed,
+        "natural_frequencies": modes.natural_frequencies.tolist(),
+        "families": list(modes.families),
+        "static": asdict(state),
+    }
 
 
 def _turning(speed: float, state: Any) -> str:

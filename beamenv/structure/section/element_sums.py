@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from beamenv.structure.section.elements import (
     ACROSS,
     RIGID,
-    gauss_rule,
     layers,
     lobatto_nodes,
     places,
@@ -20,6 +19,7 @@ from beamenv.structure.section.elements import (
     strain_of_tables,
 )
 from beamenv.structure.section.mesh import Ring
+from beamenv.structure.trial_functions import gauss_rule
 from beamenv.structure.walls.laminate import Laminate, Ply
 
 Array = NDArray[np.float64]

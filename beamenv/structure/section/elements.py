@@ -40,15 +40,6 @@ def lobatto_nodes(order: int) -> Array:
 
 
 @lru_cache
-def gauss_rule(points: int) -> tuple[Array, Array]:
-    """Nodes and weights (points,) of Gauss's rule on −1 … 1."""
-    rule = legendre.leggauss(points)
-    for values in rule:
-        values.setflags(write=False)
-    return rule
-
-
-@lru_cache
 def inverse_vandermonde(order: int) -> tuple[Array, Array]:
     """(order + 1, order + 1): Legendre coefficients of the polynomials that are 1 at one Lobatto node and 0 at the others, and
     those of their slopes.

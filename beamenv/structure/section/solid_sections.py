@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
 from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
-from beamenv.structure.section.elements import ACROSS, RIGID, Places, gauss_rule, places, strain_of_tables, turn_of_strains
+from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.mesh import Ring
+from beamenv.structure.trial_functions import gauss_rule
 from beamenv.structure.walls.laminate import Laminate
 
 Array = NDArray[np.float64]
