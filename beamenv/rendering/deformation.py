@@ -43,14 +43,16 @@ class Deformation:
         return blade.displacement_operator(self._stations)
 
     def _running_operator(self, run_up: RunUp, plant: int) -> Array:
-        """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K. What patches bend beyond the
-        modes is that at the configured speed.
+        """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K.
+
+        The blade has come there with the shapes of the interval before, those of its middle.
         """
-        blade, time = self._task.blade, np.asarray(plant * self._task.config.control_interval)
+        blade, interval = self._task.blade, self._task.config.control_interval
+        time, before = np.asarray(plant * interval), np.asarray(max(plant - 0.5, 0.5) * interval)
         root = np.linalg.cholesky(run_up.stiffness(time))
         operator = blade.displacement_operator(self._stations).copy()
         rows = blade.beam.displacements(self._stations)
         r = len(root)
         lag_flap_twist = np.stack([rows["u"], rows["v"], rows["phi"]])
-        operator[..., :r] = lag_flap_twist @ run_up.shapes(time) @ np.linalg.inv(root).T
+        operator[..., :r] = lag_flap_twist @ run_up.shapes(before) @ np.linalg.inv(root).T
         return operator
