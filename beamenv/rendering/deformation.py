@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from beamenv.blade.build import changed_blade
 from beamenv.simulation.plants.banks import varied
 from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.run_ups import run_up_of
 from beamenv.task import Task
 
 Array = NDArray[np.float64]
@@ -23,7 +24,7 @@ class Deformation:
         self._varied = varied(plants, task.config) if plants.varies else None
         self._run_up: RunUp | None = None
         if plants.spin_up is not None:
-            self._run_up = RunUp.of(task.blade, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
+            self._run_up = run_up_of(task.blade, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
 
     def displacement(self, state: Array, plant: int) -> Array:
         """(3, k): lag, flap (m) and twist (rad) of a state (n,) of the plant at this place of the bank."""

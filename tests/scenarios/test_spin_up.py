@@ -11,7 +11,8 @@ from scipy.interpolate import CubicSpline
 from beamenv import RotatingBeamEnv
 from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.run_up import Cycloid
+from beamenv.simulation.plants.run_ups import run_up_of
 
 CONFIG = blade_config(overrides={"truth_modes": 11})
 """With few modes, which are integrated quickly."""
@@ -26,7 +27,7 @@ QUIET = {
 
 @pytest.fixture(scope="module")
 def run_up():
-    return RunUp.of(Blade(CONFIG), COURSE)
+    return run_up_of(Blade(CONFIG), COURSE)
 
 
 def energy_of(run_up, times, q, rate):
@@ -113,7 +114,7 @@ def test_the_modes_of_200_rad_s_serve_at_other_speeds(model, speed):
     """Beside the whole model the first six frequencies are 0.16 % too high at most with the thesis' eleven modes, all eleven 0.62 %
     (the fifth at 300 rad/s); about steady states, carried by a step of inverse iteration, 1e-5 and 0.25 %."""
     blade = Blade(blade_config(overrides={"model": model}))
-    run_up, beam, time = RunUp.of(blade, COURSE), blade.beam, np.asarray(0.0 if speed == 100.0 else COURSE.duration)
+    run_up, beam, time = run_up_of(blade, COURSE), blade.beam, np.asarray(0.0 if speed == 100.0 else COURSE.duration)
     r = len(run_up.damping)
     stiffness, rate = run_up.stiffness(time), speed * run_up.coupling(time)
     plain = np.sqrt(np.linalg.eigvalsh(stiffness)[:11])

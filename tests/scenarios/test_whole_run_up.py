@@ -6,7 +6,8 @@ from scipy.integrate import solve_ivp
 
 from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.run_up import Cycloid
+from beamenv.simulation.plants.run_ups import run_up_of
 from beamenv.structure.geometrically_exact.inertia import AXIS
 from beamenv.structure.geometrically_exact.kinematics import INCREMENT, MOVE, SPIN, Placement
 
@@ -65,7 +66,7 @@ def integrated(exact, tip):
 @pytest.mark.slow
 def test_the_motion_about_steady_states_is_that_of_the_whole_blade():
     """76 mm in lag within 0.1 %; 8 mm in flap, to which stresses that Euler's force raises contribute, within 3 %."""
-    run_up, tip = RunUp.of(BLADE, COURSE), BLADE.full.tip
+    run_up, tip = run_up_of(BLADE, COURSE), BLADE.full.tip
     times, whole = integrated(BLADE.beam.exact, tip)
     r = len(run_up.damping)
 

@@ -24,7 +24,6 @@ from beamenv.patches import force_per_span
 from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
-from beamenv.structure.model import terms_of
 from beamenv.structure.modes import normal_modes
 
 Array = NDArray[np.float64]
@@ -113,8 +112,8 @@ def of_solid_sections(config: BladeConfig) -> Contributions:
 def of_walls(config: BladeConfig) -> Contributions:
     """In the thesis' model."""
     layout = config.patches
-    span = ChebyshevSpan(OUTERMOST * config.beam.length, 2 * terms_of(config.model, config.beam.terms) + EXTRA_COEFFICIENTS)
     bare = config.beam.build(model=config.model)
+    span = ChebyshevSpan(OUTERMOST * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
     frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / frequencies
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]

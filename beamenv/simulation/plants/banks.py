@@ -12,7 +12,8 @@ from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.run_up import Cycloid
+from beamenv.simulation.plants.run_ups import run_up_of
 from beamenv.simulation.plants.spin_up import spin_up_bank
 from beamenv.simulation.plants.standing import about_moving_equilibrium, about_steady_states
 
@@ -22,7 +23,7 @@ Array = NDArray[np.float64]
 def build_bank(blade: Blade, design: Blade, variation: PlantVariation, steps: int) -> Bank:
     """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals."""
     if variation.spin_up is not None:
-        run_up = RunUp.of(blade, Cycloid(*variation.spin_up, steps * blade.config.control_interval))
+        run_up = run_up_of(blade, Cycloid(*variation.spin_up, steps * blade.config.control_interval))
         return about_moving_equilibrium(spin_up_bank(blade, design, run_up, steps), blade, run_up)
     return drawn_bank(blade, design, variation)
 

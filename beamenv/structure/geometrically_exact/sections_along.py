@@ -19,7 +19,7 @@ from beamenv.structure.walls.laminate import Laminate, Layup
 
 Array = NDArray[np.float64]
 
-SIZES = 7
+SIZES = 9
 """Sizes at which the sections of a tapered blade are worked out; between them its properties, smooth functions of the size, follow
 a polynomial."""
 
