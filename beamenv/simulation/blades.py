@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, draw
 from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
-from beamenv.simulation.memory import Arrangement
+from beamenv.simulation.memory import Arrangement, Instant
 from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment
 from beamenv.simulation.plants.bank import Bank
@@ -39,20 +39,6 @@ def reward_scale(plant: Plant) -> float:
     """
     state = static_deflection(plant, (0.0, REFERENCE_LOAD))
     return float(state @ plant.state_weight @ state) * plant.control_interval
-
-
-class _Instant(NamedTuple):
-    """What the blades are and meet at one instant, and where the product of the instant before goes: views of one memory."""
-
-    joined: Array
-    """(…, s): state, voltages, loads."""
-    state: Array
-    voltages: Array
-    loads: Array
-    energetic: Array
-    """(…, b): the blade's own states."""
-    product: Array
-    """(…, w): begins with the state."""
 
 
 def _alike(values: Array) -> Array:
@@ -105,17 +91,7 @@ class Blades:
         *memories, self._weighted, self._squares = arrays
         self._halves = np.full(b, 0.5)
         """Weights of the squares of the blade's states, which are kept from one instant to the next, in the energy."""
-        self._now, self._then = (
-            _Instant(
-                joined=each[..., :size],
-                state=each[..., :n],
-                voltages=each[..., n : n + m],
-                loads=each[..., n + m : size],
-                energetic=each[..., :b],
-                product=each[..., :width],
-            )
-            for each in memories
-        )
+        self._now, self._then = (Instant.of(each, n, m, b, width) for each in memories)
 
     def __getstate__(self) -> tuple[Any, ...]:
         moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,33 @@ class Arrangement:
         for run in self.runs:
             row_product(run.of(rows), matrix[run.groups, None], run.of(out))
         return out
+
+
+class Instant(NamedTuple):
+    """What the blades are and meet at one instant, and where the product of the instant before goes: views of one memory."""
+
+    joined: Array
+    """(…, s): state, voltages, loads."""
+    state: Array
+    voltages: Array
+    loads: Array
+    energetic: Array
+    """(…, b): the blade's own states."""
+    product: Array
+    """(…, w): begins with the state."""
+
+    @classmethod
+    def of(cls, memory: Array, states: int, voltages: int, own: int, width: int) -> Instant:
+        """Views of a memory (…, at least s and w): of so many states, voltages, states of the blade's own, and columns w."""
+        driven, size = states + voltages, states + voltages + 2
+        return cls(
+            joined=memory[..., :size],
+            state=memory[..., :states],
+            voltages=memory[..., states:driven],
+            loads=memory[..., driven:size],
+            energetic=memory[..., :own],
+            product=memory[..., :width],
+        )
 
 
 def batch_shape(count: int) -> tuple[int, int]:

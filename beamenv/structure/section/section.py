@@ -16,6 +16,7 @@ from beamenv.configuration.kinds import plain
 from beamenv.structure.model import checked_flow
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.section.mesh import ring
+from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.section.solid_sections import SolidSections
 from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
 from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
@@ -61,15 +62,18 @@ class Section(ABC):
     @property
     def placed_vertices(self) -> Array:
         """(K, 2), m: the corners with the mid-line's centroid on the pitch axis, wherever their origin is."""
-        vertices = self.vertices
-        following = np.roll(vertices, -1, axis=0)
-        length = np.hypot(*(following - vertices).T)
-        return vertices - 0.5 * (length @ (vertices + following)) / length.sum()
+        vertices, length = self.vertices, self.edge_lengths
+        return vertices - 0.5 * (length @ (vertices + np.roll(vertices, -1, axis=0))) / length.sum()
 
     @property
     def perimeter(self) -> float:
         """Length (m) of the mid-line."""
-        return float(np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T).sum())
+        return float(self.edge_lengths.sum())
+
+    @property
+    def edge_lengths(self) -> Array:
+        """(K,), m."""
+        return np.asarray(np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T))
 
     @property
     @abstractmethod
@@ -88,8 +92,7 @@ class Section(ABC):
         edges = [k for k, name in enumerate(self.walls) if name == wall]
         if len(edges) != 1:
             raise ValueError(f"wall = {wall!r} must name one straight wall of the section: {', '.join(dict.fromkeys(self.walls))}.")
-        start, end = self.vertices[edges[0]], self.vertices[(edges[0] + 1) % len(self.walls)]
-        return float(np.hypot(*(end - start)))
+        return float(self.edge_lengths[edges[0]])
 
     def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:
         """Classical stiffness (4, 4) for (w', θx', θy', φ'): EA, EI_flap, EI_lag, GJ on the diagonal and the couplings.
@@ -125,40 +128,6 @@ class Section(ABC):
         shears = [GX, GY]
         return full[np.ix_(kept, kept)] - full[np.ix_(kept, shears)] @ np.linalg.solve(
             full[np.ix_(shears, shears)], full[np.ix_(shears, kept)]
-        )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SectionProperties:
-    """What a section is worth to a beam, about the origin of its corners."""
-
-    stiffness: Array
-    """(6, 6) for (γx, γy, w', θx', θy', φ'): rows Vx, Vy, N, Mx, My, Mz; N, N m, N m²."""
-    classical_stiffness: Array
-    """(4, 4) for (w', θx', θy', φ'), the transverse shear condensed out."""
-    tension_centre: Array
-    """(2,), m: an axial force there bends the section in neither direction."""
-    shear_centre: Array
-    """(2,), m: a transverse force there does not twist the section."""
-    mass_per_length: float
-    """kg/m."""
-    mass_centre: Array
-    """(2,), m."""
-    second_moments: Array
-    """(2, 2), kg m: ∫ρ (x, y)ᵀ(x, y) dA."""
-
-    @classmethod
-    def of(cls, solid: SolidSections) -> SectionProperties:
-        """The first of some solid sections."""
-        mass, x, y, xx, xy, yy = solid.inertia[0]
-        return cls(
-            stiffness=solid.stiffness[0],
-            classical_stiffness=solid.classical_stiffness[0],
-            tension_centre=solid.tension_centre[0],
-            shear_centre=solid.shear_centre[0],
-            mass_per_length=float(mass),
-            mass_centre=np.array([x, y]) / mass,
-            second_moments=np.array([[xx, xy], [xy, yy]]),
         )
 
 
@@ -208,7 +177,7 @@ class PolygonSection(Section):
     def __post_init__(self) -> None:
         if len(self.corners) < 3 or len(self.edge_walls) != len(self.corners):
             raise Refused("corners", self.corners, "at least three, with one wall name for each edge")
-        if not (self._area > 0.0 and np.all(self._edge_lengths > 0.0)):
+        if not (self._area > 0.0 and np.all(self.edge_lengths > 0.0)):
             raise Refused("corners", self.corners, "distinct, go round counter-clockwise and enclose an area")
         self.check_thickness()
 
@@ -225,16 +194,12 @@ class PolygonSection(Section):
     @property
     def thickness_limit(self) -> float:
         """4 area/perimeter: the diameter of the inscribed circle where one touches every edge, never less in a convex polygon."""
-        return float(4.0 * self._area / self._edge_lengths.sum())
+        return float(4.0 * self._area / self.perimeter)
 
     @property
     def _area(self) -> float:
         x, y = self.vertices.T
         return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-
-    @property
-    def _edge_lengths(self) -> Array:
-        return np.asarray(np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
