@@ -1,6 +1,6 @@
 """``beamenv.baselines`` and ``beamenv.train``: the other two wings, by names that no script and no other package can take.
 
-A script of a user's own is often called ``train.py``, and a package called ``baselines`` is on the index. Where Python would find
+A script of a user's own is often called train.py, and a package called ``baselines`` is on the index. Where Python would find
 such a one first, modules of the wings are loaded under the long names alone, and import each other by these. Elsewhere the short
 names and the long ones are the same modules.
 """
