@@ -12,8 +12,6 @@ import pytest
 
 import baselines
 import beamenv
-import beamenv.baselines
-import beamenv.train.benchmark
 import train.benchmark
 from beamenv.wings import WINGS
 
@@ -69,6 +67,7 @@ def test_what_is_shown_has_the_long_names():
 
 def test_short_and_long_names_are_one_module():
     import beamenv.baselines.laws.lqg
+    import beamenv.train.benchmark
     import beamenv.train.controllers.shipped as long
     import train.controllers.shipped as short
 
@@ -89,7 +88,7 @@ def test_another_package_of_that_name_is_left_alone(tmp_path):
     (tmp_path / "baselines").mkdir()
     (tmp_path / "baselines" / "__init__.py").write_text("their_own = 1\n")
     (tmp_path / "train.py").write_text("raise SystemExit('a script was run as a module')\n")
-    code = "import beamenv.train.controllers.shipped, beamenv.baselines, baselines; print(baselines.their_own, beamenv.baselines.lqg)"
+    code = "import beamenv.train.page, beamenv.baselines, baselines; print(baselines.their_own, beamenv.baselines.lqg)"
     told = run([sys.executable, "-c", code], tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT}")
     assert told.startswith("1 <function lqg")
 

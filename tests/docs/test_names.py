@@ -14,7 +14,7 @@ PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglo
 FENCE = re.compile(r"^```.*?^```$", flags=re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(rf"(?:{'|'.join(TREES)})/[\w./-]*\w[/\w]*|[\w-]+(?:/[\w.-]+)+\.(?:py|md|toml|yml)")
-DOTTED = re.compile(rf"(?:{'|'.join(WINGS)})(?:\.[A-Za-z_]\w*)+")
+DOTTED = re.compile(rf"(?:{'|'.join(WINGS)})(?:\.(?!py$)[A-Za-z_]\w*)+")
 MODULE = rf"(?:{'|'.join(WINGS)})[\w.]*"
 IMPORT = re.compile(rf"^(?:from ({MODULE}) import (\w+(?:, \w+)*)|import ({MODULE}))$", flags=re.MULTILINE)
 MEMBERS = re.compile(r"^::: (\S+)\n(?: +[^\n]*\n)*? +members: \[([^\]]+)\]", re.MULTILINE)
