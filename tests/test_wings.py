@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 import baselines
-import beamenv
 import train.benchmark
 from beamenv.wings import WINGS
 
