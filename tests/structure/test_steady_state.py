@@ -163,7 +163,7 @@ def test_stiffness_is_the_slope_of_the_force_that_is_left_over():
     def left_over(q):
         """(N,) on the increments of where the blade is."""
         placement = at_stations.Placement.of(at.rows @ q, at.frames)
-        resultants, _ = at._stressed(placement)
+        resultants, _ = at._stressed(placement, at.asked(placement.strain))
         rows = placement.strain_rows @ at.rows
         return np.einsum("s,sin,si->n", at.weight, rows, resultants) - speed**2 * at.force(at.inertia(placement).centrifugal)
 

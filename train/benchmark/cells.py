@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 
 DEPENDS_ON = (
     *CONTROLLERS,
-    __name__,
     "train.benchmark.bench",
+    "train.benchmark.cells",
     "train.controllers.models",
     "train.controllers.sources",
     "train.shared.held_out",

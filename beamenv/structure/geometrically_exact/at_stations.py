@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import solve_triangular
 
 from beamenv.structure.assembly import symmetric
 from beamenv.structure.geometrically_exact.inertia import SpinningSections
@@ -27,6 +27,8 @@ from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clam
 Array = NDArray[np.float64]
 
 BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), slice(RIGID + AMPLITUDES, STRAINS)
+
+FIELD_COUNT = len(FIELDS)
 
 HELD = 1e-10
 """Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
@@ -44,6 +46,8 @@ class BladeAtStations:
     """C₀ (S, 3, 3)."""
     rows: Array
     """(S, 12, N): [u, c, u′, c′] per coefficient."""
+    tables: Array | None
+    """(S, 2, terms): values and slopes that all fields have in ``rows``; None where rotations are no fields of their own."""
     value: Array
     slope: Array
     """(S, terms): trial functions of the shapes' amplitudes, and their derivatives."""
@@ -66,6 +70,7 @@ class BladeAtStations:
             arm=np.column_stack([np.zeros_like(z), np.zeros_like(z), hub_radius + z]),
             frames=sections.planform.frames(z),
             rows=increment_rows(space, z),
+            tables=None if space.rigid else np.stack(field_tables(space, z), axis=1),
             value=value,
             slope=slope,
             energy=sections.at(z, without_shear(solid.energy) if space.rigid else solid.energy),
@@ -85,15 +90,31 @@ class BladeAtStations:
         return np.asarray(self.unloaded.strain_rows @ self.rows)
 
     @cached_property
-    def shape_stiffness(self) -> tuple[Array, bool]:
-        """K_aa, factorised."""
+    def elastic_at_rest(self) -> Array:
+        """∫ of the sections' energy (N, N) of the unloaded blade, with the shapes' amplitudes at their best."""
+        rows = self.unloaded.strain_rows
+        whole = self.form(rows.swapaxes(-1, -2) @ self.energy[:, BEAM, BEAM] @ rows)
+        return symmetric(whole - self._asked_at_rest.T @ self._asked_at_rest)
+
+    @cached_property
+    def following_at_rest(self) -> Array:
+        """(AMPLITUDES × terms, N): amplitudes per coefficient, of the unloaded blade."""
+        return self.amplitudes(self._asked_at_rest)
+
+    @cached_property
+    def _asked_at_rest(self) -> Array:
+        return self.asked(self.strain_rows)
+
+    @cached_property
+    def shape_stiffness(self) -> Array:
+        """L with L Lᵀ = K_aa, lower triangular."""
         terms = self.value.shape[1]
         whole = self._shape_form(self.energy[:, SHAPE, SHAPE], self.value, self.value)
         mixed = self._shape_form(self.energy[:, SHAPE, SHAPE_SLOPE], self.value, self.slope)
         whole = whole + mixed + mixed.T + self._shape_form(self.energy[:, SHAPE_SLOPE, SHAPE_SLOPE], self.slope, self.slope)
         size = AMPLITUDES * terms
         whole[np.arange(size), np.arange(size)] += HELD * np.diagonal(whole).max()
-        return cho_factor(whole, lower=True, check_finite=False)
+        return np.asarray(np.linalg.cholesky(whole))
 
     def _shape_form(self, section: Array, left: Array, right: Array) -> Array:
         """∫ Φᵢ section_jk Φ′_l dz, (AMPLITUDES × terms)²."""
@@ -104,41 +125,39 @@ class BladeAtStations:
 
     @cached_property
     def onto_shapes(self) -> Array:
-        """L (S, 6, AMPLITUDES × terms): what a beam strain at a station asks of the shapes."""
+        """Z (AMPLITUDES × terms, 6S) = L⁻¹ ∫: what beam strains at the stations ask of the shapes, where their stiffness is 1."""
         weighted = self.weight[:, None, None, None]
         onto = self.energy[:, BEAM, SHAPE, None] * self.value[:, None, None, :]
         onto = onto + self.energy[:, BEAM, SHAPE_SLOPE, None] * self.slope[:, None, None, :]
-        return np.asarray((weighted * onto).reshape(len(self.weight), RIGID, -1))
+        asked = (weighted * onto).reshape(RIGID * len(self.weight), -1).T
+        return np.asarray(solve_triangular(self.shape_stiffness, asked, lower=True, check_finite=False))
 
-    def amplitudes(self, strain: Array) -> Array:
-        """(AMPLITUDES × terms, …) for strains (S, 6, …)."""
-        asked = self.onto_shapes.reshape(-1, self.onto_shapes.shape[-1]).T @ strain.reshape(self.weight.size * RIGID, -1)
-        return -cho_solve(self.shape_stiffness, asked, check_finite=False).reshape(-1, *strain.shape[2:])
+    def asked(self, strain: Array) -> Array:
+        """(AMPLITUDES × terms, …): Z e for strains e (S, 6, …); its square is the energy that the shapes save."""
+        return np.asarray(self.onto_shapes @ strain.reshape(len(self.weight) * RIGID, *strain.shape[2:]))
 
-    def resultants(self, strain: Array) -> tuple[Array, Array]:
-        """Stress resultants (S, 6) in the sections' axes for strains (S, 6), and the amplitudes."""
-        amplitudes = self.amplitudes(strain)
+    def amplitudes(self, asked: Array) -> Array:
+        """(AMPLITUDES × terms, …): those of least energy, −L⁻ᵀ Z e."""
+        return np.asarray(-solve_triangular(self.shape_stiffness, asked, lower=True, trans=1, check_finite=False))
+
+    def resultants(self, strain: Array, asked: Array) -> Array:
+        """Stress resultants (S, 6) in the sections' axes for strains (S, 6)."""
         own = (self.energy[:, BEAM, BEAM] @ strain[..., None])[..., 0]
-        return own + self.onto_shapes @ amplitudes / self.weight[:, None], amplitudes
-
-    def elastic(self, strain_rows: Array) -> Array:
-        """∫ of the section's energy (N, N), with the shapes' amplitudes at their best."""
-        beam = self.strain_form(self.energy[:, BEAM, BEAM], strain_rows)
-        flat = strain_rows.reshape(-1, strain_rows.shape[-1])
-        asked = self.onto_shapes.reshape(len(flat), -1).T @ flat
-        return symmetric(beam - asked.T @ cho_solve(self.shape_stiffness, asked, check_finite=False))
-
-    def strain_form(self, section: Array, strain_rows: Array) -> Array:
-        """∫ rowsᵀ section rows dz (N, N) for sections (S, 6, 6)."""
-        weighted = (self.weight[:, None, None] * section) @ strain_rows
-        size = strain_rows.shape[-1]
-        return np.asarray(strain_rows.reshape(-1, size).T @ weighted.reshape(-1, size))
+        return np.asarray(own - (asked @ self.onto_shapes).reshape(own.shape) / self.weight[:, None])
 
     def form(self, of_increments: Array) -> Array:
         """∫ of a form (S, 12, 12) of increments, (N, N)."""
-        weighted = (self.weight[:, None, None] * of_increments) @ self.rows
-        size = self.rows.shape[-1]
-        return np.asarray(self.rows.reshape(-1, size).T @ weighted.reshape(-1, size))
+        weighted = self.weight[:, None, None] * of_increments
+        if self.tables is None:
+            size = self.rows.shape[-1]
+            return np.asarray(self.rows.reshape(-1, size).T @ (weighted @ self.rows).reshape(-1, size))
+        stations, orders, terms = self.tables.shape
+        blocks = weighted.reshape(stations, orders, FIELD_COUNT, orders, FIELD_COUNT, 1)
+        across = self.tables[:, None, None, None]
+        right = blocks[:, :, :, 0] * across[..., 0, :] + blocks[:, :, :, 1] * across[..., 1, :]
+        both = self.tables.reshape(-1, terms).T @ right.reshape(stations * orders, -1)
+        size = FIELD_COUNT * terms
+        return np.asarray(both.reshape(terms, FIELD_COUNT, -1).swapaxes(0, 1).reshape(size, size))
 
     def force(self, on_increments: Array) -> Array:
         """∫ of forces (S, 12), (N,)."""
@@ -159,26 +178,29 @@ class BladeAtStations:
     def newton_step(self, q: Array, speed: float) -> Array:
         """Increment (N,) of displacements and spins towards the steady state from coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
-        resultants, stiffness = self._stressed(placement)
-        strain_rows = placement.strain_rows @ self.rows
+        strain_rows = placement.strain_rows
+        resultants, section = self._stressed(placement, self.asked(placement.strain))
         inertia = self.inertia(placement)
-        pull = strain_rows.reshape(-1, strain_rows.shape[-1]).T @ (self.weight[:, None] * resultants).ravel()
-        tangent = self._tangent(placement, resultants, stiffness, inertia, strain_rows, speed)
-        return np.asarray(np.linalg.solve(tangent, speed**2 * self.force(inertia.centrifugal) - pull))
+        pull = np.einsum("sfi,sf->si", strain_rows, resultants)
+        push = self.force(speed**2 * inertia.centrifugal - pull)
+        asked = self.asked(strain_rows @ self.rows)
+        return np.asarray(np.linalg.solve(self._tangent(placement, resultants, section, inertia, speed, asked), push))
 
-    def _stressed(self, placement: Placement) -> tuple[Array, Array]:
-        """Resultants (S, 6) and what the fibres' quadratic extension adds to the section's stiffness (S, 6, 6)."""
+    def _stressed(self, placement: Placement, asked: Array) -> tuple[Array, Array]:
+        """Resultants (S, 6), and the section's stiffness (S, 6, 6) with what the fibres' quadratic extension adds."""
         strain = placement.strain
         moments = np.einsum("sfi,si->sf", self.stress_moments, strain)
         fibres = FibreExtension.of(strain)
-        resultants = self.resultants(strain)[0] + fibres.resultants(moments, self.stress_moments)
-        return resultants, fibres.stiffness(moments, self.stress_moments)
+        resultants = self.resultants(strain, asked) + fibres.resultants(moments, self.stress_moments)
+        return resultants, self.energy[:, BEAM, BEAM] + fibres.stiffness(moments, self.stress_moments)
 
     def _tangent(
-        self, placement: Placement, resultants: Array, stiffness: Array, inertia: SpinningSections, strain_rows: Array, speed: float
+        self, placement: Placement, resultants: Array, section: Array, inertia: SpinningSections, speed: float, asked: Array
     ) -> Array:
-        whole = self.elastic(strain_rows) + self.strain_form(stiffness, strain_rows)
-        return symmetric(whole + self.form(placement.geometric(resultants) - speed**2 * inertia.centrifugal_softening))
+        """(N, N): ``asked`` is that of the strains per coefficient."""
+        rows = placement.strain_rows
+        local = rows.swapaxes(-1, -2) @ section @ rows + placement.geometric(resultants)
+        return symmetric(self.form(local - speed**2 * inertia.centrifugal_softening) - asked.T @ asked)
 
     def moved(self, q: Array, step: Array) -> Array:
         """Coefficients after an increment of displacements and spins: the rotations are put together and fitted again."""
@@ -201,15 +223,15 @@ class BladeAtStations:
     def about(self, q: Array, speed: float) -> OperatingPoint:
         """M, K and G about the steady state with coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
-        resultants, stiffness = self._stressed(placement)
-        strain_rows = placement.strain_rows @ self.rows
-        inertia, following = self.inertia(placement), self.amplitudes(strain_rows)
+        steadily, asked = self.asked(placement.strain), self.asked(placement.strain_rows @ self.rows)
+        resultants, section = self._stressed(placement, steadily)
+        inertia, following = self.inertia(placement), self.amplitudes(asked)
         return OperatingPoint(
             speed=speed,
             mass=self.mass(inertia, following),
-            stiffness=self._tangent(placement, resultants, stiffness, inertia, strain_rows, speed),
+            stiffness=self._tangent(placement, resultants, section, inertia, speed, asked),
             gyroscopic=speed * self.form(inertia.gyroscopic),
-            steady=SteadyState(q, self.amplitudes(placement.strain)),
+            steady=SteadyState(q, self.amplitudes(steadily)),
             following=following,
         )
 
@@ -220,10 +242,16 @@ def increment_rows(space: TrialSpace, z: Array) -> Array:
         tables = space.evaluate(z)
         return np.stack([tables[name, derivative] for derivative in (0, 1) for name in FIELDS], axis=1)
     rows = np.zeros((len(z), INCREMENT, space.size))
-    for order, table in enumerate(polynomial_table(z / space.length, 1, space.terms, space.length)[:2]):
-        for k in range(len(FIELDS)):
-            rows[:, len(FIELDS) * order + k, space.terms * k : space.terms * (k + 1)] = table
+    for order, table in enumerate(field_tables(space, z)):
+        for k in range(FIELD_COUNT):
+            rows[:, FIELD_COUNT * order + k, space.terms * k : space.terms * (k + 1)] = table
     return rows
+
+
+def field_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
+    """Values and slopes (S, terms) of the trial functions that every field has."""
+    value, slope = polynomial_table(z / space.length, 1, space.terms, space.length)[:2]
+    return value, slope
 
 
 def shape_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:

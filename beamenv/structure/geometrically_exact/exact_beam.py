@@ -118,31 +118,27 @@ class ExactBeam:
         """M, K_e, K_Ω and G₁ with the linear steady state's stresses, K_e alone at rest."""
         at = self.at_stations
         placement = at.unloaded
-        elastic = at.elastic(at.strain_rows)
+        elastic = at.elastic_at_rest
         inertia = at.inertia(placement)
-        push = at.force(inertia.centrifugal)
-        coefficients = np.linalg.solve(elastic, push)
-        resultants, _ = at.resultants(at.strain_rows @ coefficients)
-        moments = np.einsum("sfi,si->sf", at.stress_moments, at.strain_rows @ coefficients)
-        spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening)
-        spin += at.strain_form(under_stress(moments), at.strain_rows)
+        coefficients = np.linalg.solve(elastic, at.force(inertia.centrifugal))
+        strain = at.strain_rows @ coefficients
+        resultants = at.resultants(strain, at.asked(strain))
+        moments = np.einsum("sfi,si->sf", at.stress_moments, strain)
+        stressed = placement.strain_rows.swapaxes(-1, -2) @ under_stress(moments) @ placement.strain_rows
+        spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening + stressed)
         return BeamMatrices(
-            mass=at.mass(inertia, self._following_at_rest),
+            mass=at.mass(inertia, at.following_at_rest),
             elastic_stiffness=elastic,
             spin_stiffness=symmetric(spin),
             gyroscopic=at.form(inertia.gyroscopic),
         )
 
     @cached_property
-    def _following_at_rest(self) -> Array:
-        return self.at_stations.amplitudes(self.at_stations.strain_rows)
-
-    @cached_property
     def linear_steady_state(self) -> SteadyState:
         """Per Ω²."""
         at = self.at_stations
         coefficients = np.linalg.solve(self.matrices.elastic_stiffness, at.force(at.inertia(at.unloaded).centrifugal))
-        return SteadyState(np.asarray(coefficients), at.resultants(at.strain_rows @ coefficients)[1])
+        return SteadyState(np.asarray(coefficients), at.amplitudes(at.asked(at.strain_rows @ coefficients)))
 
     def at(self, speed: float, near: SteadyState | None = None) -> OperatingPoint:
         """The blade at a speed, rad/s; ``near`` is a steady state to start from. ``ValueError`` where there is no stable one."""
@@ -155,7 +151,7 @@ class ExactBeam:
                 matrices.stiffness(speed),
                 speed * matrices.gyroscopic,
                 steady,
-                self._following_at_rest,
+                self.at_stations.following_at_rest,
             )
         return self.at_stations.about(self._steady_state(speed, near), speed)
 
