@@ -26,8 +26,10 @@ from train.cli.place import place
 from train.cli.schema import schema
 from train.cli.speed import speed
 from train.cli.train import train
+from train.cli.usage import OneSentence
 
 app = typer.Typer(
+    cls=OneSentence,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
