@@ -32,6 +32,7 @@ def save_policy(policy: Policy, folder: Path, about: Mapping[str, Any] | None = 
     """
     arrays = io.BytesIO()
     np.savez_compressed(arrays, **cast(dict[str, Any], policy.weights))
+    (folder / "agent.json").unlink(missing_ok=True)  # that of an earlier agent must never stand beside other weights
     write_whole(folder / "weights.npz", arrays.getvalue())
     own = (policy.kind, policy.name, dict(policy.settings), policy.lowest.tolist(), policy.highest.tolist())
     write_json(folder / "agent.json", {**dict(zip(OWN_KEYS, own, strict=True)), **(about or {})})

@@ -5,7 +5,7 @@ sb3-contrib: on a batch of blades, with the same actor, critics on the true stat
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Annotated, Any, ClassVar
 
@@ -23,6 +23,9 @@ from train.controllers.policies import HistoryPolicy, Policy
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
+
+REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+"""Arrays of SB3's replay buffer, a row for each action of every blade."""
 
 _ACTIVATIONS: dict[str, type[nn.Module]] = {"tanh": nn.Tanh, "relu": nn.ReLU}
 
@@ -138,6 +141,23 @@ class OffPolicyTraining(SB3Training):
             self.model.train(self.settings.critic_steps, self.settings.batch)
             self._free(self.updates >= self.settings.critic_first)
             self.model.train(self.settings.gradient_steps, self.settings.batch)
+
+    def state_dict(self) -> dict[str, Any]:
+        """With the actions remembered."""
+        memory = self.model.replay_buffer
+        rows = memory.size()
+        remembered = {name: getattr(memory, name)[:rows].copy() for name in REMEMBERED}
+        return {**super().state_dict(), "memory": {"place": memory.pos, "full": memory.full, **remembered}}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume, remembering what was; a training that is over has no memory left."""
+        super().load_state_dict(state)
+        if "memory" not in state:
+            return
+        memory, before = self.model.replay_buffer, state["memory"]
+        memory.pos, memory.full = int(before["place"]), bool(before["full"])
+        for name in REMEMBERED:
+            getattr(memory, name)[: memory.size()] = np.asarray(before[name])
 
     def policy(self) -> HistoryPolicy:
         """The actor's most likely action as arrays."""

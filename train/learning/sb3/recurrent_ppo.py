@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 from sb3_contrib import RecurrentPPO
@@ -49,6 +50,17 @@ class RecurrentPPOTraining(OnPolicyTraining):
     def _held_back(self) -> list[nn.Parameter]:
         policy = self.model.policy
         return [*policy.lstm_actor.parameters(), *policy.action_net.parameters()]
+
+    def state_dict(self) -> dict[str, Any]:
+        """With what the cells hold of the episodes under way."""
+        return {**super().state_dict(), "cells": [tensor.clone() for part in self.model._last_lstm_states for tensor in part]}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume within the episodes."""
+        super().load_state_dict(state)
+        parts = iter(state["cells"])
+        kind = type(self.model._last_lstm_states)
+        self.model._last_lstm_states = kind(*((next(parts).clone(), next(parts).clone()) for _ in kind._fields))
 
     def policy(self) -> LSTMPolicy:
         """The actor's mean as arrays."""
