@@ -270,7 +270,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """
         if not isinstance(self._generators, np.random.Generator):
             raise gymnasium.error.ResetNeeded("Call reset with one seed, or none, before state_dict.")
-        own = {"elapsed": self._elapsed.copy(), "over": np.array(self._over), "generator": self._generators.bit_generator.state}
+        own = {"elapsed": self._elapsed.copy(), "over": self._over.copy(), "generator": self._generators.bit_generator.state}
         return {"blades": self._blades.state_dict(), **own}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
@@ -278,7 +278,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if not isinstance(self._generators, np.random.Generator):
             raise gymnasium.error.ResetNeeded("Call reset with one seed, or none, before load_state_dict.")
         self._blades.load_state_dict(state["blades"])
-        self._elapsed[:], self._over = np.asarray(state["elapsed"]), np.array(state["over"])
+        self._elapsed[:], self._over = np.asarray(state["elapsed"]), np.asarray(state["over"]).copy()
         self._generators.bit_generator.state = state["generator"]
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:

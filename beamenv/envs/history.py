@@ -63,7 +63,7 @@ class RollingHistory:
     def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
         """Go back to a ``state_dict`` of an equally made history."""
         self._end = self.length
-        self._buffer[:, : self.length] = np.reshape(state["window"], (-1, self.length, self.width))
+        self._buffer[:, : self.length] = np.asarray(state["window"]).reshape((-1, self.length, self.width))
 
 
 class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
@@ -141,7 +141,7 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of an equally made wrapper."""
         self._history.load_state_dict(state)
-        self._over = np.array(state["over"], dtype=np.bool_)
+        self._over = np.asarray(state["over"]).copy()
 
     def _finish(self, readings: Array, info: dict[str, Any]) -> None:
         """Put the whole histories of finished episodes into ``info``, and begin those of the next ones."""

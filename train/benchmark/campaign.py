@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import check_folder
 from train.shared.held_out import SEEDS, held_out
+from train.shared.lock import alone_in
 from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
@@ -61,8 +63,8 @@ def benchmark(
     - ``progress``: called with cells done, their number, and the cell.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
-    A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
-    no scenario is left.
+    A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, a
+    folder in which nothing can be written or another process is at work, or when no scenario is left.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
     arguments = environment_json({} if environment is None else environment)
@@ -82,10 +84,11 @@ def benchmark(
         for each in listed
         for name, source in each.runs(setting.name).items()
     ]
-    cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
-    table = tabulate(cells, listed, refused, configuration(settings, listed))
-    if folder is not None:
-        write_all(folder, table)
+    with alone_in(folder) if folder is not None else nullcontext():
+        cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
+        table = tabulate(cells, listed, refused, configuration(settings, listed))
+        if folder is not None:
+            write_all(folder, table)
     return table
 
 

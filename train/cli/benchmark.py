@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from train.cli.options import JsonOption, one_sentence, print_json
+from train.cli.options import RESUMES, JsonOption, one_sentence, print_json
+from train.shared.files import check_folder
 
 if TYPE_CHECKING:
     from train.benchmark.table import BenchmarkTable, Row
@@ -39,7 +40,9 @@ def benchmark(
     An interrupted run resumes from what its folder holds. What cannot be measured is reported in one sentence each, the rest is
     measured, and the status is then 1.
     """
-    with one_sentence():
+    with one_sentence(RESUMES):
+        if docs is not None:
+            check_folder(docs, "docs")
         from train.benchmark.campaign import benchmark as run
         from train.benchmark.showing.report import as_json as content
 
@@ -69,7 +72,7 @@ def benchmark(
 
 
 class _Bar:
-    """Cells done, on standard error; Ctrl-C says that nothing is lost."""
+    """Cells done, on standard error."""
 
     def __init__(self) -> None:
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -84,9 +87,6 @@ class _Bar:
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._bars.stop()
-        if kind is not None and issubclass(kind, KeyboardInterrupt):
-            self._bars.console.print("interrupted: what was finished is kept, and the same command resumes.")
-            raise typer.Exit(130)
 
     def show(self, done: int, total: int, cell: object) -> None:
         name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from sb3_contrib import RecurrentPPO
 from torch import nn
 
-from beamenv.configuration import Real, Whole, configuration
+from beamenv.configuration import Positive, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import Policy
+from train.learning.ranges import BLADES, INSTANTS, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricRecurrentPolicy
 from train.learning.sb3.ppo import OnPolicyTraining, PPOSettings
 
@@ -23,17 +24,17 @@ from train.learning.sb3.ppo import OnPolicyTraining, PPOSettings
 class RecurrentPPOSettings(PPOSettings):
     """One experiment: PPO's settings with other values to begin with."""
 
-    blades: Whole = 256
+    blades: Annotated[int, BLADES] = 256
     """Environments stepped together."""
-    history: Whole = 4
+    history: Annotated[int, INSTANTS] = 4
     """Instants the cells read at a time: all since the last action."""
-    rollout: Whole = 32
+    rollout: Annotated[int, INSTANTS] = 32
     """Actions of every blade between updates, and back-propagated through: 64 ms."""
-    batch: Whole = 4096
+    batch: Annotated[int, SAMPLES] = 4096
     """Samples in a gradient step."""
-    units: Whole = 48
+    units: Annotated[int, UNITS] = 48
     """Cells of the LSTM, and units of the critic's two tanh layers."""
-    input_gain: Real = 4.0
+    input_gain: Positive = 4.0
     """Readings are a few per cent of full scale most of the time."""
 
 

@@ -10,6 +10,7 @@ import torch
 from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
+from beamenv.configuration import Refused
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
@@ -28,6 +29,8 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held")}
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
+    if settings.held > min(task.steps for task in tasks):
+        raise Refused("settings.held", settings.held, f"at most the {min(task.steps for task in tasks)} intervals of an episode")
     batches = []
     for index, task in enumerate(map(on_training_bank, tasks)):
         count = blades // len(tasks) + (index < blades % len(tasks))
@@ -142,8 +145,8 @@ class SB3Training:
         self.steps, self.updates, self.cost = counters["steps"], counters["updates"], counters["cost"]
         self.model.num_timesteps = counters["timesteps"]
         self.envs.load_state_dict(state["episodes"])
-        self.model._last_obs = np.array(state["shown"]["observations"])
-        self.model._last_episode_starts = np.array(state["shown"]["starts"])
+        self.model._last_obs = np.asarray(state["shown"]["observations"]).copy()
+        self.model._last_episode_starts = np.asarray(state["shown"]["starts"]).copy()
         torch.set_rng_state(state["torch"])
         kind, keys, position, has_gauss, cached = state["numpy"]
         np.random.set_state((kind, np.asarray(keys).astype(np.uint32), position, has_gauss, cached))  # noqa: NPY002

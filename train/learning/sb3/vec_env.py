@@ -100,7 +100,7 @@ class TrainingVecEnv(BladeVecEnv):
         self.reset()
         self.blades.load_state_dict(state["blades"])
         self.envs.load_state_dict(state["history"])
-        self._states, self._energy = np.array(state["states"]), np.array(state["energy"])
+        self._states, self._energy = (np.asarray(state[name]).copy() for name in ("states", "energy"))
         self.last_cost = state["last_cost"]
 
     def _with_state(self, windows: Array) -> Array:
