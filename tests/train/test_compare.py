@@ -10,7 +10,8 @@ import pytest
 import beamenv
 import train.comparison.compare
 import train.learning.job
-from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve
+from beamenv.task import resolve_task
+from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve, trained
 from train.comparison.page import shown_pair
 from train.controllers.named import named
 from train.controllers.policy_files import load_policy
@@ -147,22 +148,25 @@ def test_ctrl_c_ends_a_comparison_at_once_and_keeps_no_half_trained_agent(tmp_pa
             compare(comparison, tmp_path, hasty)
         assert hasty.evaluated_names == []
         assert {path.name for path in (tmp_path / "agents" / "gradient").iterdir()} == {CHECKPOINT, "tensorboard"}
-        compare(comparison, tmp_path, patient)
+        trained(comparison, "gradient", tmp_path, resolve_task(duration=0.05).design_plant, patient)
     seconds = [[progress.elapsed for _, progress in notes.trained] for notes in (hasty, patient)]
     assert seconds[0] == pytest.approx([0.2, 0.4, 0.6])
     assert seconds[1][0] == pytest.approx(0.8) and seconds[1][-1] >= 2.0
     assert json.loads((tmp_path / "agents" / "gradient" / "agent.json").read_text())["finished"] is True
-    assert len(patient.evaluated_names) == len(CLASSICAL) + 1
 
 
 def test_an_agent_that_says_it_is_unfinished_is_trained_on(tmp_path, ticking):
     comparison, notes = Comparison({"duration": 0.05}, {"gradient": 2.0}, seeds=2), Notes()
-    with ticking(0.2):
-        compare(comparison, tmp_path)
-        path = tmp_path / "agents" / "gradient" / "agent.json"
-        path.write_text(json.dumps(json.loads(path.read_text()) | {"finished": False}))
-        compare(comparison, tmp_path, notes)
-    assert json.loads(path.read_text())["finished"] is True
+    plant = resolve_task(duration=0.05).design_plant
+    path = tmp_path / "agents" / "gradient" / "agent.json"
+    with ticking(0.5):
+        trained(comparison, "gradient", tmp_path, plant, notes)
+        whole, count = path.read_bytes(), len(notes.trained)
+        trained(comparison, "gradient", tmp_path, plant, notes)
+        assert (path.read_bytes(), len(notes.trained)) == (whole, count)
+        path.write_text(json.dumps(json.loads(whole) | {"finished": False}))
+        trained(comparison, "gradient", tmp_path, plant, notes)
+    assert path.read_bytes() == whole
 
 
 @pytest.mark.parametrize("content", ["", "{", "[1]", "\0"])
