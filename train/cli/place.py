@@ -58,7 +58,7 @@ def place(
             from train.placement.picture import draw_placement
 
             draw_placement(sides, drawn)
-            Console(stderr=as_json).print(f"picture in {drawn}", soft_wrap=True)
+            Console(stderr=as_json).print(f"picture in {drawn}", soft_wrap=True, markup=False)
 
 
 @contextmanager
