@@ -65,8 +65,8 @@ class Runs:
         """Mean and spread of the relative cost."""
         value, spread = self.estimates()["relative_cost"].value, self.spread()["relative_cost"]
         return (
-            f"J / J without control over {len(self.evaluations)} runs: mean {value:.3f}, standard deviation {spread.deviation:.3f}, "
-            f"{spread.least:.3f} to {spread.greatest:.3f}"
+            f"J / J without control over {len(self.evaluations)} runs: mean {value:.3f}, standard deviation "
+            f"{spread.deviation:.3f}, {spread.least:.3f} to {spread.greatest:.3f}"
         )
 
     def to_dict(self) -> dict[str, Any]:
