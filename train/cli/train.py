@@ -24,7 +24,10 @@ def train(
         Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
     ] = None,
     recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
-    start: Annotated[Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune.")] = None,
+    start: Annotated[
+        Path | None,
+        typer.Option("--from", help="Folder of a trained policy to clone first, then to tune; its best run of several."),
+    ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments, to the same result.")
     ] = False,
