@@ -18,7 +18,7 @@ from baselines import (
     stationary_cost,
     velocity_feedback,
 )
-from baselines.analysis.stationary import closed_loop
+from baselines.design.loop import closed_loop
 from baselines.design.rate_penalty import with_rate_penalty
 from baselines.laws.lqg import sampled_with_loads
 from baselines.laws.reduction import reduced, truncations
