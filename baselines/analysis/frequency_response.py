@@ -16,7 +16,7 @@ from beamenv.plant.plant import Plant, SampledPlant
 
 Complex = NDArray[np.complex128]
 
-_LARGE = 100
+_LARGE = 40
 """States from which on triangular form pays."""
 
 _AT_ONCE = 512
@@ -40,10 +40,12 @@ def frequency_response(A: Array, B: Array, C: Array, D: Array, angles: ArrayLike
 
 def _substituted(T: Complex, inputs: Complex, z: Complex) -> Complex:
     """(zI − T)⁻¹ inputs (k, n, m) for an upper triangular T (n, n), from the last row upwards."""
-    found = np.empty((len(z), *inputs.shape), dtype=complex)
-    for row in reversed(range(len(T))):
-        found[:, row] = (inputs[row] + T[row, row + 1 :] @ found[:, row + 1 :]) / (z - T[row, row])[:, None]
-    return found
+    (n, m), k = inputs.shape, len(z)
+    found = np.empty((n, k * m), dtype=complex)
+    for row in reversed(range(n)):
+        known = T[row, row + 1 :] @ found[row + 1 :]
+        found[row] = ((inputs[row] + known.reshape(k, m)) / (z - T[row, row])[:, None]).ravel()
+    return np.asarray(found.reshape(n, k, m).transpose(1, 0, 2))
 
 
 def resonant_angles(*systems: Array) -> Array:
@@ -82,7 +84,9 @@ def h_infinity_norm(plant: Plant | SampledPlant, controller: LinearController) -
         return float("inf")
 
     def gain(angles: Array) -> Array:
-        return np.asarray(np.linalg.norm(frequency_response(*system, angles), ord=2, axis=(1, 2)))
+        response = frequency_response(*system, angles)
+        squared = np.linalg.eigvalsh(np.conj(response.transpose(0, 2, 1)) @ response)  # of few inputs, and of many outputs
+        return np.asarray(np.sqrt(np.maximum(squared[:, -1], 0.0)))
 
     return highest(gain, resonant_angles(system[0]))[0]
 

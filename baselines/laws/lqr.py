@@ -31,8 +31,8 @@ def lqr(
     An upper bound on performance: it ``observes`` the true state (n,), which ``evaluate`` hands it. With white loads and no
     saturation nothing that holds its voltages over the control interval costs less. Under a load that lasts it is none: it takes
     the static deflection for motion. ``persistent_load`` makes it one again: the load of each past interval is worked out exactly
-    from two true states, filtered (it is the lasting load and the white one together; without white loads it is known as it is), and
-    answered. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``; in them it is the optimum then. ``verified`` on
+    from two true states, filtered (it is the lasting load and the white one together; without white loads it is known as it is),
+    and answered. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``; in them it is the optimum then. ``verified`` on
     ``plant`` unless ``verify=False``; raises ValueError as ``lqg`` does.
     """
     held, load = sample(weighted(plant, Q, R)), checked_persistent_load(persistent_load)

@@ -70,8 +70,8 @@ def rotor_lqg(
     The loads are part of the state, for filter and regulator alike, so that the compensator holds a model of each harmonic and
     answers it (the internal model principle: Francis and Wonham, Automatica 12, 1976; for helicopter rotors Shaw and Albion, J. Am.
     Helicopter Soc. 26, 1981). ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. ``verified`` on
-    ``plant`` unless ``verify=False``. Raises ValueError for a harmonic beyond half the sampling rate, for loads that are none, and as
-    ``lqg`` does.
+    ``plant`` unless ``verify=False``. Raises ValueError for a harmonic beyond half the sampling rate, for loads that are none, and
+    as ``lqg`` does.
     """
     harmonics = instance("harmonics", harmonics, RotorHarmonics, "a RotorHarmonics, such as RotorHarmonics(speed)")
     turbulence = optional_instance("turbulence", turbulence, PersistentLoad, "a PersistentLoad, such as PersistentLoad()")

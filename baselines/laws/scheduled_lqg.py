@@ -117,8 +117,8 @@ def scheduled_lqg_for(
 
     ``full`` designs it on all that is known of the blade, as ``speed_family`` has it, in place of the design plant.
 
-    Raises ValueError for speeds that ``speed_family`` refuses, for a blade that does not turn and has none to be scheduled with, and
-    as ``scheduled_lqg`` does.
+    Raises ValueError for speeds that ``speed_family`` refuses, for a blade that does not turn and has none to be scheduled with,
+    and as ``scheduled_lqg`` does.
     """
     config = instance("config", config, BladeConfig, 'a BladeConfig, such as blade_config("thesis")')
     checked_persistent_load(persistent_load)

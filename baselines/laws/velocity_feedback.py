@@ -28,9 +28,9 @@ def velocity_feedback(
     white loads and sensor noise of the plant, or of ``tuned_on``, such as ``Design.full_plant``, among those that keep that sampled
     loop stable. The thesis' sensors lie across the section from their actuators and so feel bending alike but extension with the
     opposite sign: with one gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between
-    them. ``verified`` on the plant, or on ``tuned_on``, unless ``verify=False``. Raises ValueError when sensors and actuators cannot
-    be paired, for a plant with filters between blade and readings, which hide what a pair feels, for a gain of another shape, and
-    where the loop is unstable, be it with the gain given or with any.
+    them. ``verified`` on the plant, or on ``tuned_on``, unless ``verify=False``. Raises ValueError when sensors and actuators
+    cannot be paired, for a plant with filters between blade and readings, which hide what a pair feels, for a gain of another
+    shape, and where the loop is unstable, be it with the gain given or with any.
     """
     pairs = pairing(checked_plant(plant), "velocity feedback")
     meant_for = optional_instance("tuned_on", tuned_on, Plant, "a beamenv.Plant, such as design.full_plant") or plant
@@ -38,10 +38,8 @@ def velocity_feedback(
     if not felt.any():
         raise ValueError("plant hides what a pair feels behind filters: allowed is the design plant, with tuned_on= for this one")
     pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
-    if gain is None:
-        gains = _least_cost_gains(plant, meant_for, pairs)
-    else:
-        gains = one_or_each("gain", gain, len(pairs), "actuator")
+    given = None if gain is None else one_or_each("gain", gain, len(pairs), "actuator")
+    gains = _least_cost_gains(plant, meant_for, pairs) if given is None else given
     return verified(_law(plant, "velocity feedback", pairs, gains), meant_for, instead="a smaller gain", verify=verify)
 
 

@@ -148,7 +148,8 @@ def test_the_solver_is_left_alone_while_the_plan_keeps_within_the_limits(small_p
 def test_where_the_solver_gives_up_the_voltage_is_lqgs_clipped_and_counted(small_plant):
     plant = small_plant()
     law, (_, (_, K), _) = mpc(plant), sampled_design(plant)
-    law.program._model.settings = {**law.program._model.settings, "iter_limit": 1}
+    model, _ = law.program._solver()
+    model.settings = {**model.settings, "iter_limit": 1}
     state = states(10, 6, size=0.5)
     np.testing.assert_allclose(decide(law, state), np.clip(-state @ K.T, -500.0, 1500.0), rtol=1e-9)
     assert law.solver_failures == 10
