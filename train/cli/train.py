@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from beamenv.configuration import FileName, checked
 from train.cli.options import BladeOption, PresetOption, SpeedOption, environment_arguments, one_sentence
 from train.learning.recipes import NAMES
 
@@ -23,7 +24,10 @@ def train(
         Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
     ] = None,
     recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
-    start: Annotated[Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune.")] = None,
+    start: Annotated[
+        Path | None,
+        typer.Option("--from", help="Folder of a trained policy to clone first, then to tune; its best run of several."),
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments.")] = False,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
@@ -39,6 +43,7 @@ def train(
         from train.learning.recipe import load_recipe, named_recipe
         from train.learning.session import Budget
 
+        checked("agent", agent, FileName())
         chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
         if minutes is not None and updates is not None:
             raise ValueError("minutes and updates must not both be given.")
@@ -52,4 +57,4 @@ def train(
         total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")
         with Progressbar({agent: total}, unit) as bar:
             places = run(job, home, lambda progress: bar.training(agent, total, progress), resume)
-    Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True)
+    Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)

@@ -15,6 +15,7 @@ from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
+from train.controllers.runs import best_run
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
@@ -46,7 +47,7 @@ class Job:
     environment: Mapping[str, Any]
     """Keyword arguments of the environment but the scenario, as JSON can hold them."""
     teacher: Path | None = None
-    """Folder of a trained policy to start from."""
+    """Folder of a trained policy to start from; of several runs in it, the one that ended its training at the least cost."""
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario."""
@@ -69,7 +70,7 @@ class Job:
 
 
 def _weights(teacher: Path) -> Path:
-    weights = teacher / "weights.npz"
+    weights = best_run(teacher) / "weights.npz"
     if not weights.is_file():
         raise ValueError(f"teacher = {str(teacher)!r} must be the folder of a trained agent, but has no weights.npz.")
     return weights
@@ -103,9 +104,10 @@ def run(job: Job, folder: Path, report: Report, resume: bool = False) -> list[Pa
 
 
 def teacher_for(folder: Path | None, tasks: Mapping[str, Task]) -> Policy | None:
-    """The policy in a folder, if one is named; ``ValueError`` if it does not know the plants of all tasks."""
+    """The policy in a folder, if one is named, or its best run; ``ValueError`` if it does not know the plants of all tasks."""
     if folder is None:
         return None
+    folder = best_run(folder)
     policies = [load_policy(folder, task.design_plant) for task in tasks.values()]
     return policies[0] if len(policies) == 1 else load_policy(folder)
 
