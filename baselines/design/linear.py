@@ -13,6 +13,7 @@ from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.law import Law
 from baselines.design.matrix import real_matrix
 from baselines.design.verification import verified
+from beamenv.configuration import Text, checked
 from beamenv.plant.plant import Plant
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ class LinearController(Law):
     def __post_init__(self) -> None:
         """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]; ``ValueError`` for matrices that do not fit."""
         checked_instruments(self.instruments)
+        checked("name", self.name, Text())
         s, p, m = _rows(self.transition), len(self.instruments.measurement_scale), len(self.instruments.voltage_scale)
         for name, shape in zip(MATRICES, ((s, s), (s, p), (s, m), (m, s), (m, p)), strict=True):
             matrix = real_matrix(name, getattr(self, name), shape)
@@ -89,7 +91,7 @@ class LinearController(Law):
         continuous time, for one sampled otherwise than the plant, and for one that is unstable on it.
         """
         if (plant is None) == (instruments is None):
-            raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given")
+            raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given.")
         behind = Instruments.of(plant) if instruments is None else checked_instruments(instruments)  # type: ignore[arg-type]
         matrices = _matrices(A, behind) if B is None and C is None and D is None else (A, B, C, D)
         s, p, m = _rows(matrices[0]), len(behind.measurement_scale), len(behind.voltage_scale)
@@ -148,7 +150,7 @@ def linear(controller: object) -> LinearController:
         return controller
     raise ValueError(
         f"controller = {name_of(controller)} ({type(controller).__name__}) is not linear, so its loop has no poles, margins, "
-        "frequency response or stationary cost: allowed is a LinearController"
+        "frequency response or stationary cost: allowed is a LinearController."
     )
 
 
@@ -161,7 +163,7 @@ def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any
     """Of a system of python-control, or one like it."""
     if not hasattr(system, "dt"):
         raise ValueError(
-            f"A alone is of type {type(system).__name__}, but must be a discrete-time control.StateSpace, or have B, C, D"
+            f"A alone is of type {type(system).__name__}, but must be a discrete-time control.StateSpace, or have B, C, D."
         )
     if not hasattr(system, "A"):
         import control
@@ -173,6 +175,6 @@ def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any
     if system.dt is not True and not (system.dt and np.isclose(system.dt, instruments.interval, rtol=1e-6)):
         raise ValueError(
             f"A is a system with dt = {system.dt!r}, but must be in discrete time and sampled as the plant is, "
-            f"every {instruments.interval:g} s"
+            f"every {instruments.interval:g} s."
         )
     return system.A, system.B, system.C, system.D

@@ -176,8 +176,9 @@ def sampled_kalman_filter(A: Array, C: Array, process_noise: Array, sensor_noise
 
 def _solved(equation: SampledEquation) -> tuple[Array, float]:
     try:
-        P: Array | None = solve_discrete_are(equation.A, equation.B, equation.Q, equation.R, s=equation.N)
-    except LinAlgError:
+        with np.errstate(all="ignore"):  # the residual says what came of it
+            P: Array | None = solve_discrete_are(equation.A, equation.B, equation.Q, equation.R, s=equation.N)
+    except (LinAlgError, ValueError):
         P = None
     if P is not None and (residual := relative_residual(equation, P)) <= RESIDUAL:
         return P, residual

@@ -75,7 +75,7 @@ class Bounds:
 
     def checked(self, positions: ArrayLike) -> Array:
         """Positions (count,) in ascending order; ``ValueError`` unless they are finite, within the bounds and apart."""
-        given = np.asarray(positions, dtype=float)
+        given = np.array(checked(self.name, positions, Numbers(Number(unit="m"))))
         if given.shape != (self.count,) or not np.all(np.isfinite(given)):
             raise Refused(self.name, given.tolist(), f"{self.count} finite positions (m)")
         ordered = np.sort(given)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from typer.core import TyperGroup
@@ -11,12 +12,13 @@ from typer.core import TyperGroup
 class OneSentence(TyperGroup):
     """The commands, of which a wrong use is told as any other bad input is."""
 
-    def main(self, *args: Any, standalone_mode: bool = True, **extra: Any) -> Any:
+    def main(self, args: Sequence[str] | None = None, *others: Any, standalone_mode: bool = True, **extra: Any) -> Any:
         """Run a command and end with its status."""
+        run: Callable[..., Any] = super().main
         if not standalone_mode:
-            return super().main(*args, standalone_mode=False, **extra)
+            return run(args, *others, standalone_mode=False, **extra)
         try:
-            status = super().main(*args, standalone_mode=False, **extra)
+            status = run(args, *others, standalone_mode=False, **extra)
         except Exception as error:  # Typer's own, whose classes have moved from one of its releases to the next
             if not hasattr(error, "format_message"):
                 raise

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from baselines.design.objects import instance
 from baselines.placement.cost.problem import PlacementProblem
 from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Number, Numbers, checked
 
 Array = NDArray[np.float64]
 
@@ -21,7 +23,9 @@ def reach(problem: PlacementProblem, positions: ArrayLike) -> Array:
     By Popov, Belevitch and Hautus: |vᴴB| of each unit left eigenvector v of A, the columns of B each of unit length (sensors: Cᵀ
     and Aᵀ), over both eigenvectors of a mode.
     """
-    blade = problem.reduced(np.asarray(positions, dtype=float)[None])
+    instance("problem", problem, PlacementProblem, "a PlacementProblem, such as PlacementProblem.of gives")
+    given = checked("positions", positions, Numbers(Number(unit="m"), least=problem.bounds.count, most=problem.bounds.count))
+    blade = problem.reduced(np.array(given)[None])
     A = blade.dynamics[0]
     if problem.side == "actuators":
         through, matrix = blade.input[0], A.T

@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from baselines.design.objects import instance
 from baselines.placement.cost.riccati import solve_riccati
 from baselines.placement.model.contributions import Contributions, contributions
 from baselines.placement.model.equations import (
@@ -27,6 +28,7 @@ from beamenv.blade.bounds import Bounds
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
+from beamenv.configuration import Choice, checked
 from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
@@ -61,8 +63,8 @@ class PlacementProblem:
 
         Raises ``ValueError`` for an unknown side, bounds without room, more patches than fit, or sensors without noise.
         """
-        if side not in SIDES:
-            raise ValueError(f"side = {side!r} must be one of {', '.join(SIDES)}.")
+        instance("config", config, BladeConfig, "a BladeConfig")
+        side = checked("side", side, Choice(SIDES))
         if side == "sensors":
             check_noise(config)
         own = getattr(config.patches, side)
