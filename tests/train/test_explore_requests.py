@@ -165,32 +165,31 @@ json_values = st.recursive(
 
 
 def check_payload(client, asked, key, value, control):
-    bodies = [asked | {key: value}, with_values(asked, **{control: value})]
-    for body in bodies:
-        answer = client.post(CALLBACK, data=json.dumps(body), content_type="application/json")
-        if answer.status_code not in (200, 204):
-            check_refused(answer, [400])
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(page, "drawn", nothing)
+        for body in (asked | {key: value}, with_values(asked, **{control: value})):
+            answer = client.post(CALLBACK, data=json.dumps(body), content_type="application/json")
+            if answer.status_code not in (200, 204):
+                check_refused(answer, [400])
 
 
 @given(st.sampled_from(["output", "inputs", "outputs"]), json_values, st.sampled_from([*RANGES, "load"]))
 @example("inputs", [{"id": "wanted", "property": "data", "value": None}], "load")
 @settings(max_examples=25, deadline=None, derandomize=True)
 def test_no_payload_is_an_error_of_the_server(client, asked, key, value, control):
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(page, "drawn", nothing)
-        check_payload(client, asked, key, value, control)
+    check_payload(client, asked, key, value, control)
 
 
 @pytest.mark.slow
 @given(st.sampled_from(["output", "inputs", "outputs"]), json_values, st.sampled_from([*RANGES, "load"]))
-@settings(max_examples=400, deadline=None, derandomize=True)
+@settings(max_examples=200, deadline=None, derandomize=True)
 def test_no_payload_of_many_is_an_error_of_the_server(client, asked, key, value, control):
     check_payload(client, asked, key, value, control)
 
 
 @pytest.mark.slow
 @given(st.data())
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=20, deadline=None, derandomize=True)
 def test_whatever_the_sliders_say_is_answered(client, asked, data):
     values = {}
     for name, entry in RANGES.items():
