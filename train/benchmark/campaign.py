@@ -17,7 +17,8 @@ from beamenv.blade.presets import blade_config
 from beamenv.configuration import Count, Flag, Table, Text, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.scenario import Scenario, scenario
-from train.benchmark.cells import Cell, Job, Setting, read_cell, write_cell
+from train.benchmark.bench import Setting
+from train.benchmark.cells import Cell, Job, read_cell, write_cell
 from train.benchmark.listed import ListedController, listed_controllers
 from train.benchmark.runner import run
 from train.benchmark.showing.report import write_files

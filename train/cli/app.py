@@ -133,7 +133,7 @@ def evaluate(
         from train.shared.held_out import held_out
 
         arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
-        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
+        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
         law = chosen(controller, envs.unwrapped.task, scenario, trained_seed)
         evaluation = baselines.evaluate(law, envs, held_out(seeds))
     if as_json:

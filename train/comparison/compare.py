@@ -80,7 +80,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     from train.comparison.page import write_comparison_page  # plotly takes a while, and others want this module's names alone
 
     listener = listener or Listener()
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
+    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **{"dtype": "float64", **comparison.environment})
     try:
         plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)

@@ -18,6 +18,16 @@ def check_folder(folder: Path) -> None:
         raise ValueError(f"folder = {str(folder)!r} must be a folder, or not be there yet, but is a file.")
 
 
+def read_json(path: Path) -> Any:
+    """What a JSON file holds; ``ValueError`` names one that cannot be read, or is damaged."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error}.") from None
+
+
 def write_json(path: Path, content: Any) -> None:
     """Indented JSON; what is not a number must have been made None before."""
     write_whole(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
