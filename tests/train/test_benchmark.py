@@ -135,15 +135,6 @@ def test_an_interrupted_run_goes_on_from_its_whole_cells(tmp_path):
     assert again.cells == []
 
 
-@pytest.mark.parametrize("change", [{"seeds": 4}, {"environment": {"duration": 0.03}}])
-def test_cells_of_other_episodes_are_not_taken_over(change, tmp_path):
-    one = {**SMALL, "scenarios": ["nominal"]}
-    benchmark(folder=tmp_path, **one)
-    notes = Notes()
-    benchmark(folder=tmp_path, progress=notes, **{**one, **change})
-    assert len(notes.cells) == 3
-
-
 def test_cells_that_failed_and_objects_are_measured_again(tmp_path):
     one = {**SMALL, "scenarios": ["nominal"]}
     benchmark({"mine": Broken()}, folder=tmp_path, **one)
