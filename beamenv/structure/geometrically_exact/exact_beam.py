@@ -122,8 +122,8 @@ class ExactBeam:
         inertia = at.inertia(placement)
         coefficients = np.linalg.solve(elastic, at.force(inertia.centrifugal))
         strain = at.strain_rows @ coefficients
-        resultants = at.resultants(strain, at.asked(strain))
-        moments = np.einsum("sfi,si->sf", at.stress_moments, strain)
+        asked = at.asked(strain)
+        resultants, moments = at.resultants(strain, asked), at.moments(strain, asked)
         stressed = placement.strain_rows.swapaxes(-1, -2) @ under_stress(moments) @ placement.strain_rows
         spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening + stressed)
         return BeamMatrices(
