@@ -153,7 +153,7 @@ def test_the_spanwise_stress_of_every_section_carries_its_tension(angle):
 
 
 def test_a_blade_that_untwists_by_twenty_degrees_has_a_steady_state():
-    """Walls of 75° all round at 250 rad/s: with a stress of Saint-Venant's shapes alone, which does not carry the tension, it has none."""
+    """Walls of 75° all round at 250 rad/s; under a stress that does not carry the tension it would have none."""
     blade = replace(BLADE, layup=Layup.uniform(GRAPHITE_EPOXY, [75] * 6), pretwist_deg=0.0)
     state = blade.exact.placement(np.array([blade.length]), blade.at(250.0).steady.coefficients)
     twist = np.degrees(np.arctan2(state.turn[0, 1, 0], state.turn[0, 0, 0]))
