@@ -156,7 +156,7 @@ def linear(controller: object) -> LinearController:
 
 def _rows(matrix: Any) -> int:
     """So many rows ``A`` has, which decides the shapes of all."""
-    return len(matrix) if hasattr(matrix, "__len__") else 1
+    return len(matrix) if hasattr(matrix, "__len__") and np.ndim(matrix) else 1
 
 
 def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any]:

@@ -31,9 +31,9 @@ def read_table(path: str | Path) -> dict[str, Any]:
     Raises ``ValueError`` of one sentence for a name that ends otherwise, for a file that cannot be read, with the position of
     what is wrong in it, and for one that holds no table.
     """
+    if not isinstance(path, (str, Path)) or Path(path).suffix not in ENDINGS:
+        raise Refused("path", str(path) if isinstance(path, Path) else path, f"a file that ends in {' or '.join(ENDINGS)}")
     path = Path(path)
-    if path.suffix not in ENDINGS:
-        raise Refused("path", str(path), f"a file that ends in {' or '.join(ENDINGS)}")
     try:
         return parsed_table(path.read_text(encoding="utf-8"), str(path))
     except OSError as error:

@@ -48,6 +48,11 @@ DESIGN = Kind(
     st.sampled_from(["x", "sound-blade"]),
     BLADE_PARTS,
 )
+DTYPE = Kind(
+    "dtype",
+    lambda value: value if isinstance(value, (str, type, np.dtype)) else NOTHING,
+    st.sampled_from(["float32", "float64", np.float32, np.dtype("f8"), "float16", int, "x", np.dtype(">f4")]),
+)
 SINGLE = {
     "preset": TEXT,
     "speed": maybe(NUMBER),
@@ -56,6 +61,7 @@ SINGLE = {
     "scenario": maybe(NAMED_SCENARIO),
     "duration": NUMBER,
     "physical_units": FLAG,
+    "dtype": DTYPE,
 }
 MODE = Kind(
     "mode",
@@ -81,6 +87,7 @@ def arguments():
         "scenario": {},
         "duration": small.DURATION,
         "physical_units": False,
+        "dtype": "float64",
     }
 
 
@@ -166,7 +173,12 @@ SEEDS = Kind(
     lambda value: COUNT.means(value) if COUNT.means(value) is not NOTHING else COUNTS.means(value),
     st.one_of(COUNTS.near, COUNT.near),
 )
-BATCH_OPTIONS = maybe(table({"load": LOAD, "initial_state": ARRAY, "elapsed": either(COUNT, COUNTS)}))
+MASK = Kind(
+    "mask",
+    lambda value: value if value is None or (isinstance(value, np.ndarray) and value.dtype == bool) else NOTHING,
+    st.just(np.array([True, False])),
+)
+BATCH_OPTIONS = maybe(table({"load": LOAD, "initial_state": ARRAY, "elapsed": either(COUNT, COUNTS), "reset_mask": MASK}))
 
 
 def new_env():
@@ -290,7 +302,7 @@ DOORS = [
     Door(
         "RotatingBeamVectorEnv",
         made(lambda **given: beamenv.RotatingBeamVectorEnv(**given)),
-        {**BATCH, "render_mode": maybe(TEXT), "render_index": SEEDS},
+        {**BATCH, "render_mode": maybe(TEXT), "render_index": maybe(SEEDS)},
         lambda: {
             "num_envs": 2,
             **arguments(),

@@ -43,6 +43,8 @@ LINEAR = Kind(
     st.sampled_from(["clipped", "true"]).map(lambda name: clipped() if name == "clipped" else small.law().__class__),
 )
 WEIGHTS = {"Q": maybe(ARRAY), "R": maybe(ARRAY)}
+ABOUT = ("plant", "gain", "Riccati")
+"""What a law says of its numbers together."""
 GAIN = maybe(ARRAY)
 SPEEDS = Kind(
     "speeds",
@@ -64,7 +66,9 @@ def family():
 def law(name, kinds=None, /, **valid):
     """A builder of laws from a plant."""
     function = getattr(baselines, name)
-    return Door(name, function, {"plant": PLANT, **(kinds or {})}, lambda: {"plant": small.plant(), **valid}, public=name)
+    return Door(
+        name, function, {"plant": PLANT, **(kinds or {})}, lambda: {"plant": small.plant(), **valid}, told=ABOUT, public=name
+    )
 
 
 def weights():
@@ -74,7 +78,7 @@ def weights():
 
 def weighted(name, kinds, /, **valid):
     door = law(name, {**kinds, **WEIGHTS}, **valid)
-    return dataclasses.replace(door, valid=lambda: {**door.valid(), **weights()})
+    return dataclasses.replace(door, valid=lambda: {**door.valid(), **weights()}, plain=name != "mpc")  # its solver is an object
 
 
 def finite(answer):
@@ -193,6 +197,7 @@ DOORS = [
         {"measurement_scale": ARRAY, "voltage_scale": ARRAY, "voltage_limits": ARRAY, "interval": NUMBER, "observes": TEXT},
         instrument_parts,
         lambda made: made,
+        told=("voltage_limits",),
         public="Instruments",
     ),
     Door(
@@ -209,19 +214,20 @@ DOORS = [
     Door(
         "Law.predict",
         lambda **given: small.law().predict(**given),
-        {"observation": MATRIX, "state": maybe(ARRAY), "episode_start": ANYTHING},
+        {"observation": MATRIX, "state": maybe(MATRIX), "episode_start": ANYTHING},
         lambda: {
             "observation": np.array([[0.1, -0.2], [0.3, 0.0]]),
             "state": np.zeros((2, small.law().order)),
             "episode_start": np.array([True, False]),
         },
+        told=("state",),
         check=finite,
         public="Law",
     ),
     Door(
         "ClippedLQG.predict",
         lambda **given: clipped().predict(**given),
-        {"observation": MATRIX, "state": maybe(ARRAY)},
+        {"observation": MATRIX, "state": maybe(MATRIX)},
         lambda: {"observation": np.array([[0.1, -0.2]]), "state": np.zeros((1, clipped().order))},
         check=finite,
         public="ClippedLQG",

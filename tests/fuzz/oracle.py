@@ -17,6 +17,7 @@ import gymnasium as gym
 import numpy as np
 import stable_baselines3  # noqa: F401 - it and torch set themselves up when they are first imported
 import torch
+import torch.utils.tensorboard
 
 from beamenv.blade.presets import PRESETS
 from beamenv.configuration import Refused

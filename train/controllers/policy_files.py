@@ -44,6 +44,9 @@ def save_policy(policy: Policy, folder: Path, about: Mapping[str, Any] | None = 
 
 def read_about(folder: Path) -> dict[str, Any]:
     """What ``agent.json`` says; ``ValueError`` if it is not there, or is no such file."""
+    if not isinstance(folder, (str, Path)):
+        raise Refused("folder", folder, "the path of a trained agent's folder")
+    folder = Path(folder)
     path = folder / "agent.json"
     if not path.is_file():
         runs = sorted(str(each.parent) for each in folder.glob("*/agent.json"))

@@ -61,6 +61,6 @@ def discover() -> Mapping[str, NamedController]:
 def named(name: str) -> NamedController:
     """A controller by its short name; ``ValueError`` lists the known ones."""
     known = discover()
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise Refused("controller", name, f"one of {', '.join(known)}, or the folder of a trained agent")
     return known[name]
