@@ -11,7 +11,7 @@ from beamenv.configuration import shown
 
 
 def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """A copy as float64; ``ValueError`` names what is not of finite real numbers in this shape: complex ones, text, flags, masks."""
+    """A copy as float64; ``ValueError`` for what is not of finite real numbers in this shape: complex ones, text, masks, flags."""
     try:
         given = np.asarray(value)
     except (TypeError, ValueError, RuntimeError, OverflowError):

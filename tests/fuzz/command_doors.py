@@ -1,6 +1,7 @@
 """Doors of the command line: every option of every command, in this process, where the work itself is left out or small."""
 
 import shutil
+import warnings
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
@@ -124,7 +125,7 @@ COMMANDS = {
 
 @contextmanager
 def work_left_out(names):
-    with pytest.MonkeyPatch.context() as patch, torch.random.fork_rng():  # a training seeds it
+    with warnings.catch_warnings(), pytest.MonkeyPatch.context() as patch, torch.random.fork_rng():  # a training seeds it
         for name in names:
             patch.setattr(name, reached)
         yield

@@ -75,7 +75,7 @@ BATCH = {
     "max_episode_steps": maybe(COUNT),
 }
 RENDERED = {**SINGLE, "render_mode": maybe(TEXT)}
-SINGLE_WORDS = ("blade", "beam", "preset", "design", "inlay", "plant", "layup")
+SINGLE_WORDS = ("speed", "section", "file", "duration", "blade", "beam", "preset", "design", "inlay", "plant", "layup")
 
 
 def arguments():

@@ -229,6 +229,7 @@ DOORS = [
         lambda **given: clipped().predict(**given),
         {"observation": MATRIX, "state": maybe(MATRIX)},
         lambda: {"observation": np.array([[0.1, -0.2]]), "state": np.zeros((1, clipped().order))},
+        told=("state",),
         check=finite,
         public="ClippedLQG",
     ),

@@ -10,7 +10,7 @@ import types
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import gymnasium as gym
@@ -145,6 +145,8 @@ def seen(value, depth=0) -> Any:
         return type(value), tuple(
             (each.name, seen(getattr(value, each.name, None), depth + 1)) for each in fields(value) if each.compare or each.init
         )
+    if isinstance(value, PurePath):
+        return "path", str(value)
     if isinstance(value, (bytearray, memoryview)):
         return type(value), bytes(value)
     if isinstance(value, (int, float, complex, str, bytes, np.generic, type(None))):

@@ -70,7 +70,9 @@ def load_policy(folder: Path, plant: Plant | None = None) -> Policy:
     Raises ValueError of one sentence, with the file's name in it, if there is none, if files are damaged or hold what no policy can
     act by, and if it was trained on other plants than ``plant``.
     """
-    about = read_about(folder)
+    about, folder = read_about(folder), Path(folder)
+    if plant is not None and not isinstance(plant, Plant):
+        raise Refused("plant", plant, "None or a beamenv.Plant, such as env.unwrapped.design_plant")
     if plant is not None:
         _check_plant(about, folder, plant)
     path = folder / "weights.npz"
