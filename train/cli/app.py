@@ -13,6 +13,7 @@ from rich.table import Table
 
 from train.cli.benchmark import benchmark
 from train.cli.options import (
+    RESUMES,
     BladeOption,
     JsonOption,
     PresetOption,
@@ -167,7 +168,7 @@ def compare(
 
     An interrupted run resumes from what its folder holds.
     """
-    with one_sentence():
+    with one_sentence(RESUMES):
         from train.cli.evaluations import screen_table
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison
@@ -211,7 +212,7 @@ def reproduce(
 
     An interrupted run resumes from what its folder holds.
     """
-    with one_sentence():
+    with one_sentence(RESUMES):
         from train.cli.reproduce import reproduce as run
 
         status = run(names or [], output, fresh, docs)
