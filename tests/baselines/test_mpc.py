@@ -1,8 +1,8 @@
 """Model-predictive control: LQG while no limit is in sight, else the optimum within the limits, found by other means."""
 
-import gymnasium
 from concurrent.futures import ThreadPoolExecutor
 
+import gymnasium
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear

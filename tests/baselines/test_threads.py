@@ -40,10 +40,8 @@ def test_a_law_shared_by_threads_gives_each_its_own_voltages(small_plant, name):
 def episode(seed):
     env = gym.make(beamenv.ENV_ID, blade={"modes": 3}, duration=0.02)
     random, (observation, _) = np.random.default_rng(seed), env.reset(seed=seed)
-    seen = [observation]
-    for _ in range(40):
-        seen.append(env.step(random.uniform(-1.0, 1.0, 4).astype(env.action_space.dtype))[0])
-    return np.array(seen)
+    actions = random.uniform(-1.0, 1.0, (40, 4)).astype(env.action_space.dtype)
+    return np.array([observation, *(env.step(action)[0] for action in actions)])
 
 
 def test_environments_of_one_blade_in_several_threads_are_as_one_after_the_other():
