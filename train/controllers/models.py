@@ -14,7 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from baselines import Controller
 from baselines.design.controller import name_of
+from baselines.design.predicting import observed
+from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant, normalised
+from train.shared.files import as_path
 
 Array = NDArray[np.floating[Any]]
 
@@ -32,6 +35,7 @@ UNTRUSTED = (
 
 def load_model(path: Path) -> Any:
     """The model in a file, of whichever algorithm takes it; ``ValueError`` if none does. Loading may run code in the file."""
+    path = as_path("model", path)
     if not (path.is_file() and is_zipfile(path)):
         raise ValueError(f"model {path.name!r} must be a .zip file saved by Stable-Baselines3, but is none, or is not there.")
     tried = []
@@ -98,7 +102,9 @@ class ShownHistory:
         deterministic: bool = True,
     ) -> tuple[Array, tuple[Array, Array, Any]]:
         """Action (N, m) on readings (N, p), and the next memory."""
-        readings = np.asarray(observation, dtype=np.float32)
+        readings = observed(observation, self.name).astype(np.float32)
+        if readings.ndim != 2:
+            raise Refused("observation", observation, "rows of readings (N, p)")
         instant = readings.shape[1] + len(self.lowest)
         if state is None:
             state = np.zeros((len(readings), self.length * instant), np.float32), np.zeros((len(readings), len(self.lowest))), None
