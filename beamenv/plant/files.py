@@ -7,18 +7,16 @@ A file needs ``natural_frequencies``, ``gyroscopic``, ``actuation``, ``charges``
 from __future__ import annotations
 
 import io
-import zlib
 from dataclasses import MISSING, fields
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
 from beamenv.configuration import Refused
-from beamenv.configuration.files import of_file
+from beamenv.configuration.files import of_file, parsed_arrays
 from beamenv.configuration.sentence import unknown_field
 from beamenv.configuration.writing import write_whole
 from beamenv.plant import named
@@ -71,13 +69,7 @@ def _read(path: Path) -> ModalPlant:
 
 
 def _of_bytes(content: bytes, name: str) -> ModalPlant:
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:  # which a single array is not
-            arrays = {key: archive[key] for key in archive.files}
-    except (ValueError, TypeError, EOFError, OSError, RuntimeError, BadZipFile, zlib.error) as error:
-        objects = "Object arrays" in str(error)
-        why = "it holds Python objects" if objects else "it is no .npz archive of arrays"
-        raise ValueError(f"file {name!r} cannot be read: {why}.") from None
+    arrays = parsed_arrays(content, name)
     with of_file(name):
         return _of_arrays(arrays)
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import os
-import signal
-import threading
-import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from itertools import islice
 from typing import Any
 
 import cloudpickle
 
+from train.benchmark.bench import Bench
 from train.benchmark.cells import Cell, Job, measured
 from train.controllers.sources import Source
+from train.shared.interruption import end_with_parent
 from train.shared.threads import ONE_THREAD
 
 
@@ -28,8 +27,9 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
     process, ChildProcessError if a process dies.
     """
     if processes == 1 or len(jobs) < 2:
-        for job in jobs:
-            finished(job, measured(job))
+        with closing(Bench()) as bench:
+            for job in jobs:
+                finished(job, measured(job, bench))
         return
     check_portable(jobs)
     waiting = iter(jobs)
@@ -37,11 +37,19 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
         running: dict[Future[Cell], Job] = {}
         while True:
             for job in islice(waiting, 2 * processes - len(running)):  # with more, an interrupted pool writes a traceback
-                running[pool.submit(measured, job)] = job
+                running[pool.submit(_measured_here, job)] = job
             if not running:
                 return
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 finished(running.pop(future), future.result())
+
+
+BENCH = Bench()
+"""Of this process if it is a worker, which is sent one job after another and has nobody else to keep the blades in between."""
+
+
+def _measured_here(job: Job) -> Cell:
+    return measured(job, BENCH)
 
 
 @contextmanager
@@ -49,7 +57,7 @@ def workers(processes: int) -> Iterator[Any]:
     """Fresh interpreters of joblib's, on one thread each, that end with this block or with this process, whichever is first."""
     from joblib.externals.loky import ProcessPoolExecutor  # takes a moment, and one process alone does without
 
-    pool = ProcessPoolExecutor(processes, initializer=prepare_worker, initargs=(os.getpid(),), env=ONE_THREAD)
+    pool = ProcessPoolExecutor(processes, initializer=end_with_parent, initargs=(os.getpid(),), env=ONE_THREAD)
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "A worker stopped", UserWarning)  # one that outgrew its memory, and was replaced
@@ -58,19 +66,6 @@ def workers(processes: int) -> Iterator[Any]:
         raise ChildProcessError("a worker process died: what was finished is kept, and the same command resumes.") from None
     finally:
         pool.shutdown(wait=True, kill_workers=True)
-
-
-def prepare_worker(parent: int) -> None:
-    """Leave Ctrl-C to the parent process, and end when it does, however it does."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
-        os._exit(1)
-
-    if os.name == "posix":  # elsewhere the identity of a parent outlives it
-        threading.Thread(target=watch, daemon=True).start()
 
 
 def check_portable(jobs: Sequence[Job]) -> None:
