@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,8 +60,8 @@ class ElementSums:
     @property
     def first(self) -> ElementSums:
         """That of the first section alone."""
-        values = (getattr(self, each.name) for each in fields(self))
-        return ElementSums(*(each[:1] if isinstance(each, np.ndarray) else each for each in values))
+        arrays = {each.name: getattr(self, each.name)[:1] for each in fields(self) if each.name != "thickness"}
+        return replace(self, **arrays)
 
     @property
     def size(self) -> int:

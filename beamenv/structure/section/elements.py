@@ -64,7 +64,8 @@ def through_wall(order: int, at: Array) -> tuple[Array, Array]:
     The first is what the wall does as a whole. Displacements of nodes across the wall in its place, whose differences strain it
     through its thickness, would leave (t/L)⁴ of their energy to the bending of a wall of length L, and rounding soon hides that.
     """
-    return legendre.legvander(at, order), legendre.legval(at, legendre.legder(np.eye(order + 1))).T
+    slopes = legendre.legval(at, legendre.legder(np.eye(order + 1))).T
+    return np.asarray(legendre.legvander(at, order), dtype=np.float64), np.asarray(slopes, dtype=np.float64)
 
 
 def coefficients_through_wall(values: Array) -> Array:
