@@ -254,7 +254,7 @@ def _solids():
 def test_no_law_costs_less_on_the_solid_than_lqg_that_is_told_it(name, solids):
     true, design = solids[name].plant, solids[name].design_plant
     optimum = stationary_cost(true, lqg(true))
-    assert optimum < stationary_cost(true, lqg(true, "continuous"))
+    assert optimum < stationary_cost(true, lqg(true, "continuous", verify=False))
     assert optimum < stationary_cost(true, lqg(design))
     assert optimum < 0.5 * stationary_cost(true, no_control(true))
     assert stationary_cost(true, lqr(true)) < optimum
