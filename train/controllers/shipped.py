@@ -9,6 +9,7 @@ from beamenv.configuration import Count, Text, checked
 from beamenv.plant.plant import Plant
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy
+from train.shared.files import as_path
 
 FOLDER = Path(__file__).parent / "trained"
 """<agent>/<scenario or generalist>/<seed>/ with ``agent.json``, ``weights.npz`` and ``learning.csv``."""
@@ -26,7 +27,7 @@ class Shipped:
 
 def shipped(folder: Path = FOLDER) -> list[Shipped]:
     """All of them, by agent, scenario and seed."""
-    homes = [path.parent for path in folder.glob("*/*/*/agent.json")]
+    homes = [path.parent for path in as_path("folder", folder).glob("*/*/*/agent.json") if path.parent.name.isdecimal()]
     found = [Shipped(home.parent.parent.name, home.parent.name, int(home.name), home) for home in homes]
     return sorted(found, key=lambda each: (each.agent, each.scenario, each.seed))
 

@@ -17,7 +17,7 @@ from types import MappingProxyType
 from baselines import Controller, Law
 from beamenv import Design
 from beamenv.configuration import Refused
-from beamenv.task import Task
+from beamenv.task import Task, checked_task
 
 KINDS = ("fixed", "scheduled", "predictive", "bound")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
@@ -42,6 +42,7 @@ class NamedController:
 
     def build_for(self, task: Task) -> Controller:
         """The controller for a task, in its units: from its design, unless it is told the truth."""
+        checked_task(task)
         law = self.build(task.true_design if self.told_the_truth else task.design)
         return law.in_physical_units() if task.physical_units and isinstance(law, Law) else law
 
