@@ -53,7 +53,7 @@ class Count(Kind):
     @property
     def allowed(self) -> str:
         """Say, a whole number from 1 to 30."""
-        return f"a whole number{_span(self.ge, self.le)}"
+        return f"a whole number{_span(self.ge, self.le)}" + (f" and not above {UNBOUNDED}" if self.le == UNBOUNDED else "")
 
     def core(self) -> CoreSchema:
         """An integer."""
@@ -65,7 +65,7 @@ class Count(Kind):
 
     def json(self) -> JsonSchema:
         """An integer."""
-        return {"type": "integer", "minimum": self.ge, **({} if self.le == UNBOUNDED else {"maximum": self.le})}
+        return {"type": "integer", "minimum": self.ge, "maximum": self.le}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +78,14 @@ class Range(Kind):
     """A number strictly between the two."""
     whole: bool = False
     unit: str = ""
+    falls: bool = False
+    """Whether the second may be the smaller one: a course from the first to the second."""
 
     @property
     def allowed(self) -> str:
         """Say, a number or a range [low, high] from 0 to 1."""
-        kind = "a whole number or a range [low, high] of whole numbers" if self.whole else "a number or a range [low, high]"
+        ends = "two numbers [first, last]" if self.falls else "a range [low, high]"
+        kind = f"a whole number or {ends} of whole numbers" if self.whole else f"a number or {ends}"
         if self.encloses is not None:
             kind = f"a range [low, high] that encloses {self.encloses:g}"
         return _with_unit(kind + _span(self.ge, self.le), self.unit)
@@ -109,7 +112,7 @@ class Range(Kind):
 
     def _rising(self, ends: tuple[Any, Any]) -> tuple[Any, Any]:
         low, high = ends
-        if low > high or not (self.encloses is None or low < self.encloses < high):
+        if (low > high and not self.falls) or not (self.encloses is None or low < self.encloses < high):
             raise ValueError
         return ends
 
