@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
+from beamenv import wings
 from beamenv.scenarios.named import NAMES as BENCHMARK_SCENARIOS
 
 if TYPE_CHECKING:
@@ -120,6 +121,7 @@ def _register(env_id: str, **arguments: str) -> None:
         )
 
 
+wings.install()
 _register(ENV_ID)
 for _name in BENCHMARK_SCENARIOS:
     _register(f"beamenv/RotatingBeam-{_name}-v0", scenario=_name)

@@ -18,8 +18,8 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 import beamenv
-from baselines import lqg, stationary_cost
 from beamenv import sample
+from beamenv.baselines import lqg, stationary_cost
 
 BLADES, DURATION, SETTLE = 64, 2.5, 0.5
 envs = gym.make_vec(

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from scipy.linalg import solve_continuous_are
 
-from baselines.placement import PlacementProblem, place
+from beamenv.baselines.placement import PlacementProblem, place
 from beamenv.blade import blade_config, build_plant
 
 problem = PlacementProblem.of(blade_config("thesis"), side="actuators", count=1)

@@ -14,9 +14,9 @@
 import gymnasium as gym
 
 import beamenv
-from baselines import evaluate, reference_lqg
+from beamenv.baselines import evaluate, reference_lqg
 from beamenv.task import resolve_task
-from train.learning.through_plant.gradient import GradientSettings, train_gradient
+from beamenv.train.learning.through_plant.gradient import GradientSettings, train_gradient
 
 task = resolve_task(scenario="deflection")
 learning = []

@@ -21,7 +21,7 @@ Positions = tuple[float, ...]
 
 THESIS_TABLES: Mapping[str, Side] = {"thesis-table-6.3": "actuators", "thesis-table-6.4": "sensors"}
 
-OPTIMAL = "baselines.placement.optimal:optimal_positions"
+OPTIMAL = "beamenv.baselines.placement.optimal:optimal_positions"
 """What works out "optimal", named as Gymnasium names entry points: optimisers know plants, and plants know no optimiser."""
 
 NAMES = ("uniform", *THESIS_TABLES, "optimal")

@@ -14,7 +14,7 @@ PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglo
 FENCE = re.compile(r"^```.*?^```$", flags=re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(rf"(?:{'|'.join(TREES)})/[\w./-]*\w[/\w]*|[\w-]+(?:/[\w.-]+)+\.(?:py|md|toml|yml)")
-DOTTED = re.compile(rf"(?:{'|'.join(WINGS)})(?:\.[A-Za-z_]\w*)+")
+DOTTED = re.compile(rf"(?:{'|'.join(WINGS)})(?:\.(?!py$)[A-Za-z_]\w*)+")
 MODULE = rf"(?:{'|'.join(WINGS)})[\w.]*"
 IMPORT = re.compile(rf"^(?:from ({MODULE}) import (\w+(?:, \w+)*)|import ({MODULE}))$", flags=re.MULTILINE)
 MEMBERS = re.compile(r"^::: (\S+)\n(?: +[^\n]*\n)*? +members: \[([^\]]+)\]", re.MULTILINE)
@@ -61,7 +61,7 @@ def path_is_there(path):
 
 def name_is_there(name):
     """Whether the parts lead through folders to a module, and from there to what it defines, imports or offers."""
-    place, parts = ROOT, name.split(".")
+    place, parts = ROOT, re.sub(r"^beamenv\.(?=(baselines|train)\b)", "", name).split(".")
     while parts and (place / parts[0]).is_dir():
         place /= parts.pop(0)
     if parts and (place / f"{parts[0]}.py").is_file():
@@ -137,6 +137,7 @@ def test_the_pages_name_enough_for_this_to_mean_something():
         ("beamenv.structure.modes.Modes.families", "beamenv.structure.modes.Modes.family"),
         ("baselines.evaluate", "baselines.evaluation.evaluator"),
         ("train.controllers.shipped.load_shipped", "train.shipped.load_shipped"),
+        ("beamenv.train.controllers.shipped.load_shipped", "beamenv.train.shipped.load_shipped"),
     ],
 )
 def test_a_name_that_leads_nowhere_is_found(there, wrong):

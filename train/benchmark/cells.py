@@ -26,7 +26,13 @@ from train.shared.versions import installed_version
 
 Array = NDArray[np.float64]
 
-DEPENDS_ON = (*CONTROLLERS, __name__, "train.controllers.models", "train.controllers.sources", "train.shared.held_out")
+DEPENDS_ON = (
+    *CONTROLLERS,
+    "train.benchmark.cells",
+    "train.controllers.models",
+    "train.controllers.sources",
+    "train.shared.held_out",
+)
 """Modules that decide the numbers of a cell, besides the controller's own file."""
 
 SERIES = tuple(each.name for each in fields(EpisodeMetrics))

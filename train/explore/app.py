@@ -39,7 +39,7 @@ def create_app() -> Dash:
     """The page as a Flask application that asks for nothing beyond this computer."""
     app = Dash(
         __name__,
-        assets_folder=str(files("train.explore") / "assets"),
+        assets_folder=str(files("beamenv.train.explore") / "assets"),
         serve_locally=True,
         title="beamenv explore",
         update_title="",

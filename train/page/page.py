@@ -91,7 +91,7 @@ def write_page(path: Path, content: PageContent) -> None:
 def render(content: PageContent) -> str:
     """The page as HTML, plotly.js (4.8 MB) once inside."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("train.page", ""),
+        loader=jinja2.PackageLoader("beamenv.train.page", ""),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

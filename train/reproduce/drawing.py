@@ -32,7 +32,7 @@ def draw(outcome: Outcome, title: str) -> bytes:
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    with as_file(files("train.reproduce").joinpath("look.mplstyle")) as look, pyplot.style.context(str(look)):
+    with as_file(files("beamenv.train.reproduce").joinpath("look.mplstyle")) as look, pyplot.style.context(str(look)):
         columns = len(outcome.panels) if len(outcome.panels) <= 3 else 2
         rows = -(-len(outcome.panels) // columns)
         width = PAGE_WIDTH if columns > 1 else SINGLE_WIDTH

@@ -10,8 +10,10 @@ import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 
+import beamenv
+
 ROOT = Path(__file__).resolve().parents[2]
-"""Folder that holds the packages."""
+"""Folder that holds ``baselines`` and ``train``: beside ``beamenv``, or inside it once that is installed."""
 
 CONTROLLERS = (
     "beamenv",
@@ -34,16 +36,22 @@ def digest(*contents: bytes) -> str:
     return total.hexdigest()[:16]
 
 
-def source_digest(names: Iterable[str], root: Path = ROOT) -> str:
+def source_digest(names: Iterable[str], root: Path | None = None) -> str:
     """Of all source and data files of modules and packages; ``ModuleNotFoundError`` if one of them is not there."""
     return digest(*(path.read_bytes() for name in names for path in source_files(name, root)))
 
 
-def source_files(name: str, root: Path = ROOT) -> list[Path]:
-    """The file of a module, or all in a package, in order of their paths; ``ModuleNotFoundError`` if it is not there."""
-    place = root.joinpath(*name.split("."))
+def source_files(name: str, root: Path | None = None) -> list[Path]:
+    """The file of a module, or all in a package, in order of their paths; ``ModuleNotFoundError`` if it is not there.
+
+    ``root`` is the folder that holds the packages, if they are not to be those that run.
+    """
+    parts = name.split(".")
+    home = Path(beamenv.__file__).resolve().parents[1] if parts[0] == "beamenv" else ROOT
+    place = (root or home).joinpath(*parts)
     module = place.with_name(f"{place.name}.py")
-    found = [module] if module.is_file() else sorted(path for path in place.rglob("*") if path.suffix in SUFFIXES)
+    own = (path for path in place.rglob("*") if "_wings" not in path.relative_to(place).parts)  # installed, they lie in beamenv
+    found = [module] if module.is_file() else sorted(path for path in own if path.suffix in SUFFIXES)
     if not found:
-        raise ModuleNotFoundError(f"module {name!r}, which kept results depend on, is not in {str(root)!r}.", name=name)
+        raise ModuleNotFoundError(f"module {name!r}, which kept results depend on, is not in {str(root or home)!r}.", name=name)
     return found

@@ -51,7 +51,7 @@ ROWS = (
 def speed() -> dict[str, float]:
     """All measurements by name: the best of several rounds, on one BLAS thread, in a process of its own. About 20 s."""
     environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    command = [sys.executable, "-m", "train.tools.speed"]
+    command = [sys.executable, "-m", "beamenv.train.tools.speed"]
     output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
     results: dict[str, float] = json.loads(output)
     results["import_s"] = min(_import_seconds(environment) for _ in range(3))

@@ -23,7 +23,7 @@ def printed_table(name: str) -> list[dict[str, str]]:
     """
     if name not in PRINTED:
         raise ValueError(f"name = {name!r} must be one of {', '.join(PRINTED)}.")
-    home = "beamenv.blade" if name in LAYOUTS else "train.reproduce.thesis"
+    home = "beamenv.blade" if name in LAYOUTS else "beamenv.train.reproduce.thesis"
     text = files(home).joinpath("numbers", f"{name}.csv").read_text(encoding="utf-8")
     return list(csv.DictReader(text.splitlines()))
 
