@@ -13,6 +13,9 @@ from beamenv.configuration.kinds import JsonSchema, Kind, plain, whole, wholes
 UNBOUNDED = 10**9
 """A count beyond this is a mistake."""
 
+TURNED = 3.6e4
+"""Degrees, either way: a hundred turns; beyond, an angle is a mistake, and at last has no digits of a turn left."""
+
 
 @dataclass(frozen=True, slots=True)
 class Number(Kind):
@@ -41,6 +44,9 @@ class Number(Kind):
         """A number."""
         bounds = {"exclusiveMinimum": self.gt, "minimum": self.ge, "exclusiveMaximum": self.lt, "maximum": self.le}
         return {"type": "number", **{name: bound for name, bound in bounds.items() if bound is not None}}
+
+
+DEGREES = Number(ge=-TURNED, le=TURNED, unit="degrees")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +82,8 @@ class Range(Kind):
     le: float = math.inf
     encloses: float | None = None
     """A number strictly between the two."""
+    apart: float = 0.0
+    """Least difference of the two."""
     whole: bool = False
     unit: str = ""
     falls: bool = False
@@ -87,7 +95,8 @@ class Range(Kind):
         ends = "two numbers [first, last]" if self.falls else "a range [low, high]"
         kind = f"a whole number or {ends} of whole numbers" if self.whole else f"a number or {ends}"
         if self.encloses is not None:
-            kind = f"a range [low, high] that encloses {self.encloses:g}"
+            wide = f" and is at least {self.apart:g} wide" if self.apart else ""
+            kind = f"a range [low, high] that encloses {self.encloses:g}{wide}"
         return _with_unit(kind + _span(self.ge, self.le), self.unit)
 
     def core(self) -> CoreSchema:
@@ -102,7 +111,7 @@ class Range(Kind):
         pair = {"type": "array", "items": end, "minItems": 2, "maxItems": 2}
         if self.encloses is None:
             return {"anyOf": [end, pair]}
-        ends = [{"type": "number", "exclusiveMaximum": self.encloses}, {"type": "number", "exclusiveMinimum": self.encloses}]
+        ends = [{**end, "exclusiveMaximum": self.encloses}, {**end, "exclusiveMinimum": self.encloses}]
         return {"type": "array", "prefixItems": ends, "minItems": 2, "maxItems": 2}
 
     def _both(self, value: Any) -> Any:
@@ -112,7 +121,7 @@ class Range(Kind):
 
     def _rising(self, ends: tuple[Any, Any]) -> tuple[Any, Any]:
         low, high = ends
-        if (low > high and not self.falls) or not (self.encloses is None or low < self.encloses < high):
+        if (low > high and not self.falls) or high - low < self.apart or not (self.encloses is None or low < self.encloses < high):
             raise ValueError
         return ends
 
@@ -131,7 +140,8 @@ class Numbers(Kind):
     def allowed(self) -> str:
         """Say, a list of one or more finite numbers."""
         count = {0: "", 1: " one or more"}.get(self.least, f" {'' if self.least == self.most else 'at least '}{self.least}")
-        return f"a list of{count} {self.of}, each {self.each.allowed}"
+        most = "" if self.most in (None, self.least) else f", at most {self.most}"
+        return f"a list of{count} {self.of}{most}, each {self.each.allowed}"
 
     def core(self) -> CoreSchema:
         """A tuple of floats, or of integers."""

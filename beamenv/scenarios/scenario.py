@@ -13,15 +13,18 @@ from typing import Annotated, Any
 
 from beamenv.configuration import Choice, Flag, Range, Refused, Share, checked, checked_table, configuration, read
 from beamenv.configuration.files import ENDINGS, of_file, parsed_table, read_table
+from beamenv.configuration.numbers import TURNED
 from beamenv.plant.named import ENDING
 from beamenv.scenarios import named
 from beamenv.scenarios.load_cases import CASES
 from beamenv.scenarios.named import NAMES
-from beamenv.scenarios.tables import Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
+from beamenv.scenarios.tables import STRONGEST, Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
 
-Loads = Annotated[Pair, Range(0.0, unit="N/m")]
+Loads = Annotated[Pair, Range(0.0, STRONGEST, unit="N/m")]
 Seconds = Annotated[Pair, Range(0.0, unit="s")]
-Degrees = Annotated[Pair, Range(unit="degrees")]
+Degrees = Annotated[Pair, Range(-TURNED, TURNED, unit="degrees")]
+
+USUAL_RATIO: Pair = (0.5, 2.0)
 
 PRESET = "preset"
 """The key under which a dictionary or file names the scenario that it departs from."""
@@ -54,8 +57,9 @@ class Scenario:
     """s: a controller cannot count on t = 0, and at least 90 % of a 0.5 s episode is left to damp what follows."""
     duration: Seconds = (0.005, 0.05)
     """s, of a pulse: from a knock much shorter than the first two modes' periods, 35 and 28 ms, to a push longer than both."""
-    frequency_ratio: Annotated[Pair, Range(0.0)] = (0.5, 2.0)
-    """Frequency of a harmonic load over the plant's first natural frequency: below, in and above resonance."""
+    frequency_ratio: Annotated[Pair, Range(0.0)] = USUAL_RATIO
+    """Frequency of a harmonic load over the plant's first natural frequency: below, in and above resonance. Loads are held
+    over each control interval: none may oscillate faster than the Nyquist frequency (``beamenv.scenarios.sampling``)."""
     phase_deg: Degrees = (0.0, 360.0)
     """Degrees, of a harmonic load."""
     white_load: Annotated[bool, Flag()] = True
@@ -120,7 +124,8 @@ def scenario(given: Scenario | Mapping[str, Any] | str | Path | None = None) -> 
         return _named(given) if isinstance(given, str) else given
     if not isinstance(given, Mapping):
         raise Refused("scenario", given, "a name, a .toml or .json file, a dictionary of fields or a Scenario")
-    return read(_named(given.get(PRESET, "default")), {name: value for name, value in given.items() if name != PRESET})
+    base = _named(given[PRESET], f"scenario.{PRESET}") if PRESET in given else SCENARIOS["default"]
+    return read(base, {name: value for name, value in given.items() if name != PRESET})
 
 
 def load_scenario(path: str | Path) -> Scenario:
@@ -146,9 +151,10 @@ def scenario_schema() -> dict[str, Any]:
     return json_schema(Scenario, {PRESET: {"enum": list(SCENARIOS), "description": "The scenario this one departs from."}})
 
 
-def _named(name: Any) -> Scenario:
+def _named(name: Any, path: str = "scenario") -> Scenario:
     if not isinstance(name, str) or name not in SCENARIOS:
-        raise Refused("scenario", name, f"one of {', '.join(SCENARIOS)}, a .toml or .json file, or a dictionary of fields")
+        others = ", a .toml or .json file, or a dictionary of fields" if path == "scenario" else ""
+        raise Refused(path, name, f"one of {', '.join(SCENARIOS)}{others}")
     return SCENARIOS[name]
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import InstanceOf
 
 from beamenv.configuration import Count, Number, Positive, Refused, checked, configuration
+from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
@@ -61,9 +62,9 @@ class RotatingBeam:
     """m."""
     hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.0
     """R₀, m."""
-    pretwist_deg: Annotated[float, Number(unit="degrees")] = 0.0
+    pretwist_deg: Annotated[float, DEGREES] = 0.0
     """Linear pretwist between root and tip."""
-    presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
+    presetting_deg: Annotated[float, DEGREES] = 0.0
     """Angle of the root section's chord from the plane of rotation."""
     taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""

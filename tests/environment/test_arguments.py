@@ -23,7 +23,7 @@ WRONG = [
     ({"blade": {"patches": {"sensors": (2.0,)}}}, "sensors"),
     ({"design": "wing"}, "'wing'"),
     ({"scenario": "storm"}, "scenario is 'storm', but must be one of default"),
-    ({"duration": 0.0}, "duration is 0.0, but must be a number above 0.00025 .s."),
+    ({"duration": 0.0}, "duration is 0.0, but must be a number above 0.00025 and at most 500000 .s."),
     ({"duration": -1.0}, "duration is -1.0"),
     ({"duration": float("nan")}, "duration is nan"),
     ({"duration": "long"}, "duration is 'long'"),

@@ -11,7 +11,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, Numbers, checked, configuration
+from beamenv.configuration import Numbers, checked, configuration
+from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -22,7 +23,7 @@ COMPONENT = np.array([component for component, _ in WALL_STRAINS])
 POWER = np.array([power for _, power in WALL_STRAINS])
 HIGHEST_MOMENT = 2 * int(POWER.max())
 
-PLY_ANGLES = Numbers(Number(unit="degrees"), least=1, of="ply angles")
+PLY_ANGLES = Numbers(DEGREES, least=1, most=1000, of="ply angles")
 """Of one wall, inner to outer face."""
 
 
@@ -31,7 +32,7 @@ class Ply:
     """One layer: its material and the angle of its fibres from the contour tangent (0 = hoop, 90 = spanwise), degrees."""
 
     material: Lamina
-    angle_deg: Annotated[float, Number(unit="degrees")]
+    angle_deg: Annotated[float, DEGREES]
 
 
 @dataclass(frozen=True, slots=True)
