@@ -15,7 +15,7 @@ The rules, the same for every argument, dictionary and file:
 """
 
 from beamenv.configuration.kinds import Choice, Flag, NameOrFile, Table, Text, Texts
-from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Positive, Range, Real, Share, Whole
+from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
 from beamenv.configuration.sentence import Refused, shown
 
@@ -28,6 +28,7 @@ __all__ = [
     "Number",
     "Numbers",
     "Patches",
+    "Points",
     "Positive",
     "Range",
     "Real",

@@ -158,6 +158,31 @@ class Numbers(Kind):
 
 
 @dataclass(frozen=True, slots=True)
+class Points(Kind):
+    """A sequence of points of a plane, or an array (K, 2)."""
+
+    least: int = 0
+    most: int | None = None
+    unit: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """Say, a list of at least 3 points [x, y] (m)."""
+        return _with_unit(f"a list of {self.least} to {self.most} points [x, y]", self.unit)
+
+    def core(self) -> CoreSchema:
+        """A tuple of pairs."""
+        point = core_schema.tuple_schema([Number().inner()] * 2, strict=True)
+        points = core_schema.tuple_variable_schema(point, min_length=self.least, max_length=self.most, strict=True)
+        return core_schema.no_info_before_validator_function(plain, points)
+
+    def json(self) -> JsonSchema:
+        """An array of arrays."""
+        point = {"type": "array", "items": Number().json(), "minItems": 2, "maxItems": 2}
+        return {"type": "array", "items": point, "minItems": self.least, **({} if self.most is None else {"maxItems": self.most})}
+
+
+@dataclass(frozen=True, slots=True)
 class Patches(Kind):
     """A number of patches, or their positions."""
 

@@ -71,4 +71,4 @@ def spaced(name: str, patches: int | tuple[float, ...], length: float, beam_leng
         raise Refused(f"blade.patches.{name}", patches, allowed)
     if len(positions) > 1 and np.diff(np.sort(positions)).min() < length - tolerance:
         raise Refused(f"blade.patches.{name}", patches, apart)
-    return positions
+    return tuple(min(max(position, 0.0), last) for position in positions)  # what rounding has moved out of bounds lies on them

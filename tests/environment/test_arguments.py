@@ -15,7 +15,7 @@ STATES = len(resolve_task().plant.A)
 
 WRONG = [
     ({"preset": "wing"}, "preset is 'wing', but must be one of thesis"),
-    ({"speed": 1e5}, "speed = 100000.0 rad/s must be at least 0 and below the critical speed"),
+    ({"speed": 1e5}, "speed is 100000.0, but must be at least 0 and below the critical speed"),
     ({"blade": {"beam": {"thickness": -0.01}}}, "thickness"),
     ({"blade": {"beam": {"colour": "red"}}}, "colour"),
     ({"blade": {"strain_limit": "static"}}, "blade.strain_limit is 'static', but must be one of vibration, total"),

@@ -9,16 +9,14 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator
 
-from beamenv.configuration import Choice, Number, Refused, checked, configuration
-from beamenv.configuration.kinds import plain
+from beamenv.configuration import Choice, Number, Points, Refused, Texts, checked, configuration
 from beamenv.structure.model import checked_flow
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.section.mesh import ring
 from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.section.solid_sections import SolidSections
-from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
+from beamenv.structure.walls.contour import Inlay, WallPoints, meets_itself, rotated, split_walls, wall_points
 from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
 from beamenv.structure.walls.wall_kinematics import (
     GX,
@@ -41,6 +39,9 @@ Array = NDArray[np.float64]
 
 Metres = Annotated[float, Number(gt=0.0, unit="m")]
 THEORY = Choice(SHEAR_THEORIES)
+
+MOST_CORNERS = 1000
+"""Of a polygon: more than any contour needs."""
 
 
 class Section(ABC):
@@ -166,19 +167,21 @@ class BoxSection(Section):
 class PolygonSection(Section):
     """Any closed polygon: corners (x, y) of the mid-line in m, counter-clockwise, the wall name of each edge, the wall thickness.
 
-    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, a number of wall
-    names other than that of the edges, or a wall too thick.
+    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, a mid-line that crosses or touches
+    itself, a number of wall names other than that of the edges, or a wall too thick.
     """
 
-    corners: Annotated[tuple[tuple[float, float], ...], BeforeValidator(plain)]
-    edge_walls: Annotated[tuple[str, ...], BeforeValidator(plain)]
+    corners: Annotated[tuple[tuple[float, float], ...], Points(least=3, most=MOST_CORNERS, unit="m")]
+    edge_walls: Annotated[tuple[str, ...], Texts()]
     thickness: Metres
 
     def __post_init__(self) -> None:
-        if len(self.corners) < 3 or len(self.edge_walls) != len(self.corners):
-            raise Refused("corners", self.corners, "at least three, with one wall name for each edge")
+        if len(self.edge_walls) != len(self.corners):
+            raise Refused("edge_walls", self.edge_walls, f"one wall name for each of the {len(self.corners)} edges")
         if not (self._area > 0.0 and np.all(self.edge_lengths > 0.0)):
             raise Refused("corners", self.corners, "distinct, go round counter-clockwise and enclose an area")
+        if meets_itself(self.vertices):
+            raise Refused("corners", self.corners, "those of a mid-line that neither crosses nor touches itself")
         self.check_thickness()
 
     @property
