@@ -10,8 +10,8 @@ import numpy as np
 from baselines.design.controller import Array, Observes
 from baselines.design.matrix import real_matrix
 from beamenv.configuration import Choice, Number, Refused, checked
+from beamenv.configuration.read_only import ReadOnly
 from beamenv.plant.plant import Plant, drive_limit
-from beamenv.plant.read_only import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
-from beamenv.configuration import Choice, Count, Flag, Number, Positive, Refused, Whole, configuration
+from beamenv.configuration import Choice, Count, Flag, Instance, Number, Positive, Refused, Whole, checked, configuration
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
@@ -96,6 +96,8 @@ class BeamConfig:
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
+        if layout is not None:
+            checked("layout", layout, Instance(PatchLayout))
         return RotatingBeam(
             section=BoxSection(self.width, self.depth, self.thickness),
             layup=self.layup(),
@@ -109,7 +111,7 @@ class BeamConfig:
             shear_flow=self.shear_flow,
             steady_state=self.steady_state,
             terms=self.terms,
-            inlays=layout.inlays(self.length) if layout else (),
+            inlays=layout.inlays(self.length) if layout is not None else (),
         )
 
     def layup(self) -> Layup:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from beamenv.configuration import Count, Number, Refused, Text, checked
 from beamenv.configuration.arrays import checked_array
-from beamenv.plant.read_only import ReadOnly
+from beamenv.configuration.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 

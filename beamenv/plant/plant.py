@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Count, Number, checked
+from beamenv.configuration import Count, Instance, Number, checked
 from beamenv.configuration.arrays import shaped_array
+from beamenv.configuration.read_only import ReadOnly, sealed
 from beamenv.plant.hold import hold_all_with_cost, hold_with_cost
 from beamenv.plant.poles import poles_of_sampled
-from beamenv.plant.read_only import ReadOnly, sealed
 
 if TYPE_CHECKING:
     import control
@@ -196,7 +196,7 @@ def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
     ``interval`` in s defaults to the plant's own control interval. Raises ValueError for one that is not positive and finite, and
     where what is unstable in the plant, or no number, leaves no finite state at its end.
     """
-    interval = _checked_interval(plant, interval)
+    interval = _checked_interval(checked("plant", plant, Instance(Plant)), interval)
     with np.errstate(over="ignore", invalid="ignore"):  # said below
         return _sampled(plant, hold_with_cost(*_problem(plant), interval), interval)
 

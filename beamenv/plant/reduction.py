@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from beamenv.configuration import Count, Refused, checked
+from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import PatchLayout, PatchResponse, actuation, local_response, sensing
 from beamenv.plant.plant import Plant
-from beamenv.plant.read_only import ReadOnly
 from beamenv.structure import RotatingBeam
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.steady_deformation import AT_CLAMP, INTERVALS, STILL, SteadyDeformation, deformed, face_strain

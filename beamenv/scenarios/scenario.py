@@ -5,10 +5,12 @@ Those with a name are files in ``scenarios/named``: a TOML file put there is a s
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, field, replace
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any
 
 from beamenv.configuration import Choice, Flag, Range, Refused, Share, checked, checked_table, configuration, read
@@ -100,17 +102,18 @@ def _with_lists(value: Any) -> Any:
 
 
 _ALONE = dict.fromkeys(CASES[:-1], 0.0)
-SCENARIOS: dict[str, Scenario] = {
+_SCENARIOS: dict[str, Scenario] = {
     "default": Scenario(),
     **{case: Scenario(**{**_ALONE, case: 1.0}) for case in CASES[:-1]},  # type: ignore[arg-type]
     "white": Scenario(**_ALONE),  # type: ignore[arg-type]
     "quiet": Scenario(**_ALONE, white_load=False, sensor_noise=False),  # type: ignore[arg-type]
 }
+SCENARIOS: Mapping[str, Scenario] = MappingProxyType(_SCENARIOS)
 """Named scenarios: all four load cases in turn; each one alone; white load and sensor noise only (what an LQG is
 designed for); nothing at all; and the benchmark's, a file each."""
 
 
-def scenario(given: Scenario | Mapping[str, Any] | str | Path | None = None) -> Scenario:
+def scenario(given: Scenario | Mapping[str, Any] | str | os.PathLike[str] | None = None) -> Scenario:
     """The scenario meant by a name in ``SCENARIOS``, a TOML or JSON file, a dictionary of fields or itself; None: "default".
 
     A dictionary or file may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
@@ -118,7 +121,7 @@ def scenario(given: Scenario | Mapping[str, Any] | str | Path | None = None) -> 
     """
     if given is None:
         return SCENARIOS["default"]
-    if isinstance(given, Path) or (isinstance(given, str) and given.endswith(ENDINGS)):
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(ENDINGS)):
         return load_scenario(given)
     if isinstance(given, (str, Scenario)):
         return _named(given) if isinstance(given, str) else given
@@ -128,7 +131,7 @@ def scenario(given: Scenario | Mapping[str, Any] | str | Path | None = None) -> 
     return read(base, {name: value for name, value in given.items() if name != PRESET})
 
 
-def load_scenario(path: str | Path) -> Scenario:
+def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     """The scenario in a TOML or JSON file; ``ValueError`` names the file and what is wrong in it."""
     content = read_table(path)
     with of_file(path):
@@ -159,7 +162,7 @@ def _named(name: Any, path: str = "scenario") -> Scenario:
 
 
 for _name in NAMES:
-    SCENARIOS[_name] = scenario(parsed_table(files(named).joinpath(f"{_name}.toml").read_text(encoding="utf-8"), f"{_name}.toml"))
+    _SCENARIOS[_name] = scenario(parsed_table(files(named).joinpath(f"{_name}.toml").read_text(encoding="utf-8"), f"{_name}.toml"))
 
 
 LOAD_OPTIONS = ("case", "magnitude", "direction_deg", "onset", "duration", "frequency_ratio", "phase_deg")

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed
 from beamenv.structure.assembly import generalised_displacements
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
 from beamenv.structure.trial_functions import Stations
@@ -24,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BaseLoads:
+class BaseLoads(Sealed):
     """Generalised forces (N,) of the trial functions."""
 
     centrifugal: Array

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import InstanceOf
 
-from beamenv.configuration import Count, Number, Positive, Refused, checked, configuration
+from beamenv.configuration import Count, Flag, Number, Positive, Refused, checked, configuration
+from beamenv.configuration.arrays import real_numbers
 from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
@@ -42,6 +43,7 @@ SHORTEST = 1e-9
 OUT_OF_SCALE = "one of its numbers is too large or too small beside the others."
 
 TERMS = Count(1, 30)
+SPEED = Number(ge=0.0, unit="rad/s")
 
 
 @configuration("beam", slots=False, eq=False)
@@ -135,6 +137,7 @@ class RotatingBeam:
 
         From the critical speed on, and in the thesis' model, K_e + Ω² K_Ω and Ω G₁.
         """
+        speed = checked("speed", speed, SPEED)
         if self.model == "thesis" or speed >= self.critical_speed:
             matrices = self.matrices
             return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
@@ -180,7 +183,7 @@ class RotatingBeam:
         ``motions`` keeps only some of lag, flap, extension, twist, each with its section rotation.
         """
         point, count = self._selected(speed, count, motions)
-        if gyroscopic and np.any(point.gyroscopic):
+        if checked("gyroscopic", gyroscopic, Flag()) and np.any(point.gyroscopic):
             return whirling_frequencies(point.mass, point.gyroscopic, point.stiffness)[:count]
         return normal_modes(point.mass, point.stiffness, count)[0]
 
@@ -188,7 +191,7 @@ class RotatingBeam:
         """Frequencies, mode shapes and families of the first ``count`` modes at a speed in rad/s below the critical one."""
         point, count = self._selected(speed, count, motions)
         shapes: Array | NDArray[np.complex128]
-        if gyroscopic and speed:
+        if checked("gyroscopic", gyroscopic, Flag()) and speed:
             if speed >= self.critical_speed:
                 raise Refused("speed", speed, f"below the critical speed, {self.critical_speed:.6g} rad/s")
             frequencies, shapes = whirling_modes(point.mass, point.gyroscopic, point.stiffness, count)
@@ -202,7 +205,7 @@ class RotatingBeam:
         return Modes(frequencies, full, families, participation)
 
     def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> tuple[OperatingPoint, int]:
-        speed = checked("speed", speed, Number(ge=0.0, unit="rad/s"))
+        speed = checked("speed", speed, SPEED)
         columns = self.space.columns(motions)
         count = checked("count", count, Count(1, len(columns)))
         return self.at(speed) if motions is None else self.at(speed).restricted(columns), count
@@ -214,13 +217,21 @@ class RotatingBeam:
         full[self.space.columns(motions)] = shapes
         return full
 
-    def displacements(self, z: Array) -> dict[str, Array]:
+    def checked_stations(self, z: Any) -> Array:
+        """Z (stations,) in m; ``ValueError`` for what is not on the blade."""
+        stations = np.atleast_1d(real_numbers("z", z))
+        if stations.ndim != 1 or not np.all((stations >= -SHORTEST * self.length) & (stations <= (1.0 + SHORTEST) * self.length)):
+            raise Refused("z", z, f"distances from the clamp, from 0 to {self.length:g} m, in one row")
+        return stations
+
+    def displacements(self, z: ArrayLike) -> dict[str, Array]:
         """Rows (stations, N) that give u, v, s, theta_x, theta_y, phi at z (m) from the coefficient vector."""
-        rows = self.space.evaluate(np.atleast_1d(np.asarray(z, dtype=float)))
+        rows = self.space.evaluate(self.checked_stations(z))
         return {name: rows[name, 0] for name in ("u", "v", "s", "theta_x", "theta_y", "phi")}
 
     def surface_strain(self, z: Array, speed: float = 0.0) -> Array:
         """Rows (stations, points, N): spanwise strain at points of the outer face, at z (m), of vibration at a speed in rad/s."""
+        z = self.checked_stations(z)
         if self.model == "blade":
             face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
             return np.asarray(face @ self.exact.section_strains(z, self.at(speed)))
@@ -234,6 +245,7 @@ class RotatingBeam:
         """(stations, points): spanwise strain at the points of ``surface_strain`` as the blade turns and nothing vibrates; zero in
         the thesis' model, which leaves it out.
         """
+        z = self.checked_stations(z)
         if self.model == "thesis":
             return np.zeros(self.surface_strain(z).shape[:2])
         face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)

@@ -95,7 +95,7 @@ REFUSED = {
         r"width = 0\.3 m must be positive and at most the top wall's 0\.254 m",
     ),
     "off the blade": (lambda: patch_force(BLADE, MFC, "top", 1.95, 0.1, 0.05), "must lie on the blade, 0 to 2.0 m"),
-    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall = 'nose' must name one straight wall"),
+    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall is 'nose', but must be one straight wall"),
 }
 
 

@@ -164,10 +164,10 @@ REFUSED = {
     ),
     "unknown motion": (
         lambda: blade().modes(motions=("lead",)),
-        r"motions = \('lead',\) must be a tuple of one or more of lag, flap",
+        r"motions is \('lead',\), but must be a list of one or more of lag, flap",
     ),
-    "motion not in a tuple": (lambda: blade().natural_frequencies(motions="lag"), "motions = 'lag' must be a tuple"),
-    "no motion": (lambda: blade().natural_frequencies(motions=()), r"motions = \(\) must be a tuple of one or more"),
+    "motion not in a tuple": (lambda: blade().natural_frequencies(motions="lag"), "motions is 'lag', but must be a list of"),
+    "no motion": (lambda: blade().natural_frequencies(motions=()), r"motions is \(\), but must be a list of one or more"),
     "overlapping inlays": (overlapping_inlays, r"inlays at 0\.25 and 0\.3 m on the top wall must be 0\.1 m apart"),
     "inlay past the tip": (blade_with(start=1.95), r"inlay from 1\.95 to 2\.05 m must lie on the blade, 0 to 2\.0 m"),
     "inlay before the root": (blade_with(start=-0.1), r"inlay from -0\.1 to 0\.0 m must lie on the blade"),
@@ -175,7 +175,7 @@ REFUSED = {
     "inlay as thick as its wall": (blade_with(thickness=0.01), r"inlay thickness = 0\.01 m must be .* below the wall's 0\.01 m"),
     "inlay on no wall": (
         blade_with(wall="nose"),
-        "wall = 'nose' must name one straight wall of the section: right, top, left, bottom",
+        "wall is 'nose', but must be one straight wall of the section: right, top, left, bottom",
     ),
     "inlay nowhere": (blade_with(start=NAN), "inlay.start is nan, but must be a finite number"),
 }

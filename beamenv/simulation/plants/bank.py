@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import ReadOnly, read_only, sealed
 from beamenv.plant.plant import Plant, normalised
-from beamenv.plant.read_only import ReadOnly, read_only, sealed
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
 from beamenv.simulation.plants.cost_axes import cost_axes, in_axes

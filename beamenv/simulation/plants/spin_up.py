@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
+from beamenv.configuration.read_only import sealed
 from beamenv.plant.plant import Plant
-from beamenv.plant.read_only import sealed
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import coordinates, widened
 from beamenv.simulation.plants.run_up import RunUp

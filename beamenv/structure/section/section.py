@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Choice, Number, Points, Refused, Texts, checked, configuration
+from beamenv.configuration import Choice, Instance, Number, Points, Refused, Text, Texts, checked, configuration
 from beamenv.structure.model import checked_flow
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.section.mesh import ring
@@ -90,9 +90,10 @@ class Section(ABC):
 
     def wall_width(self, wall: str) -> float:
         """Length (m) along the contour of a wall; ``ValueError`` unless it is one straight edge."""
+        checked("wall", wall, Text())
         edges = [k for k, name in enumerate(self.walls) if name == wall]
         if len(edges) != 1:
-            raise ValueError(f"wall = {wall!r} must name one straight wall of the section: {', '.join(dict.fromkeys(self.walls))}.")
+            raise Refused("wall", wall, f"one straight wall of the section: {', '.join(dict.fromkeys(self.walls))}")
         return float(self.edge_lengths[edges[0]])
 
     def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:
@@ -103,7 +104,7 @@ class Section(ABC):
         and Badir, Composites Engineering 2, 1992). Raises ``ValueError`` for an option that is unknown or not the model's, and
         for a lay-up of other walls.
         """
-        layup.check_walls(self.walls)
+        checked("layup", layup, Instance(Layup)).check_walls(self.walls)
         checked("shear", shear, THEORY)
         flow = checked_flow(model, shear_flow)
         return self.properties(layup).classical_stiffness if model == "blade" else self._wall_stiffness(layup, shear, flow)
@@ -113,7 +114,7 @@ class Section(ABC):
 
         Raises ``ValueError`` for a lay-up of other walls and for a wall too short for its thickness.
         """
-        layup.check_walls(self.walls)
+        checked("layup", layup, Instance(Layup)).check_walls(self.walls)
         hosts = {wall: Laminate.equal_plies(layup.plies(wall), self.thickness) for wall in self.walls}
         elements = ring(self.vertices[None], self.walls, self.thickness)
         laminates = list(dict.fromkeys(hosts.values()))
