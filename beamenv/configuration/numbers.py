@@ -121,7 +121,11 @@ class Range(Kind):
 
     def _rising(self, ends: tuple[Any, Any]) -> tuple[Any, Any]:
         low, high = ends
-        if (low > high and not self.falls) or high - low < self.apart or not (self.encloses is None or low < self.encloses < high):
+        if (
+            (low > high and not self.falls)
+            or (self.apart and high - low < self.apart)
+            or not (self.encloses is None or low < self.encloses < high)
+        ):
             raise ValueError
         return ends
 
