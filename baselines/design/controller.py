@@ -9,6 +9,8 @@ from typing import Any, Literal, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration import shown
+
 Array = NDArray[np.float64]
 Observes = Literal["observation", "state", "observation and speed"]
 """What ``predict`` wants: the sensors' readings, the true state, or the readings (p,) with the rotor speed in rad/s behind them."""
@@ -64,8 +66,8 @@ def as_controller(controller: ControllerArgument) -> Controller:
     """The controller itself, or a plain function as one; ValueError for anything else."""
     if isinstance(controller, type) or not callable(getattr(controller, "predict", controller)):
         raise ValueError(
-            f"controller = {controller!r} is not allowed: it must be an object with Stable-Baselines3's predict, or a function of "
-            "the observations (N, p) that returns actions (N, m)"
+            f"controller = {shown(controller)} is not allowed: it must be an object with Stable-Baselines3's predict, or a "
+            "function of the observations (N, p) that returns actions (N, m)"
         )
     return controller if hasattr(controller, "predict") else FunctionController(controller)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
 
@@ -12,8 +12,10 @@ from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
 from baselines.design.controller import Array, Controller, ControllerArgument, as_controller
-from baselines.evaluation.loop import INFO, Environment, attribute, check_fit, instants
-from beamenv.configuration import Count, Numbers, checked
+from baselines.evaluation.conditions import Conditions, conditions, steps
+from baselines.evaluation.fit import check_fit
+from baselines.evaluation.loop import INFO, Environment, attribute, instants
+from beamenv.configuration import Count, Numbers, Refused, checked
 
 SEEDS = Numbers(Count(0, 2**63 - 1), least=1, of="seeds")
 _NO_LOAD = {"load": {"case": "none"}}
@@ -22,7 +24,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Episodes:
-    """What N blades did over T control intervals; NaN after the end of a blade that failed early."""
+    """What N blades did over the T control intervals of a whole episode; NaN after the failure of a blade that did not bear it."""
 
     seeds: tuple[int, ...]
     cost: Array
@@ -42,6 +44,8 @@ class Episodes:
     """(2, m), V."""
     interval: float
     """s."""
+    conditions: Conditions | None = field(default=None, repr=False)
+    """What decided them besides; None of an environment that does not tell."""
 
     @property
     def time(self) -> Array:
@@ -55,26 +59,36 @@ def checked_seeds(seeds: Any) -> tuple[int, ...]:
     return checked_list
 
 
+def checked_progress(progress: Any) -> Progress | None:
+    """What is called as episodes finish, or None; ``ValueError`` for what cannot be called."""
+    if progress is None or callable(progress):
+        return progress
+    raise Refused("progress", progress, "None, or a function of the number done and their total")
+
+
 def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[int], progress: Progress | None = None) -> Episodes:
     """One episode for each seed. Equal seeds mean equal loads and noise, so that controllers are compared in pairs.
 
     ``controller`` is a law of this package, anything with SB3's ``predict``, or a function from observations (N, p) to actions
     (N, m). Each seed is run twice, the second time for ``Episodes.load_response``. ``env`` is one environment or a batch, filled as
     often as it takes; it is reset but not closed. ``progress`` is called with the number of episodes done and their total.
-    Raises ValueError for no seeds, or for what is no controller.
+    Raises ValueError for no seeds, for what is no controller, and for one that does not fit the environment.
     """
-    controller, seeds = as_controller(controller), checked_seeds(seeds)
+    controller, seeds, progress = as_controller(controller), checked_seeds(seeds), checked_progress(progress)
     check_fit(controller, env)
     width = env.num_envs if isinstance(env, VectorEnv) else 1
-    parts = []
+    parts: list[list[Array]] = []
+    under: Conditions | None = None
     for first in range(0, len(seeds), width):
         batch = seeds[first : first + width]
         padded = batch + batch[-1:] * (width - len(batch))
         loaded, unloaded = (_run(controller, env, padded, options) for options in (None, _NO_LOAD))
         parts.append([series[:, : len(batch)] for series in (*loaded, unloaded[2])])
+        known = conditions(env, len(batch))
+        under = known if under is None or known is None else under.and_then(known)
         if progress is not None:
             progress(first + len(batch), len(seeds))
-    length = max(len(series) for part in parts for series in part)
+    length = max(steps(env), *(len(series) for part in parts for series in part))
     cost, effort, tip, voltages, failed, tremor = (_side_by_side(series, length) for series in zip(*parts, strict=True))
     plant = attribute(env, "plant")[0]
     return Episodes(
@@ -87,6 +101,7 @@ def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[i
         failed=np.nansum(failed, axis=0) > 0,
         voltage_limits=plant.voltage_limits,
         interval=plant.control_interval,
+        conditions=under,
     )
 
 

@@ -6,16 +6,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from gymnasium.vector import VectorEnv
 
 from baselines.design.controller import Array, ControllerArgument, as_controller, name_of
-from baselines.evaluation.episodes import Episodes, Progress, checked_seeds, roll_out
+from baselines.evaluation.episodes import Episodes, Progress, checked_progress, checked_seeds, roll_out
+from baselines.evaluation.fit import check_fit, made
 from baselines.evaluation.loop import Environment
-from baselines.evaluation.metrics import EpisodeMetrics, finite, measure, settling_band
+from baselines.evaluation.metrics import EpisodeMetrics, cost_without_control, finite, judged, measure, settling_band
 from baselines.evaluation.statistics import Estimate, interval, paired_draws
-from beamenv.configuration import Number, checked
+from beamenv.configuration import Number, Refused, checked
 
 WIDEST_BATCH = 1024
 
@@ -28,9 +28,12 @@ class Evaluation:
     confidence: float
     """Of every interval, 0.95 unless asked otherwise."""
     relative_cost: Estimate
-    """J over J without control: ratio of the means, its interval from seeds resampled in pairs."""
+    """J over J without control: ratio of the means, its interval from seeds resampled in pairs.
+
+    A blade that fails under the controller alone makes it infinite; one that fails without control too counts as no better, and one
+    that the controller saves is compared with ``uncontrolled``."""
     cost: Estimate
-    """J, J s."""
+    """J, J s; infinite if a blade fails."""
     effort: Estimate
     """The actuators' share of J, J s."""
     settling_time: Estimate
@@ -49,6 +52,8 @@ class Evaluation:
     """Share of actuators and time at a drive limit."""
     metrics: EpisodeMetrics
     """Seed by seed."""
+    uncontrolled: Array
+    """(N,), J s: J without control, seed by seed. One that fails is charged to the end of its episode as in its last interval."""
     episodes: Episodes
     """What was recorded."""
     reference: Episodes
@@ -87,7 +92,13 @@ class Evaluation:
             },
             "seeds": list(self.episodes.seeds),
             "per_seed": self.metrics.to_dict(),
+            "uncontrolled": self.uncontrolled.tolist(),
         }
+
+    @property
+    def judged_cost(self) -> Array:
+        """(N,), J s: J as it stands over ``uncontrolled``, equal to it where the blade fails without control too."""
+        return judged(self.metrics.cost, self.uncontrolled, self.reference.failed)
 
 
 def evaluate(
@@ -104,39 +115,75 @@ def evaluate(
     ``controller`` is a law of this package, an SB3 model or anything else with SB3's ``predict``, or a plain function that is
     called with the observations (N, p) of all blades and returns their actions (N, m); a law that ``observes`` the "state" is given
     the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id of one.
-    ``reference`` spares the run without control: the ``reference`` of an evaluation on the same seeds and environment.
-    ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no
-    controller, no seeds, a confidence outside (0, 1) or a reference with other seeds.
+    ``reference`` spares the run without control: the ``reference`` of an evaluation of the very same episodes.
+    ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no controller or does
+    not fit the environment, no seeds, a confidence outside (0, 1), a reference of other episodes, and where nothing moves without
+    control: no cost is relative to that.
     """
     confidence, seeds = checked("confidence", confidence, Number(gt=0.0, lt=1.0)), checked_seeds(seeds)
+    controller, progress = as_controller(controller), checked_progress(progress)
     if isinstance(env, str):
-        made: VectorEnv[Any, Any, Any] = gym.make_vec(env, num_envs=max(1, min(len(seeds), WIDEST_BATCH)))
+        batch = made(env, max(1, min(len(seeds), WIDEST_BATCH)))
         try:
-            return evaluate(controller, made, seeds, reference=reference, confidence=confidence, progress=progress)
+            return evaluate(controller, batch, seeds, reference=reference, confidence=confidence, progress=progress)
         finally:
-            made.close()
-    controller = as_controller(controller)
+            batch.close()
+    check_fit(controller, env)
+    _check_reference(reference, seeds)
+    without = roll_out(_idle(env), env, seeds) if reference is None else reference
+    uncontrolled = checked_uncontrolled(without)
     episodes = roll_out(controller, env, seeds, progress)
+    _check_pairs(episodes, without)
+    metrics = measure(episodes, settling_band(without))
+    estimates = _estimates(metrics, judged(metrics.cost, uncontrolled, without.failed), uncontrolled, confidence)
+    about = {"metrics": metrics, "uncontrolled": uncontrolled, "episodes": episodes, "reference": without}
+    return Evaluation(name_of(controller), confidence, **about, **estimates)  # type: ignore[arg-type]
+
+
+def checked_uncontrolled(reference: Episodes) -> Array:
+    """J₀ (N,), J s; ``ValueError`` where no cost can be relative to it, for nothing moves, or without bounds."""
+    cost = cost_without_control(reference)
+    if not np.isfinite(cost).all():
+        raise ValueError("scenario moves the blade without bounds, and J without control is infinite: no cost is relative to it.")
+    if not cost.any():
+        raise ValueError("scenario moves nothing, and J without control is zero: no cost is relative to it.")
+    return cost
+
+
+def _check_reference(reference: Any, seeds: tuple[int, ...]) -> None:
     if reference is None:
-        reference = roll_out(_idle(env), env, seeds)
-    elif reference.seeds != episodes.seeds:
-        raise ValueError(f"reference has seeds {_abridged(reference.seeds)}, but the evaluation has {_abridged(episodes.seeds)}")
-    metrics = measure(episodes, settling_band(reference))
-    estimates = _estimates(metrics, np.nansum(reference.cost, axis=0), confidence)
-    return Evaluation(name_of(controller), confidence, metrics=metrics, episodes=episodes, reference=reference, **estimates)
+        return
+    if not isinstance(reference, Episodes):
+        raise Refused("reference", reference, "None, or the reference of an evaluation of the same episodes")
+    if reference.seeds != seeds:
+        raise ValueError(f"reference has seeds {_abridged(reference.seeds)}, but the evaluation has {_abridged(seeds)}")
 
 
-def _estimates(metrics: EpisodeMetrics, reference_cost: Array, confidence: float) -> dict[str, Estimate]:
-    draws = paired_draws(len(reference_cost))
+def _check_pairs(episodes: Episodes, reference: Episodes) -> None:
+    """``ValueError`` unless both are of the same episodes, as far as their environments tell."""
+    if episodes.conditions is not None:
+        episodes.conditions.check(reference.conditions)
+    for what, own, other in (
+        ("control intervals of (s)", episodes.interval, reference.interval),
+        ("control intervals in an episode", len(episodes.cost), len(reference.cost)),
+    ):
+        if own != other:
+            raise ValueError(f"reference has {what} {other}, but the evaluation has {own}.")
+
+
+def _estimates(metrics: EpisodeMetrics, cost: Array, uncontrolled: Array, confidence: float) -> dict[str, Estimate]:
+    draws = paired_draws(len(cost))
 
     def estimate(values: Array, over: Array | None = None) -> Estimate:
         value, resampled = values.mean(), values[draws].mean(axis=1)
         if over is not None:
-            value, resampled = value / over.mean(), resampled / over[draws].mean(axis=1)
+            below = over[draws].mean(axis=1)
+            moving = below > 0.0  # an episode in which nothing moves may be drawn alone
+            value, resampled = value / over.mean(), resampled[moving] / below[moving]
         return interval(value, resampled, confidence)
 
     each = {name: estimate(getattr(metrics, name)) for name in metrics.__dataclass_fields__}
-    return {"relative_cost": estimate(metrics.cost, reference_cost), **each}
+    return {"relative_cost": estimate(cost, uncontrolled), **each}
 
 
 def _idle(env: Environment) -> Callable[[Any], Array]:

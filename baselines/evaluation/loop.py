@@ -11,10 +11,7 @@ import numpy as np
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
-from baselines.design.controller import Array, Controller, ControllerArgument, as_controller, name_of
-from baselines.design.law import Law
-from beamenv.configuration import Refused
-from beamenv.task import Task
+from baselines.design.controller import Array, ControllerArgument, as_controller
 
 Environment: TypeAlias = "gym.Env[Any, Any] | VectorEnv[Any, Any, Any]"
 INFO = ("cost_increment", "effort", "tip_displacement", "volts")
@@ -54,23 +51,6 @@ def instants(
         yield Instant(info, running.copy(), failed)
         running &= ~ended
         begins[:] = False
-
-
-def check_fit(controller: Controller, env: Environment) -> None:
-    """``ValueError`` for what is no environment with blades, and for a law of this package in the other units than its own."""
-    if not isinstance(env, (gym.Env, VectorEnv)):
-        raise Refused("env", env, "an environment with a blade, a batch of them, or the id of one")
-    try:
-        attribute(env, "plant")
-    except AttributeError:
-        raise Refused("env", env, "an environment with a blade, a batch of them, or the id of one") from None
-    task = getattr(env.unwrapped, "task", None)
-    if isinstance(controller, Law) and isinstance(task, Task) and not controller.instruments.fit(task.physical_units):
-        other = "without" if task.physical_units else "with"
-        raise ValueError(
-            f"controller = {name_of(controller)} is a law for an environment {other} physical_units=True, which this one is not: "
-            "law.in_physical_units() gives a law for it"
-        )
 
 
 def attribute(env: Environment, name: str) -> Sequence[Any]:

@@ -27,12 +27,12 @@ class EpisodeMetrics:
     """J s: the actuators' share of J, up to the failure if there was one."""
     settling_time: Array
     """s from the reset until the tip's response to the load case last leaves a band of 5 % of its uncontrolled peak about its
-    final position, which is the deflection under a load that lasts. The whole episode if it does not settle: a harmonic load
-    seldom lets it."""
+    final position, which is the deflection under a load that lasts. The whole episode if it does not settle, as under a harmonic
+    load, or if the blade fails."""
     settled: Array
     """1 if it had settled when the last fifth of the episode began, else 0."""
     peak_tip: Array
-    """m: greatest distance of the tip from where it rests without load."""
+    """m: greatest distance of the tip from where it rests without load. This and the rest up to a failure."""
     rms_tip: Array
     """m."""
     peak_voltage: Array
@@ -58,12 +58,13 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     magnitude = np.abs(episodes.voltages)
     low, high = 0.999 * episodes.voltage_limits  # single precision and tanh come near a limit without touching it
     at_limit = np.where(np.isnan(magnitude), np.nan, (episodes.voltages >= high) | (episodes.voltages <= low))
-    settling_time = np.asarray(episodes.interval * settled_from(_excursion(episodes), band), dtype=np.float64)
+    from_instant = np.where(episodes.failed, len(episodes.time), settled_from(_excursion(episodes), band))
+    settling_time = np.asarray(episodes.interval * from_instant, dtype=np.float64)
     return EpisodeMetrics(
         cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
         effort=np.nansum(episodes.effort, axis=0),
         settling_time=settling_time,
-        settled=((settling_time <= (1.0 - REST) * episodes.time[-1]) & ~episodes.failed).astype(float),
+        settled=(settling_time <= (1.0 - REST) * episodes.time[-1]).astype(float),
         peak_tip=np.nanmax(distance, axis=0),
         rms_tip=np.sqrt(np.nanmean(distance**2, axis=0)),
         peak_voltage=np.nanmax(magnitude, axis=(0, 2)),
@@ -72,9 +73,33 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     )
 
 
+def cost_without_control(uncontrolled: Episodes) -> Array:
+    """(N,), J s: J₀, what every J is relative to. A blade that fails is charged to the end of its episode as in its last interval.
+
+    So J₀ stays a number, where J of a blade that fails under a controller is infinite. ``judged`` says how the two meet.
+    """
+    recorded = ~np.isnan(uncontrolled.cost)
+    last = np.take_along_axis(uncontrolled.cost, recorded.sum(axis=0)[None] - 1, axis=0)[0]
+    spent = np.nansum(uncontrolled.cost, axis=0)
+    return np.where(uncontrolled.failed, spent + (~recorded).sum(axis=0) * last, spent)
+
+
+def judged(cost: Array, without_control: Array, lost: NDArray[np.bool_]) -> Array:
+    """J (…, N) as it stands over J₀ (N,): J₀ itself where a blade fails and is ``lost`` (N,) without control too.
+
+    A blade that fails under a controller alone keeps its infinite J.
+    """
+    return np.where(np.isinf(cost) & lost, without_control, cost)
+
+
 def settling_band(uncontrolled: Episodes) -> Array:
-    """(N,), m: 5 % of the greatest distance of the tip's response to the load case from its final position, without control."""
-    return SETTLING_BAND * _excursion(uncontrolled).max(axis=0)
+    """(N,), m: 5 % of the greatest distance of the tip's response to the load case from its final position, without control.
+
+    A blade that fails has none: then of the greatest response up to its failure.
+    """
+    greatest = _excursion(uncontrolled).max(axis=0)
+    response = np.nanmax(np.linalg.norm(uncontrolled.load_response, axis=-1), axis=0)
+    return SETTLING_BAND * np.where(np.isfinite(greatest), greatest, response)
 
 
 def _excursion(episodes: Episodes) -> Array:

@@ -14,7 +14,7 @@ The rules, the same for every argument, dictionary and file:
 - What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
 """
 
-from beamenv.configuration.kinds import Choice, Flag, Instance, NameOrFile, Table, Text, Texts
+from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
 from beamenv.configuration.sentence import Refused, shown
@@ -22,6 +22,7 @@ from beamenv.configuration.sentence import Refused, shown
 __all__ = [
     "Choice",
     "Count",
+    "FileName",
     "Flag",
     "Instance",
     "NameOrFile",

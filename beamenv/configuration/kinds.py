@@ -110,6 +110,27 @@ class Text(Kind):
         return {"type": "string"}
 
 
+@dataclass(frozen=True, slots=True)
+class FileName(Kind):
+    """A name that becomes that of a file or folder, the same on every system: never a path, nor an option."""
+
+    @property
+    def allowed(self) -> str:
+        """What they may be made of."""
+        return (
+            "names that files can have, of at most 100 characters: a letter, a digit or _ first, no slash, no colon and none of "
+            '\\*?"<>|, no line break, and no dot or space last'
+        )
+
+    def core(self) -> CoreSchema:
+        """A string."""
+        return core_schema.no_info_after_validator_function(_for_a_file, core_schema.str_schema(strict=True, max_length=100))
+
+    def json(self) -> JsonSchema:
+        """A string."""
+        return {"type": "string", "maxLength": 100}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Choice(Kind):
     """One of several names; where they are those of a mapping's objects, a table in its place departs from the object named.
@@ -225,6 +246,20 @@ class Table(Kind):
     def json(self) -> JsonSchema:
         """An object."""
         return {"type": "object"}
+
+
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
+
+
+def _for_a_file(value: str) -> str:
+    begins = value[:1].isalnum() or value[:1] == "_"
+    if not begins or not value.isprintable() or set(value) & set('/\\:*?"<>|') or value[-1] in ". " or _stem(value) in _DEVICES:
+        raise ValueError
+    return value
+
+
+def _stem(value: str) -> str:
+    return value.partition(".")[0].rstrip().lower()
 
 
 def _as_text(value: Any) -> Any:

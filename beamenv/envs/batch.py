@@ -112,7 +112,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """Take on tasks, blade k that at k modulo their number, in place of those before; what comes next must be ``reset``.
 
         The tasks may differ in their blades alone, and these not in how many patches they have nor in their electronics.
-        ``task``, ``plant`` and ``design_plant`` are then the first blade's.
+        ``task``, ``plant`` and ``design_plant`` are then the first blade's; ``tasks`` has them all.
         """
         tasks = [checked_task(task) for task in tasks]
         blades: Blades | MixedBlades  # what cannot be built is refused before anything has changed
@@ -120,7 +120,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             blades = Blades(tasks[0].bank, tasks[0].scenario, self.num_envs, tasks[0].physical_units)
         else:
             blades = _mixed(tasks, self.num_envs)
-        self.task, self._blades = tasks[0], blades
+        self.task, self.tasks, self._blades = tasks[0], tuple(tasks), blades
         self._notes = np.resize(np.array([task.note for task in tasks], dtype=object), self.num_envs)
         self.single_action_space = self.task.action_space()
         self.single_observation_space = self.task.observation_space()
@@ -131,6 +131,11 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
         self._over: Rows = np.arange(0)  # rows whose episode ended at the last step, with NEXT_STEP
         self._pictures = None if self.render_mode is None else self._make_pictures(tasks)
+
+    @property
+    def steps(self) -> int:
+        """Control intervals in a whole episode."""
+        return self._steps
 
     @property
     def plant(self) -> Plant:

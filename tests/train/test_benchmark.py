@@ -135,15 +135,6 @@ def test_an_interrupted_run_goes_on_from_its_whole_cells(tmp_path):
     assert again.cells == []
 
 
-@pytest.mark.parametrize("change", [{"seeds": 4}, {"environment": {"duration": 0.03}}])
-def test_cells_of_other_episodes_are_not_taken_over(change, tmp_path):
-    one = {**SMALL, "scenarios": ["nominal"]}
-    benchmark(folder=tmp_path, **one)
-    notes = Notes()
-    benchmark(folder=tmp_path, progress=notes, **{**one, **change})
-    assert len(notes.cells) == 3
-
-
 def test_cells_that_failed_and_objects_are_measured_again(tmp_path):
     one = {**SMALL, "scenarios": ["nominal"]}
     benchmark({"mine": Broken()}, folder=tmp_path, **one)
@@ -288,6 +279,25 @@ def test_episodes_that_a_controller_makes_twice_as_bad_count_as_unstable():
 def test_where_nothing_moves_no_cost_is_relative_to_it():
     table = benchmark(**{**SMALL, "scenarios": ["quiet"]})
     assert "J without control is zero" in table.row("quiet", "lqg").sentences[0]
+
+
+def test_blades_that_fail_are_judged_as_an_evaluation_does_also_from_kept_cells(tmp_path):
+    path = tmp_path / "heavy.toml"
+    path.write_text('preset = "step"\nmagnitude = 20000.0\n')
+    heavy = {"scenarios": [str(path)], "controllers": [], "seeds": 2, "folder": tmp_path / "out", "environment": {"duration": 0.1}}
+    for row in (*benchmark(**heavy).rows, *benchmark(**heavy).rows):
+        found = {name: each.value for name, each in row.estimates.items()}
+        assert (found["relative_cost"], found["relative_cost_iqm"], found["unstable"]) == (1.0, 1.0, 1.0), row.controller
+        assert (found["settled"], found["settling_time"]) == (0.0, 0.1)
+        assert (found["difference_to_lqg"], found["improvement_on_lqg"], found["cost"]) == (0.0, 0.5, np.inf)
+
+
+def test_in_physical_units_the_named_laws_take_amperes_and_give_volts():
+    arguments = {"scenarios": ["nominal"], "controllers": ["lqg"], "seeds": 2}
+    plain, physical = (benchmark(**arguments, environment={**SHORT, "physical_units": each}) for each in (False, True))
+    for row in plain.rows:
+        same = physical.row("nominal", row.controller).estimates
+        assert row.estimates["relative_cost"].value == pytest.approx(same["relative_cost"].value, rel=1e-9)
 
 
 @pytest.mark.slow

@@ -24,6 +24,13 @@ def test_words_are_left_aligned_and_numbers_right():
         ("&lt;b>", "&amp;lt;b>"),
         ("[here](javascript:x)", r"[here]\(javascript:x)"),
         ("two\nlines", "two lines"),
+        ("one\u2028line\x1b[2J", "one line [2J"),
+        ("very *bold* or **bolder**", r"very \*bold\* or \*\*bolder\*\*"),
+        ("_slanted_", r"\_slanted\_"),
+        ("~~gone~~", "&#126;~gone&#126;~"),
+        ("$x^2$", "&#36;x^2&#36;"),
+        ("[here][there]", r"[here]\[there]"),
+        ("https://elsewhere", "https&#58;//elsewhere"),
     ],
 )
 def test_a_name_cannot_end_its_cell_or_become_markup(name, written):

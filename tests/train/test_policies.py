@@ -2,10 +2,13 @@
 
 from dataclasses import replace
 
+import gymnasium
 import numpy as np
 import pytest
 import torch
 
+import beamenv
+from baselines import evaluate
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from train.controllers.policies import HistoryPolicy
@@ -139,3 +142,12 @@ def test_an_overruled_action_is_not_remembered(recurrent):
     known = recurrent.knowing(memory, held)
     np.testing.assert_array_equal(known[:, -4:], held)
     np.testing.assert_array_equal(known[:, :-4], memory[:, :-4])
+
+
+def test_an_agent_that_counts_in_drive_limits_is_refused_where_volts_are_wanted():
+    weights = {"weight0": np.zeros((4, 24), np.float32), "bias0": np.zeros(4, np.float32)}
+    idle = HistoryPolicy("idle", weights, {"input_gain": 1.0, "held": 1}, -np.ones(4, np.float32), np.ones(4, np.float32))
+    plain, physical = (gymnasium.make(beamenv.ENV_ID, duration=0.02, physical_units=each) for each in (False, True))
+    assert evaluate(idle, plain, range(2)).relative_cost.value == 1.0
+    with pytest.raises(ValueError, match="^controller = idle is an agent for an environment without physical_units=True"):
+        evaluate(idle, physical, range(2))

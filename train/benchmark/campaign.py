@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,12 @@ import beamenv
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.blade.presets import blade_config
-from beamenv.configuration import Count, Flag, Table, Text, Texts, checked, checked_table, shown
+from beamenv.configuration import Count, FileName, Flag, Refused, Table, Text, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.scenario import Scenario, scenario
-from train.benchmark.cells import Cell, Job, Setting, read_cell, write_cell
+from train.benchmark.bench import Setting
+from train.benchmark.cells import Cell, Job, read_cell, write_cell
+from train.benchmark.claim import claim
 from train.benchmark.listed import ListedController, listed_controllers
 from train.benchmark.runner import run
 from train.benchmark.showing.report import write_files
@@ -61,15 +64,17 @@ def benchmark(
     - ``progress``: called with cells done, their number, and the cell.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
-    A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, or when
-    no scenario is left.
+    A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, when
+    no scenario is left, and for a folder with a benchmark of other settings, which it would replace.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
+    if progress is not None and not callable(progress):
+        raise Refused("progress", progress, "None, or a function of cells done, their number, and the cell")
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
     scenarios = None if scenarios is None else checked("scenarios", scenarios, Texts())
-    folder = None if folder is None else Path(checked("folder", os.fspath(folder) if isinstance(folder, Path) else folder, Text()))
+    folder, trained = None if folder is None else _path("folder", folder), _path("trained", trained)
     models = [Path(each) for each in checked("models", models, Texts())]
     if folder is not None:
         check_folder(folder)
@@ -82,11 +87,31 @@ def benchmark(
         for each in listed
         for name, source in each.runs(setting.name).items()
     ]
+    check_paths(queue)
+    made = configuration(settings, listed)
+    if folder is not None:
+        claim(folder, made)
     cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
-    table = tabulate(cells, listed, refused, configuration(settings, listed))
+    table = tabulate(cells, listed, refused, made)
     if folder is not None:
         write_all(folder, table)
     return table
+
+
+def _path(name: str, value: Any) -> Path:
+    return Path(checked(name, os.fspath(value) if isinstance(value, os.PathLike) else value, Text()))
+
+
+def check_paths(queue: Sequence[Job]) -> None:
+    """``ValueError`` for two cells that would have one file, also where capital letters are the same as small ones."""
+    known: dict[str, Job] = {}
+    for job in queue:
+        other = known.setdefault(unicodedata.normalize("NFC", str(job.path)).casefold(), job)
+        if other is not job:
+            ours, theirs = str(job.path), str(other.path)
+            raise ValueError(
+                f"own gives two cells one file, {theirs!r} and {ours!r}: give one controller or scenario another name."
+            )
 
 
 def environment_json(environment: Any) -> str:
@@ -112,7 +137,7 @@ def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], di
     """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
     read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
     titles = {name: Path(name).stem if name.endswith(ENDINGS) else name for name in read}
-    known = {titles[name]: each for name, each in read.items() if isinstance(each, Scenario)}
+    known = {checked("scenario", titles[name], FileName()): each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}
     if doubled := [name for name in read if list(titles.values()).count(titles[name]) > 1]:
         raise ValueError(f"scenarios {' and '.join(doubled)} have the same name: rename the file.")

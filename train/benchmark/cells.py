@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-import beamenv
-from baselines import EpisodeMetrics, Episodes, no_control, roll_out
+from baselines import EpisodeMetrics, roll_out
 from baselines.design.controller import name_of
-from baselines.evaluation.metrics import finite, measure, settling_band
-from beamenv.scenarios.scenario import Scenario
+from baselines.evaluation.metrics import finite, measure
+from beamenv.configuration import Refused, Text, checked, checked_table
+from beamenv.configuration.files import of_file
+from train.benchmark.bench import Bench, Blades, Setting
 from train.controllers.sources import Source
 from train.shared.digests import CONTROLLERS, digest, source_digest
-from train.shared.files import write_json
+from train.shared.files import read_json, write_json
 from train.shared.held_out import held_out
 from train.shared.versions import installed_version
 
@@ -28,6 +27,7 @@ Array = NDArray[np.float64]
 
 DEPENDS_ON = (
     *CONTROLLERS,
+    "train.benchmark.bench",
     "train.benchmark.cells",
     "train.controllers.models",
     "train.controllers.sources",
@@ -37,17 +37,11 @@ DEPENDS_ON = (
 
 SERIES = tuple(each.name for each in fields(EpisodeMetrics))
 
+ABOUT = ("scenario", "controller", "run", "title", "sentence")
+"""Fields of a cell that are text."""
 
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """The episodes that every controller is put through."""
-
-    name: str
-    """Of the scenario."""
-    scenario: Scenario
-    seeds: int
-    arguments: str = "{}"
-    """Of the environment besides, as JSON."""
+BESIDE = ("uncontrolled", "lost")
+"""Fields of a cell with a number for each seed, besides its metrics."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,42 +76,27 @@ class Cell:
     sentence: str = ""
     """Why it failed; or, beside metrics, what went wrong on the way."""
     uncontrolled: Array | None = None
-    """(N,), J s: J without control."""
+    """(N,), J s: J₀, J without control; a blade that fails is charged to its episode's end as in its last interval."""
+    lost: Array | None = None
+    """(N,): 1 where the blade fails without control."""
     metrics: Mapping[str, Array] | None = None
     """(N,) each, as in ``EpisodeMetrics``."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Opened:
-    """The blades of a setting, and what they do without control."""
-
-    envs: Any
-    reference: Episodes
-    band: Array
-
-
-@lru_cache(maxsize=1)
-def opened(setting: Setting) -> Opened:
-    """Made once for all controllers that follow one another in a process."""
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **json.loads(setting.arguments))
-    reference = roll_out(no_control(envs.unwrapped.design_plant), envs, held_out(setting.seeds))
-    return Opened(envs, reference, settling_band(reference))
-
-
-def measured(job: Job) -> Cell:
+def measured(job: Job, bench: Bench) -> Cell:
     """The cell; whatever fails fails in it alone."""
     try:
-        return _measured(job)
+        return _measured(job, bench.blades(job.setting))
     except Exception as error:  # noqa: BLE001 - one cell must not stop the table
         return Cell(job.setting.name, job.controller, job.run, sentence=_sentence(error))
 
 
-def _measured(job: Job) -> Cell:
-    blades = opened(job.setting)
+def _measured(job: Job, blades: Blades) -> Cell:
     controller = job.source.build(blades.envs.unwrapped.task)
-    uncontrolled = np.nansum(blades.reference.cost, axis=0)
-    if not uncontrolled.all():
+    if not blades.uncontrolled.all():
         raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")
+    if not np.isfinite(blades.uncontrolled).all():
+        raise ValueError("J without control is infinite in an episode of this scenario: no other can be relative to it.")
     episodes = roll_out(controller, blades.envs, held_out(job.setting.seeds))
     metrics = measure(episodes, blades.band)
     gave_up = getattr(controller, "solver_failures", 0)
@@ -127,7 +106,8 @@ def _measured(job: Job) -> Cell:
         job.run,
         title=name_of(controller),
         sentence=f"the solver gave up at {gave_up} instants; the law's substitute was applied there." if gave_up else "",
-        uncontrolled=uncontrolled,
+        uncontrolled=blades.uncontrolled,
+        lost=blades.reference.failed.astype(float),
         metrics={name: getattr(metrics, name) for name in SERIES},
     )
 
@@ -146,19 +126,33 @@ def sources_digest() -> str:
 
 def write_cell(folder: Path, job: Job, cell: Cell) -> None:
     """To its file, with the digest of what it depends on."""
-    series = {"uncontrolled": cell.uncontrolled, **(cell.metrics or {})} if cell.metrics else {}
-    lists = {name: [finite(value) for value in values] for name, values in series.items() if values is not None}
-    about = {name: getattr(cell, name) for name in ("scenario", "controller", "run", "title", "sentence")}
-    write_json(folder / job.path, {"digest": job.digest(), **about, "series": lists})
+    series = {**{name: getattr(cell, name) for name in BESIDE}, **(cell.metrics or {})} if cell.metrics else {}
+    lists = {name: [finite(value) for value in values] for name, values in series.items()}
+    write_json(folder / job.path, {"digest": job.digest(), **{name: getattr(cell, name) for name in ABOUT}, "series": lists})
 
 
 def read_cell(folder: Path, job: Job) -> Cell | None:
-    """The cell of an earlier run, if nothing it depends on has changed since and it did not fail."""
+    """The cell of an earlier run, if nothing it depends on has changed since and it did not fail.
+
+    Raises ValueError that names the file if it is no cell, or a damaged one.
+    """
     path, wanted = folder / job.path, job.digest()
-    if not wanted or not path.is_file():
+    if not wanted or not path.exists():
         return None
-    content = json.loads(path.read_text())
-    if content.pop("digest") != wanted or not content["series"]:
-        return None
-    series = {name: np.array([np.inf if v is None else v for v in values]) for name, values in content.pop("series").items()}
-    return Cell(**content, uncontrolled=series.pop("uncontrolled"), metrics=series)
+    content = read_json(path)
+    with of_file(path):
+        about = checked_table("cell", content, ("digest", *ABOUT, "series"))
+        texts = {name: checked(f"cell.{name}", about.get(name), Text()) for name in ("digest", *ABOUT)}
+        series = checked_table("cell.series", about.get("series"), (*BESIDE, *SERIES))
+        if texts.pop("digest") != wanted or not series:
+            return None
+        found = {name: _numbers(f"cell.series.{name}", series.get(name), job.setting.seeds) for name in (*BESIDE, *SERIES)}
+    return Cell(**texts, uncontrolled=found.pop("uncontrolled"), lost=found.pop("lost"), metrics=found)
+
+
+def _numbers(name: str, values: Any, count: int) -> Array:
+    """(N,) of a list, infinite where it has None."""
+    listed = [np.inf if each is None else each for each in values] if isinstance(values, list) else []
+    if len(listed) != count or not all(isinstance(each, float | int) and not isinstance(each, bool) for each in listed):
+        raise Refused(name, values, f"a list of {count} numbers, null for what is infinite")
+    return np.array(listed, dtype=np.float64)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from baselines.design.controller import as_controller
-from beamenv.configuration import Refused
+from beamenv.configuration import FileName, Refused, checked
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, discover
 from train.controllers.shipped import FOLDER, shipped
@@ -56,7 +56,7 @@ def listed_controllers(
     if unknown := [name for name in names if name not in known]:
         raise Refused("controller", unknown[0], f"one of {', '.join(known)}")
     brought = [ListedController(name, "own", {"": _given(name, each)}) for name, each in own.items()]
-    brought += [ListedController(path.stem, "own", {"": ModelFile(path)}) for path in models]
+    brought += [ListedController(checked("model", path.stem, FileName()), "own", {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]
     if doubled := [each.name for index, each in enumerate(chosen) if each.name in {other.name for other in chosen[:index]}]:
         raise ValueError(f"controller {doubled[0]!r} is there twice: give yours another name.")
@@ -64,8 +64,7 @@ def listed_controllers(
 
 
 def _given(name: str, controller: Any) -> Given:
-    if not name.strip() or not name.isprintable() or set(name) & set("/\\:"):
-        raise Refused("own", name, "names that files can have, without slashes, colons and line breaks")
+    checked("own", name, FileName())
     try:
         return Given(as_controller(controller))
     except ValueError:

@@ -10,12 +10,13 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from itertools import islice
 from typing import Any
 
 import cloudpickle
 
+from train.benchmark.bench import Bench
 from train.benchmark.cells import Cell, Job, measured
 from train.controllers.sources import Source
 from train.shared.threads import ONE_THREAD
@@ -28,8 +29,9 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
     process, ChildProcessError if a process dies.
     """
     if processes == 1 or len(jobs) < 2:
-        for job in jobs:
-            finished(job, measured(job))
+        with closing(Bench()) as bench:
+            for job in jobs:
+                finished(job, measured(job, bench))
         return
     check_portable(jobs)
     waiting = iter(jobs)
@@ -37,11 +39,19 @@ def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], Non
         running: dict[Future[Cell], Job] = {}
         while True:
             for job in islice(waiting, 2 * processes - len(running)):  # with more, an interrupted pool writes a traceback
-                running[pool.submit(measured, job)] = job
+                running[pool.submit(_measured_here, job)] = job
             if not running:
                 return
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 finished(running.pop(future), future.result())
+
+
+BENCH = Bench()
+"""Of this process if it is a worker, which is sent one job after another and has nobody else to keep the blades in between."""
+
+
+def _measured_here(job: Job) -> Cell:
+    return measured(job, BENCH)
 
 
 @contextmanager

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines import Estimate
+from baselines.evaluation.metrics import judged
 from train.benchmark import statistics
 from train.benchmark.cells import SERIES, Cell
 from train.benchmark.listed import ORDER, ListedController
@@ -39,9 +40,9 @@ class Row:
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     """In SI units; empty where nothing could be measured."""
     cost: Array | None = None
-    """(runs, N), J s."""
+    """(runs, N), J s; J₀ where a blade fails with and without control, infinite where it fails under the controller alone."""
     uncontrolled: Array | None = None
-    """(N,), J s."""
+    """(N,), J s: J₀."""
 
     @property
     def measured(self) -> bool:
@@ -50,7 +51,7 @@ class Row:
 
     @property
     def mean_cost(self) -> float:
-        """J s, infinite where nothing was measured or a blade failed."""
+        """J s, infinite where nothing was measured or the controller breaks a blade."""
         return float("inf") if self.cost is None else float(self.cost.mean())
 
 
@@ -104,9 +105,14 @@ def tabulate(
 
 
 def costs(cells: Sequence[Cell]) -> Array | None:
-    """(runs, N), J s, of the cells that were measured; None if none were."""
-    series = [cell.metrics["cost"] for cell in cells if cell.metrics is not None]
+    """(runs, N), J s, as they stand over J₀, of the cells that were measured; None if none were."""
+    series = [_judged(cell) for cell in cells if cell.metrics is not None]
     return np.stack(series) if series else None
+
+
+def _judged(cell: Cell) -> Array:
+    assert cell.metrics is not None and cell.uncontrolled is not None and cell.lost is not None
+    return judged(cell.metrics["cost"], cell.uncontrolled, cell.lost > 0.0)
 
 
 def row(cells: Sequence[Cell], kind: str, rival: Array | None) -> Row:
@@ -121,17 +127,17 @@ def row(cells: Sequence[Cell], kind: str, rival: Array | None) -> Row:
     series = {name: np.stack([cell.metrics[name] for cell in served if cell.metrics]) for name in SERIES}
     uncontrolled = served[0].uncontrolled
     assert uncontrolled is not None
-    found = estimates(series, uncontrolled, rival)
-    return Row(*about, len(served), len(uncontrolled), sentences, found, series["cost"], uncontrolled)
+    cost = np.stack([_judged(cell) for cell in served])
+    found = estimates(series, cost, uncontrolled, rival)
+    return Row(*about, len(served), len(uncontrolled), sentences, found, cost, uncontrolled)
 
 
-def estimates(series: Mapping[str, Array], uncontrolled: Array, rival: Array | None) -> dict[str, Estimate]:
-    """Every estimate from ``series`` (runs, N) each; those beside LQG only where it was measured."""
-    cost = series["cost"]
+def estimates(series: Mapping[str, Array], cost: Array, uncontrolled: Array, rival: Array | None) -> dict[str, Estimate]:
+    """Every estimate from ``series`` and ``cost``, as it stands over J₀, (runs, N); those beside LQG only where it was measured."""
     found = {
         "relative_cost": statistics.relative_cost(cost, uncontrolled),
         "relative_cost_iqm": statistics.pooled_interquartile_mean(cost / uncontrolled),
-        "unstable": statistics.mean((cost > UNSTABLE * uncontrolled).astype(float)),
+        "unstable": statistics.mean((series["cost"] > UNSTABLE * uncontrolled).astype(float)),
     }
     if rival is not None:
         found["difference_to_lqg"] = statistics.difference(cost, rival, uncontrolled)

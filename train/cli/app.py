@@ -175,7 +175,7 @@ def compare(
         print_json([evaluation.row() for evaluation in evaluations])
     else:
         Console().print(screen_table(evaluations))
-        Console().print(f"written to {folder}")
+        Console().print(f"written to {folder}", markup=False)
 
 
 @app.command()

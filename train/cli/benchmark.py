@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
+from beamenv.configuration.files import ENDINGS
 from train.cli.options import JsonOption, one_sentence, print_json
+from train.shared.digests import digest
 
 if TYPE_CHECKING:
     from train.benchmark.table import BenchmarkTable, Row
+
+SEEDS = 128
+
+LONGEST = 60
+"""Characters of a folder's name before a digest ends it."""
 
 
 def benchmark(
@@ -23,8 +31,13 @@ def benchmark(
     controller: Annotated[
         list[str] | None, typer.Option(help="Name of a controller or shipped agent; repeat for more. All of them if left out.")
     ] = None,
-    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 128,
-    folder: Annotated[Path, typer.Option(help="Where cells, tables, heat map and page are written.")] = Path("results/benchmark"),
+    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = SEEDS,
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            help="Where cells, tables, heat map and page are written; results/benchmark, or …-WHAT IS CHOSEN, if left out."
+        ),
+    ] = None,
     model: Annotated[
         list[Path] | None,
         typer.Option(help="Stable-Baselines3 model to take part. Such a file can run code when it is loaded: see --trust."),
@@ -36,19 +49,20 @@ def benchmark(
 ) -> None:
     """Every controller in every scenario on the same held-out episodes. At most ten minutes on two cores.
 
-    An interrupted run resumes from what its folder holds. What cannot be measured is reported in one sentence each, the rest is
-    measured, and the status is then 1.
+    An interrupted run resumes from what its folder holds; a folder with a benchmark of other settings is refused. What cannot be
+    measured is reported in one sentence each, the rest is measured, and the status is then 1.
     """
     with one_sentence():
         from train.benchmark.campaign import benchmark as run
         from train.benchmark.showing.report import as_json as content
 
+        home = default_folder(scenario or (), controller or (), seeds, model or ()) if folder is None else folder
         with _Bar() as bar:
             table = run(
                 scenarios=scenario or None,
                 controllers=controller or None,
                 seeds=seeds,
-                folder=folder,
+                folder=home,
                 models=model or (),
                 trusted=trust,
                 jobs=jobs,
@@ -61,11 +75,20 @@ def benchmark(
     if as_json:
         print_json(content(table))
     else:
-        _show(table, folder)
+        _show(table, home)
     for where, sentence in table.sentences.items():
         print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
     if table.sentences:
         raise typer.Exit(1)
+
+
+def default_folder(scenarios: Sequence[str], controllers: Sequence[str], seeds: int, models: Sequence[Path]) -> Path:
+    """``results/benchmark``, with what is chosen behind it: each choice has a folder of its own."""
+    chosen = [Path(name).stem if name.endswith(ENDINGS) else name for name in (*scenarios, *controllers)]
+    chosen += [path.stem for path in models] + ([] if seeds == SEEDS else [str(seeds)])
+    name = "-".join(["benchmark", *chosen])
+    short = name if len(name) <= LONGEST else f"{name[:LONGEST]}-{digest(name.encode())}"
+    return Path("results", "".join(letter if letter.isalnum() or letter in "-_. " else "_" for letter in short))
 
 
 class _Bar:
@@ -74,21 +97,24 @@ class _Bar:
     def __init__(self) -> None:
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-        columns = (TextColumn("{task.description:>44}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        columns = (TextColumn("{task.description:>44}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
         self._bars = Progress(*columns, console=Console(stderr=True))
         self._task = self._bars.add_task("building the blades", total=None)
 
     def __enter__(self) -> _Bar:
-        self._bars.start()
+        if self._bars.console.is_terminal:  # elsewhere bad input is to leave its one line alone
+            self._bars.start()
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        self._bars.stop()
+        if self._bars.live.is_started:
+            self._bars.stop()
         if kind is not None and issubclass(kind, KeyboardInterrupt):
             self._bars.console.print("interrupted: what was finished is kept, and the same command resumes.")
             raise typer.Exit(130)
 
     def show(self, done: int, total: int, cell: object) -> None:
+        self._bars.start()
         name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))
         self._bars.update(self._task, description=name.strip(), completed=done, total=total)
 
@@ -97,16 +123,17 @@ def _show(table: BenchmarkTable, folder: Path) -> None:
     """Two digits of each cell, never cut off however narrow the terminal is; the files hold the rest."""
     from rich import box
     from rich.table import Table
+    from rich.text import Text
 
     from train.benchmark.targets import findings
 
     caption = f"▲ some episodes unstable. Written to {folder}"
-    shown = Table(title="J / J without control", caption=caption, box=box.SIMPLE, padding=(0, 1, 0, 0))
+    shown = Table(title="J / J without control", caption=Text(caption), box=box.SIMPLE, padding=(0, 1, 0, 0))
     shown.add_column("controller", no_wrap=True)
     for name in table.scenarios:
-        shown.add_column(name, justify="right", no_wrap=True)
+        shown.add_column(Text(name), justify="right", no_wrap=True)
     for name in table.controllers:
-        shown.add_row(name, *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
+        shown.add_row(Text(name), *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
     console = Console()
     Console(width=max(console.width, console.measure(shown, options=console.options.update(width=1000)).maximum)).print(shown)
     for each in findings(table):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rich.table import Table
+from rich.text import Text
 
 from baselines import Evaluation
 
@@ -17,5 +18,5 @@ def screen_table(evaluations: Sequence[Evaluation]) -> Table:
     for heading in HEADINGS:
         table.add_column(heading, justify="left" if heading == HEADINGS[0] else "right")
     for evaluation in ranked(evaluations):
-        table.add_row(*cells(evaluation))
+        table.add_row(*map(Text, cells(evaluation)))
     return table

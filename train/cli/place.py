@@ -55,7 +55,7 @@ def place(
         print_json([side.to_dict() for side in sides])
         return
     show(sides, Console())
-    Console().print(f"picture in {drawn}")
+    Console().print(f"picture in {drawn}", markup=False)
 
 
 @contextmanager

@@ -20,7 +20,7 @@ class Progressbar(Listener):
         """Budgets in ``unit``: "s" or "updates"."""
         self._unit = unit
         self._bars = Progress(
-            TextColumn("{task.description:>10}"),
+            TextColumn("{task.description:>10}", markup=False),
             BarColumn(),
             TextColumn("{task.completed:.0f} of {task.total:.0f} " + unit),
             TextColumn("J / no control {task.fields[cost]}  {task.fields[rate]}"),
@@ -52,4 +52,4 @@ class Progressbar(Listener):
 
     def evaluated(self, evaluation: Evaluation) -> None:
         """Say how a controller did."""
-        self._bars.console.print(f"{evaluation.name:>36}  J / no control {evaluation.relative_cost.value:.3f}")
+        self._bars.console.print(f"{evaluation.name:>36}  J / no control {evaluation.relative_cost.value:.3f}", markup=False)

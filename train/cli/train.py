@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from beamenv.configuration import FileName, checked
 from train.cli.options import BladeOption, PresetOption, SpeedOption, environment_arguments, one_sentence
 from train.learning.recipes import NAMES
 
@@ -39,6 +40,7 @@ def train(
         from train.learning.recipe import load_recipe, named_recipe
         from train.learning.session import Budget
 
+        checked("agent", agent, FileName())
         chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
         if minutes is not None and updates is not None:
             raise ValueError("minutes and updates must not both be given.")
@@ -52,4 +54,4 @@ def train(
         total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")
         with Progressbar({agent: total}, unit) as bar:
             places = run(job, home, lambda progress: bar.training(agent, total, progress), resume)
-    Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True)
+    Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)

@@ -28,7 +28,7 @@ from train.learning.job import Job, run
 from train.learning.recipe import Recipe
 from train.learning.session import Budget
 from train.learning.training import Progress
-from train.shared.files import check_folder, write_json
+from train.shared.files import check_folder, read_json, write_json
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
 
 Array = NDArray[np.float64]
@@ -95,7 +95,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "positive-position-feedback", "lqg")]
     curves = {name: read_curve(folder, name) for name in agents}
     write_figures(folder, plant, evaluations, drawn, curves, levels)
-    configuration = json.loads((folder / "configuration.json").read_text())
+    configuration = read_json(folder / "configuration.json")
     write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, configuration)
     return evaluations
 
@@ -112,7 +112,7 @@ def claim(folder: Path, comparison: Comparison, task: Any) -> None:
         "agents": {name: asdict(AGENTS[name].settings()) for name in comparison.budget},
     }
     content = json.loads(json.dumps(content))
-    if path.exists() and json.loads(path.read_text()) != content:
+    if path.exists() and read_json(path) != content:
         raise ValueError(f"folder = {str(folder)!r} holds another comparison: name another folder, or empty this one.")
     write_json(path, content)
 

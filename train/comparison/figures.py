@@ -29,7 +29,7 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
         figure = plt.figure(figsize=(11.0, 2.9 * rows), layout="constrained")
         cells = figure.subfigures(rows, columns, squeeze=False).ravel()
         reference = evaluations[0].reference
-        largest = 1.05e6 * np.abs(reference.tip_displacement[:, episode]).max()
+        largest = 1.05e6 * np.nanmax(np.abs(reference.tip_displacement[:, episode]))
         for cell, evaluation in zip(cells, evaluations, strict=False):
             tip, volts = cell.subplots(2, 1, sharex=True)
             drawn = [_tip_panel(evaluation, episode, largest), _voltage_panel(evaluation, episode)]
@@ -44,7 +44,7 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
 
 
 def _relative(evaluation: Evaluation, episode: int) -> float:
-    return float(np.nansum(evaluation.episodes.cost[:, episode]) / np.nansum(evaluation.reference.cost[:, episode]))
+    return float(evaluation.judged_cost[episode] / evaluation.uncontrolled[episode])
 
 
 def _tip_panel(evaluation: Evaluation, episode: int, largest: float) -> Panel:
@@ -110,7 +110,10 @@ def write_figures(
 
 
 def clearest_episode(evaluation: Evaluation) -> int:
-    """The episode whose load lets the undriven tip swing most about where it comes to rest: it shows damping best."""
+    """The episode whose load lets the undriven tip swing most about where it comes to rest: it shows damping best.
+
+    Blades that fail without control come last.
+    """
     response = evaluation.reference.load_response
     swing = np.linalg.norm(response - response[-len(response) // 5 :].mean(axis=0), axis=-1)
-    return int(np.argmax(swing.max(axis=0)))
+    return int(np.argmax(np.nan_to_num(swing, nan=-1.0).max(axis=0)))

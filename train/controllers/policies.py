@@ -20,6 +20,8 @@ class Policy:
     """
 
     kind: ClassVar[str]
+    physical_units: ClassVar[bool] = False
+    """Of the environment that it can act in: what it reads and drives is normalised."""
     name: str
     """What tables and figures call it."""
     weights: Mapping[str, Array]

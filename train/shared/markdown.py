@@ -5,13 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-_ACTIVE = re.compile(r"[\\`|]|<(?=[A-Za-z/!?])|&(?=#|\w+;)|(?<=\])(?=\()|!(?=\[)")
-_ENTITIES = {"<": "&lt;", "&": "&amp;"}
+from train.shared.files import on_one_line
+
+_ACTIVE = re.compile(
+    r"[\\`|$]|~(?=~)|<(?=[A-Za-z/!?])|&(?=#|\w+;)|(?<=\])(?=[(\[])|!(?=\[)|:(?=//)|\*(?=[^*]*\*)|(?<=\*)\*|(?<!\w)_|_(?!\w)"
+)
+_ENTITIES = {"<": "&lt;", "&": "&amp;", ":": "&#58;", "$": "&#36;", "~": "&#126;"}
 
 
 def escaped(text: str) -> str:
-    """Text that Markdown shows as it stands, on one line: a name cannot end a cell, or become code, HTML, a link or a picture."""
-    return _ACTIVE.sub(lambda found: _ENTITIES.get(found[0], f"\\{found[0]}"), " ".join(text.splitlines()))
+    """Text that Markdown shows as it stands, on one line: it ends no cell and becomes no code, HTML, emphasis, link or picture."""
+    return _ACTIVE.sub(lambda found: _ENTITIES.get(found[0], f"\\{found[0]}"), on_one_line(text))
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], words: int | None = None) -> str:

@@ -113,9 +113,11 @@ def legend(table: BenchmarkTable) -> str:
     first, last = table.configuration["seeds"]
     return (
         f"J₀ is J without control on the same episodes: {last - first + 1} held-out seeds, {first} to {last}, equal for every "
-        "controller. J / J₀: ratio of the means over seeds and training runs. IQM: interquartile mean of J / J₀, seed by seed and "
-        f"run by run. Brackets: {100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
+        "controller; a blade that fails without control is charged to its episode's end as in its last interval. J / J₀: ratio of "
+        "the means over seeds and training runs. IQM: interquartile mean of J / J₀, seed by seed and run by run. Brackets: "
+        f"{100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
         "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails, which makes J infinite, "
-        f"or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort are means over episodes. Controllers of the kind "
-        "“bound” see the true state, which no sensor shows, or are told the true plant."
+        f"or J₀ where it fails without control too, or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort "
+        "are means over episodes. Controllers of the kind “bound” see the true state, which no sensor shows, or are told the true "
+        "plant."
     )

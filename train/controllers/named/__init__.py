@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType
 
-from baselines import Controller
+from baselines import Controller, Law
 from beamenv import Design
 from beamenv.configuration import Refused
 from beamenv.task import Task
@@ -41,8 +41,9 @@ class NamedController:
             raise Refused(f"{self.name}.TOLD_THE_TRUTH", True, "False for what is no bound")
 
     def build_for(self, task: Task) -> Controller:
-        """The controller for a task: from its design, unless it is told the truth."""
-        return self.build(task.true_design if self.told_the_truth else task.design)
+        """The controller for a task, in its units: from its design, unless it is told the truth."""
+        law = self.build(task.true_design if self.told_the_truth else task.design)
+        return law.in_physical_units() if task.physical_units and isinstance(law, Law) else law
 
 
 def discover() -> Mapping[str, NamedController]:

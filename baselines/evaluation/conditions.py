@@ -1,0 +1,71 @@
+"""What decides an episode besides its seed and the controller: two runs are in pairs only where it is the same."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from baselines.evaluation.loop import Environment, attribute
+from beamenv.blade.config import BladeConfig
+from beamenv.scenarios.scenario import Scenario
+from beamenv.task import Task
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """Of the episodes of N seeds. What controllers are designed for is none of them: without control nobody knows it."""
+
+    blades: tuple[BladeConfig, ...]
+    """The true blade of each seed."""
+    scenario: Scenario
+    steps: int
+    """Control intervals in a whole episode."""
+    physical_units: bool
+
+    def and_then(self, others: Conditions) -> Conditions:
+        """Those of these seeds and of others that the same environment ran after them."""
+        return replace(self, blades=self.blades + others.blades)
+
+    def check(self, reference: Conditions | None) -> None:
+        """``ValueError`` says in what those of a ``reference`` differ from these."""
+        if reference is None:
+            raise ValueError("reference is of an environment that does not tell its blade: leave it out.")
+        intervals = [tuple(dict.fromkeys(blade.control_interval for blade in each.blades)) for each in (reference, self)]
+        for what, other, own in (
+            ("control intervals of (s)", *(each[0] if len(each) == 1 else each for each in intervals)),
+            ("control intervals in an episode", reference.steps, self.steps),
+            ("physical_units", reference.physical_units, self.physical_units),
+        ):
+            if other != own:
+                raise ValueError(f"reference has {what} {other}, but the evaluation has {own}.")
+        for what, same in (("scenario", reference.scenario == self.scenario), ("blade", reference.blades == self.blades)):
+            if not same:
+                raise ValueError(f"reference is of another {what}, but must be of the very episodes of the evaluation.")
+
+
+def conditions(env: Environment, seeds: int) -> Conditions | None:
+    """Those of an environment that has been reset for so many seeds, one a blade; None if it is not of this package."""
+    tasks = tasks_of(env)
+    if not tasks:
+        return None
+    each = [tasks[row % len(tasks)] for row in range(seeds)]
+    return Conditions(tuple(task.config for task in each), tasks[0].scenario, steps(env), tasks[0].physical_units)
+
+
+def steps(env: Environment) -> int:
+    """Control intervals in a whole episode: the task's, or fewer by a time limit; 0 where no task tells."""
+    if not (tasks := tasks_of(env)):
+        return 0
+    limits = [tasks[0].steps, getattr(env.unwrapped, "steps", None)]
+    limits += [spec.max_episode_steps for spec in (env.spec, *attribute(env, "spec")) if spec is not None]
+    return min(limit for limit in limits if limit is not None)
+
+
+def tasks_of(env: Environment) -> Sequence[Task]:
+    """Blade k of the environment has that at k modulo their number; none of an environment that is not of this package."""
+    inner: Any = env.unwrapped
+    found = getattr(inner, "tasks", None) or (
+        attribute(env, "task") if hasattr(inner, "get_attr") or hasattr(inner, "task") else ()
+    )
+    return found if all(isinstance(task, Task) for task in found) else ()

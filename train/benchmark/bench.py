@@ -1,0 +1,71 @@
+"""The blades of a setting, made once for all controllers that are measured on them one after another."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+import beamenv
+from baselines import Episodes, roll_out
+from baselines.evaluation.metrics import cost_without_control, settling_band
+from beamenv.scenarios.scenario import Scenario
+from train.controllers.named import named
+from train.shared.held_out import held_out
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """The episodes that every controller is put through."""
+
+    name: str
+    """Of the scenario."""
+    scenario: Scenario
+    seeds: int
+    arguments: str = "{}"
+    """Of the environment besides, as JSON."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blades:
+    """The blades of a setting, and what they do without control."""
+
+    envs: Any
+    reference: Episodes
+    uncontrolled: Array
+    """(N,), J s: J₀."""
+    band: Array
+    """(N,), m, within which a tip counts as settled."""
+
+
+class Bench:
+    """Has the blades of one setting at a time; whoever measures has a bench of its own, and closes it."""
+
+    def __init__(self) -> None:
+        self._setting: Setting | None = None
+        self._blades: Blades | None = None
+
+    def blades(self, setting: Setting) -> Blades:
+        """Those of a setting, the last ones again where it is the same."""
+        if self._blades is None or self._setting != setting:
+            self.close()
+            self._setting, self._blades = setting, _made(setting)
+        return self._blades
+
+    def close(self) -> None:
+        """Let go of the blades."""
+        if self._blades is not None:
+            self._blades.envs.close()
+        self._setting = self._blades = None
+
+
+def _made(setting: Setting) -> Blades:
+    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **json.loads(setting.arguments))
+    reference = roll_out(named("none").build_for(envs.unwrapped.task), envs, held_out(setting.seeds))
+    return Blades(envs, reference, cost_without_control(reference), settling_band(reference))
