@@ -37,13 +37,12 @@ def read_table(path: str | os.PathLike[str]) -> dict[str, Any]:
     return parsed_table(text, str(path))
 
 
-def checked_path(name: str, value: Any, endings: Sequence[str], allowed: str = "a file") -> Path:
+def checked_path(name: str, value: Any, endings: Sequence[str], allowed: str | None = None) -> Path:
     """A path with one of some endings; ``ValueError`` for another, and for what is no path."""
-    if not isinstance(value, (str, os.PathLike)) or not isinstance(os.fspath(value), str):
-        raise Refused(name, value, f"{allowed} that ends in {' or '.join(endings)}")
-    if Path(value).suffix not in endings or "\0" in os.fspath(value):
-        raise Refused(name, os.fspath(value), f"{allowed} that ends in {' or '.join(endings)}")
-    return Path(value)
+    text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
+    if not isinstance(text, str) or "\0" in text or Path(text).suffix not in endings:
+        raise Refused(name, text, allowed or f"a file that ends in {' or '.join(endings)}")
+    return Path(text)
 
 
 def content_of(path: Path) -> bytes:

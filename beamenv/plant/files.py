@@ -35,7 +35,7 @@ def load_plant(source: str | Path) -> ModalPlant:
     """
     if isinstance(source, str) and source in NAMES:
         return _shipped(source)
-    path = checked_path("plant", source, (ENDING,), f"one of {', '.join(NAMES)}, or a file")
+    path = checked_path("plant", source, (ENDING,), f"one of {', '.join(NAMES)}, or the path of a {ENDING} file")
     return _of_bytes(content_of(path), str(path))
 
 
@@ -49,7 +49,7 @@ def save_plant(plant: ModalPlant, path: str | Path) -> None:
     try:
         write_whole(path, file.getvalue())
     except OSError as error:
-        raise ValueError(f"file {str(path)!r} cannot be written: {error.strerror}.") from None
+        raise ValueError(f"file {str(path)!r} cannot be written: {error.strerror or error}.") from None
 
 
 def _is_empty(value: Any) -> bool:
