@@ -6,21 +6,46 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import schur
 from scipy.optimize import minimize_scalar
 
-from baselines.analysis.stationary import closed_loop
 from baselines.design.controller import Array
-from baselines.design.linear import LinearController
-from beamenv.plant.plant import Plant, sample
+from baselines.design.linear import LinearController, linear
+from baselines.design.loop import closed_loop, sampled, spectral_radius
+from beamenv.plant.plant import Plant, SampledPlant
 
 Complex = NDArray[np.complex128]
 
+_LARGE = 40
+"""States from which on triangular form pays."""
+
+_AT_ONCE = 512
+"""Angles, so that memory stays small."""
+
 
 def frequency_response(A: Array, B: Array, C: Array, D: Array, angles: ArrayLike) -> Complex:
-    """C (zI − A)⁻¹ B + D at z = exp(iθ): (k, p, m) for k ``angles`` θ in rad a sample."""
+    """C (zI − A)⁻¹ B + D at z = exp(iθ): (k, p, m) for k ``angles`` θ in rad a sample.
+
+    With many more angles than states A is brought to triangular form first, A = U T Uᴴ, and each angle takes a substitution.
+    """
     z = np.exp(1j * np.atleast_1d(np.asarray(angles, dtype=np.float64)))
-    resolvent = np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, np.broadcast_to(B.astype(complex), (len(z), *B.shape)))
-    return np.asarray(C @ resolvent + D)
+    if len(A) < _LARGE or len(z) < len(A):
+        resolvent = np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, np.broadcast_to(B.astype(complex), (len(z), *B.shape)))
+        return np.asarray(C @ resolvent + D)
+    T, U = schur(A, output="complex")
+    inputs, outputs = U.conj().T @ B, C @ U
+    parts = np.array_split(z, -(-len(z) // _AT_ONCE))
+    return np.concatenate([outputs @ _substituted(T, inputs, part) + D for part in parts])
+
+
+def _substituted(T: Complex, inputs: Complex, z: Complex) -> Complex:
+    """(zI − T)⁻¹ inputs (k, n, m) for an upper triangular T (n, n), from the last row upwards."""
+    (n, m), k = inputs.shape, len(z)
+    found = np.empty((n, k * m), dtype=complex)
+    for row in reversed(range(n)):
+        known = T[row, row + 1 :] @ found[row + 1 :]
+        found[row] = ((inputs[row] + known.reshape(k, m)) / (z - T[row, row])[:, None]).ravel()
+    return np.asarray(found.reshape(n, k, m).transpose(1, 0, 2))
 
 
 def resonant_angles(*systems: Array) -> Array:
@@ -49,24 +74,26 @@ def cost_response(plant: Plant, controller: LinearController, frequencies: Array
     return frequency_response(*_noise_to_cost(plant, controller), angles)
 
 
-def h_infinity_norm(plant: Plant, controller: LinearController) -> float:
+def h_infinity_norm(plant: Plant | SampledPlant, controller: LinearController) -> float:
     """Largest gain, √(J s), of ``cost_response`` over all frequencies: noise n with Σ|n|² = 1 costs no more than its square.
 
-    Infinite when the loop is unstable.
+    Infinite when the loop is unstable. Raises ValueError for a law that is not linear.
     """
     system = _noise_to_cost(plant, controller)
-    if np.abs(np.linalg.eigvals(system[0])).max() >= 1.0:
+    if spectral_radius(system[0]) >= 1.0:
         return float("inf")
 
     def gain(angles: Array) -> Array:
-        return np.asarray(np.linalg.norm(frequency_response(*system, angles), ord=2, axis=(1, 2)))
+        response = frequency_response(*system, angles)
+        squared = np.linalg.eigvalsh(np.conj(response.transpose(0, 2, 1)) @ response)  # of few inputs, and of many outputs
+        return np.asarray(np.sqrt(np.maximum(squared[:, -1], 0.0)))
 
     return highest(gain, resonant_angles(system[0]))[0]
 
 
-def _noise_to_cost(plant: Plant, controller: LinearController) -> tuple[Array, Array, Array, Array]:
-    held = sample(plant)
-    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, controller)
+def _noise_to_cost(plant: Plant | SampledPlant, controller: LinearController) -> tuple[Array, Array, Array, Array]:
+    held = sampled(plant)
+    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, linear(controller))
     deviation, weight = square_root(covariance), square_root(held.cost)
     return transition, noise_input @ deviation, weight.T @ state_map, weight.T @ noise_map @ deviation
 

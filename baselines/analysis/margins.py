@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from baselines.analysis.frequency_response import frequency_response, highest, resonant_angles
-from baselines.analysis.stationary import closed_loop
 from baselines.design.controller import Array
-from baselines.design.linear import LinearController
+from baselines.design.instruments import checked_plant
+from baselines.design.linear import LinearController, linear
+from baselines.design.loop import closed_loop, spectral_radius
+from beamenv.configuration import Choice, checked
 from beamenv.plant.plant import Plant, sample
 
 Complex = NDArray[np.complex128]
@@ -46,11 +48,10 @@ def stability_margins(plant: Plant, controller: LinearController, at: Literal["i
     Singular values mix loops, in units of the drive limits or of the sensors' full scale. Raises ValueError for a loop that is
     unstable to begin with, for another place or for a law that is not linear.
     """
-    if at not in ("input", "output"):
-        raise ValueError(f'at = {at!r} is not a place to break the loop: allowed are "input" and "output"')
-    held = sample(plant)
+    checked("at", at, Choice(("input", "output")))
+    held, controller = sample(checked_plant(plant)), linear(controller)
     loop = closed_loop(held, controller)[0]
-    if np.abs(np.linalg.eigvals(loop)).max() >= 1.0:
+    if spectral_radius(loop) >= 1.0:
         raise ValueError(f"{controller.name} is unstable on this plant, so it has no stability margins")
     sensitivity = _sensitivity(plant, controller, at)
     angles = resonant_angles(loop, held.A, controller.transition + controller.voltage_input @ controller.state_gain)

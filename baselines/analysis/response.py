@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from baselines.analysis.stationary import closed_loop
 from baselines.design.controller import Array
 from baselines.design.linear import LinearController, linear
+from baselines.design.loop import closed_loop
 from beamenv.plant.plant import SampledPlant
 
 

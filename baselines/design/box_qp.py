@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import threading
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ class BoxQP:
     """Least ½ uᵀHu + fᵀu with lowest ≤ u ≤ highest, for one H and many f.
 
     Solved exactly by DAQP's dual active-set method (Arnström, Bemporad and Axehill, IEEE Trans. Automatic Control 67, 2022).
+    Several threads may solve at once: each has a solver of its own, for DAQP works in its model's memory without Python's lock.
     Raises ModuleNotFoundError when DAQP is not installed, ValueError when H is not positive definite or the bounds are not
     finite and in order.
     """
@@ -32,10 +34,18 @@ class BoxQP:
         scaled = hessian * np.outer(self._unit, self._unit)
         curvature = np.trace(scaled) / len(scaled)
         self._gradient_scale = self._unit / curvature
-        self._model = _daqp().Model()
         size = len(scaled)
-        self._no_guess = np.zeros(size, dtype=np.int32)
-        self._model.setup(scaled / curvature, np.zeros(size), np.zeros((0, size)), highest / self._unit, lowest / self._unit)
+        self._problem = (scaled / curvature, np.zeros(size), np.zeros((0, size)), highest / self._unit, lowest / self._unit)
+        self._of_thread, self._counting = threading.local(), threading.Lock()
+        self._solver()
+
+    def _solver(self) -> tuple[Any, NDArray[np.int32]]:
+        """The calling thread's solver, and the guess that says nothing: set up when it is first asked for."""
+        if not hasattr(self._of_thread, "model"):
+            model = _daqp().Model()
+            model.setup(*(part.copy() for part in self._problem))
+            self._of_thread.model, self._of_thread.no_guess = model, np.zeros(len(self.hessian), dtype=np.int32)
+        return self._of_thread.model, self._of_thread.no_guess
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A copy sets up a solver of its own, for DAQP's workspace cannot be copied; its count of failures begins at zero."""
@@ -43,13 +53,16 @@ class BoxQP:
 
     def minimise(self, gradients: Array) -> Array:
         """Minimisers (N, k) for linear terms f (N, k); a row that the solver gives up is NaN and counts as a failure."""
-        minimisers = np.full(gradients.shape, np.nan)
+        minimisers, (model, no_guess) = np.full(gradients.shape, np.nan), self._solver()
         for row, gradient in enumerate(gradients * self._gradient_scale):
-            self._model.update(f=gradient, sense=self._no_guess)  # else it starts from the last program's active bounds
-            minimiser, _, exit_flag, _ = self._model.solve()
+            model.update(f=gradient, sense=no_guess)  # else it starts from the last program's active bounds
+            minimiser, _, exit_flag, _ = model.solve()
             if exit_flag > 0:
                 minimisers[row] = minimiser
-        self.failures += int(np.isnan(minimisers).any(axis=1).sum())
+        failed = int(np.isnan(minimisers).any(axis=1).sum())
+        if failed:
+            with self._counting:
+                self.failures += failed
         return np.clip(minimisers * self._unit, self.lowest, self.highest)  # DAQP meets bounds to its tolerance
 
 

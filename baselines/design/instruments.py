@@ -9,7 +9,8 @@ import numpy as np
 
 from baselines.design.controller import Array, Observes
 from baselines.design.matrix import real_matrix
-from beamenv.configuration import Choice, Number, Refused, checked
+from baselines.design.objects import instance
+from beamenv.configuration import Choice, Number, checked
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.plant.plant import Plant, drive_limit
 
@@ -82,13 +83,9 @@ class Instruments(ReadOnly):
 
 def checked_plant(plant: Any) -> Plant:
     """The plant; ``ValueError`` for what is none, such as the environment that has one."""
-    if isinstance(plant, Plant):
-        return plant
-    raise Refused("plant", plant, "a beamenv.Plant, such as env.unwrapped.design_plant")
+    return instance("plant", plant, Plant, "a beamenv.Plant, such as env.unwrapped.design_plant")
 
 
 def checked_instruments(instruments: Any) -> Instruments:
     """The instruments; ``ValueError`` for what is none."""
-    if isinstance(instruments, Instruments):
-        return instruments
-    raise Refused("instruments", instruments, "an Instruments, such as Instruments.of(plant)")
+    return instance("instruments", instruments, Instruments, "an Instruments, such as Instruments.of(plant)")

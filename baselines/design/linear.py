@@ -12,6 +12,7 @@ from baselines.design.controller import Array, Observes, name_of
 from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.law import Law
 from baselines.design.matrix import real_matrix
+from baselines.design.verification import verified
 from beamenv.plant.plant import Plant
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ class LinearController(Law):
         instruments: Instruments | None = None,
         voltage_input: ArrayLike | None = None,
         name: str = "linear law",
+        verify: bool = True,
     ) -> LinearController:
         """The law ξ⁺ = A ξ + B y, u = C ξ + D y from measurements y (p,) in A to voltages u (m,) in V, sampled as the plant is.
 
@@ -81,8 +83,10 @@ class LinearController(Law):
 
         ``voltage_input`` H (s, m) is for drives that saturate: the memory then follows the voltage applied instead of the one asked
         for, ξ⁺ = A ξ + B y + H (clip(u) − u). Without it the memory does not know of the limits, and an integrator winds up.
-        Raises ValueError for matrices whose shapes do not fit or hold no numbers, for a system in continuous time, and for one
-        sampled otherwise than the plant.
+
+        Given a ``plant``, the law is ``verified`` to be stable on it unless ``verify=False``; behind ``instruments`` alone there is
+        nothing to be stable on. Raises ValueError for matrices whose shapes do not fit or hold no numbers, for a system in
+        continuous time, for one sampled otherwise than the plant, and for one that is unstable on it.
         """
         if (plant is None) == (instruments is None):
             raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given")
@@ -92,7 +96,8 @@ class LinearController(Law):
         shapes = {"A": (s, s), "B": (s, p), "C": (m, s), "D": (m, p), "voltage_input": (s, m)}
         given = (*matrices, np.zeros((s, m)) if voltage_input is None else voltage_input)
         F, G, M, T, H = (real_matrix(name, each, shapes[name]) for name, each in zip(shapes, given, strict=True))
-        return cls(name, behind, F - H @ M, G - H @ T, H, M, T)
+        law = cls(name, behind, F - H @ M, G - H @ T, H, M, T)
+        return law if plant is None else verified(law, plant, verify=verify)
 
     def to_control(self) -> control.StateSpace:
         """The law from measurements (A) to voltages (V) while no limit acts, as a ``control.StateSpace`` with the plant's clock.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from scipy.linalg import block_diag
 
+from baselines.design.objects import optional_instance
 from baselines.design.riccati import Array
 from beamenv.plant.plant import SampledPlant
 
@@ -32,12 +33,18 @@ class LoadModel:
         )
 
 
+@runtime_checkable
 class Load(Protocol):
     """What the load is, apart from the clock it is sampled by."""
 
     def model(self, interval: float) -> LoadModel:
         """The load from one control interval (s) to the next."""
         ...
+
+
+def checked_load(name: str, load: Any) -> Load | None:
+    """The load or None; ``ValueError`` for what has no model."""
+    return optional_instance(name, load, Load, "a load that can be foreseen, such as PersistentLoad()")  # type: ignore[type-abstract]
 
 
 def with_load(held: SampledPlant, load: LoadModel) -> SampledPlant:

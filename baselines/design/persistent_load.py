@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
 from baselines.design.load_model import LoadModel, with_load
+from baselines.design.objects import optional_instance
 from beamenv.configuration import Number, configuration
 from beamenv.plant.plant import SampledPlant
 
@@ -29,6 +30,11 @@ class PersistentLoad:
         """Two states, the loads themselves in N/m, over a control interval in s."""
         decay, forgotten = np.exp(-interval / self.duration), -np.expm1(-2.0 * interval / self.duration)
         return LoadModel(decay * np.eye(2), np.eye(2), forgotten * self.magnitude**2 * np.eye(2))
+
+
+def checked_persistent_load(load: Any) -> PersistentLoad | None:
+    """The lasting load or None; ``ValueError`` for anything else."""
+    return optional_instance("persistent_load", load, PersistentLoad, "a PersistentLoad, such as PersistentLoad()")
 
 
 def with_persistent_load(held: SampledPlant, load: PersistentLoad) -> SampledPlant:

@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike
 from baselines.design.controller import Array
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
-from baselines.design.persistent_load import PersistentLoad
+from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
+from baselines.design.verification import verified
 from baselines.design.weights import weighted
-from baselines.laws.lqg import sampled_design
+from baselines.laws.lqg import compensator, sampled_design
 from beamenv.plant.plant import Plant
 
 
@@ -61,15 +62,22 @@ def clipped_lqg(
     rate_weight: float = 0.0,
     Q: ArrayLike | None = None,
     R: ArrayLike | None = None,
+    verify: bool = True,
 ) -> ClippedLQG:
     """The sampled LQG of a design plant, with a filter that knows that readings end at full scale; ``lqg`` while none does.
 
     ``persistent_load`` adds a load that lasts to the state, and ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``;
-    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``.
+    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``. What it is while nothing clips, LQG, is ``verified`` on
+    ``plant`` unless ``verify=False``; of what it does while readings or voltages clip nothing is promised. Raises ValueError as
+    ``lqg`` does.
     """
-    held, _, K, L = sampled_design(weighted(plant, Q, R), persistent_load, rate_weight=rate_weight)
+    load = checked_persistent_load(persistent_load)
+    name = "LQG, clipping known" if load is None else "LQG with load estimate, clipping known"
+    held, regulated, filtered = sampled_design(weighted(plant, Q, R), load, rate_weight=rate_weight)
+    K, L = regulated.gain, filtered.gain
+    verified(compensator(plant, name, held, K, L), plant, regulated, filtered, verify=verify)
     return ClippedLQG(
-        name="LQG, clipping known" if persistent_load is None else "LQG with load estimate, clipping known",
+        name=name,
         instruments=Instruments.of(plant),
         transition=held.A,
         voltage_input=held.B,

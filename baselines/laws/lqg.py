@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController
 from baselines.design.load_model import Load, with_load
-from baselines.design.persistent_load import PersistentLoad
+from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
 from baselines.design.rate_penalty import with_rate_penalty
-from baselines.design.riccati import Array, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
+from baselines.design.riccati import Array, Solution, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
+from baselines.design.verification import solvable, verified
 from baselines.design.weights import weighted
-from beamenv.configuration import Number, checked
+from beamenv.configuration import Choice, Number, checked
 from beamenv.plant.hold import hold
 from beamenv.plant.plant import Plant, SampledPlant, sample
 
@@ -31,8 +32,9 @@ def lqg(
     *,
     Q: ArrayLike | None = None,
     R: ArrayLike | None = None,
+    verify: bool = True,
 ) -> LinearController:
-    """LQG controller of a design plant; its filter starts from its own estimate, zero.
+    """LQG controller of a design plant, ``verified`` on it; its filter starts from its own estimate, zero.
 
     ``design="sampled"``: the optimum for the cost and the noise of the environment, both exactly sampled, with y_k used for u_k:
     x̂ ← x̂ + L (y − C x̂), u = −K x̂, x̂⁺ = A x̂ + B u.
@@ -44,27 +46,28 @@ def lqg(
     whose last term, zero unless the drive saturates, keeps it from winding up. It is integrated exactly from sample to sample with
     the newest reading held over the interval that it ends, so that y_k acts on u_k. (With y_k held over the interval that it
     begins, as is more usual, the loop through the blade's upper modes, up to 1.4 rad a sample, is unstable.) It still needs a
-    filter slower than the sampling: with sensors of next to no noise it is unstable too.
+    filter slower than the sampling: with sensors of next to no noise, or loads that reach fast modes, it is unstable too.
 
     ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
     ``Q`` (n, n) and ``R`` (m, m) are weights of your own in ∫(xᵀQx + uᵀRu)dt, in the plant's coordinates, in place of the plant's:
-    the vibration energy ½ xᵀx in J, and what the actuators store, J/V². Raises ValueError for another design, for a persistent load
-    with the continuous one, and for weights that are not symmetric or not positive.
+    the vibration energy ½ xᵀx in J, and what the actuators store, J/V². ``verify=False`` asks for the law as it comes out, the
+    thesis' included where it is unstable. Raises ValueError for another design, for a persistent load with the continuous one, for
+    weights that are not symmetric or not positive, for a law that is not stable on ``plant``, and for a plant with an undamped mode
+    out of reach, which it names.
     """
-    plant = weighted(plant, Q, R)
-    if design == "sampled":
-        return sampled_lqg(plant, "LQG" if persistent_load is None else "LQG with load estimate", persistent_load)
-    if design != "continuous":
-        raise ValueError(f'design = {design!r} is not an LQG design: allowed are "sampled" and "continuous"')
-    if persistent_load is not None:
-        raise ValueError(f'persistent_load = {persistent_load} needs design="sampled": the thesis\' design has no load state')
-    return _continuous(plant)
+    plant, load = weighted(plant, Q, R), checked_persistent_load(persistent_load)
+    if checked("design", design, Choice(("sampled", "continuous"))) == "sampled":
+        return sampled_lqg(plant, "LQG" if load is None else "LQG with load estimate", load, verify=verify)
+    if load is not None:
+        raise ValueError(f'persistent_load = {load} needs design="sampled": the thesis\' design has no load state')
+    return _continuous(plant, verify)
 
 
-def sampled_lqg(plant: Plant, name: str = "LQG", *loads: Load | None) -> LinearController:
-    """The sampled optimum, with the states of the ``loads`` behind those of the blade in its memory."""
-    held, _, K, L = sampled_design(plant, *loads)
-    return compensator(plant, name, held, K, L)
+def sampled_lqg(plant: Plant, name: str = "LQG", *loads: Load | None, verify: bool = True) -> LinearController:
+    """The sampled optimum, ``verified``, with the states of the ``loads`` behind those of the blade in its memory."""
+    held, regulated, filtered = sampled_design(plant, *loads)
+    law = compensator(plant, name, held, regulated.gain, filtered.gain)
+    return verified(law, plant, regulated, filtered, verify=verify)
 
 
 def compensator(plant: Plant, name: str, held: SampledPlant, K: Array, L: Array) -> LinearController:
@@ -79,27 +82,31 @@ def sampled_with_loads(plant: Plant, *loads: Load | None) -> SampledPlant:
     return with_load(sample(plant), reduce(add, models)) if models else sample(plant)
 
 
-def sampled_design(plant: Plant, *loads: Load | None, rate_weight: float = 0.0) -> tuple[SampledPlant, Array, Array, Array]:
-    """The sampled plant with its loads and, where quick changes have a price, the voltages before; P and K of its regulator, and
-    its filter's L.
+def sampled_design(plant: Plant, *loads: Load | None, rate_weight: float = 0.0) -> tuple[SampledPlant, Solution, Solution]:
+    """The sampled plant with its loads and, where quick changes have a price, the voltages before; its regulator, P and K, and its
+    filter, S and L. Raises ValueError where one of them has none.
     """
     held = sampled_with_loads(plant, *loads)
     if checked("rate_weight", rate_weight, Number(ge=0.0)) > 0.0:
         held = with_rate_penalty(held, rate_weight)
     E = held.disturbance_input
-    P, K = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-    _, L = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
-    return held, P, K, L
+    with solvable(plant):
+        regulated = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+        filtered = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
+    return held, regulated, filtered
 
 
-def _continuous(plant: Plant) -> LinearController:
+def _continuous(plant: Plant, verify: bool) -> LinearController:
     E, p = plant.disturbance_input, len(plant.C)
-    _, K = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
-    _, L = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
+    with solvable(plant):
+        regulated = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
+        filtered = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
+    K, L = regulated.gain, filtered.gain
     F, inputs = hold(plant.A - plant.B @ K - L @ plant.C, np.hstack([L, plant.B]), plant.control_interval)
     G, H = inputs[:, :p], inputs[:, p:]
     onward = F + H @ K
-    return observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
+    law = observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)
+    return verified(law, plant, regulated, filtered, instead='design="sampled"', verify=verify)
 
 
 def known_sensor_noise(plant: Plant) -> Array:

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike
 
 from baselines.design.box_qp import BoxQP
 from baselines.design.controller import Array
-from baselines.design.instruments import Instruments
+from baselines.design.instruments import Instruments, checked_plant
 from baselines.design.law import Law
-from baselines.design.persistent_load import PersistentLoad
+from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
+from baselines.design.verification import verified
 from baselines.design.weights import weighted
-from baselines.laws.lqg import sampled_design
+from baselines.laws.lqg import compensator, sampled_design
 from beamenv.configuration import Count, Numbers, checked
 from beamenv.plant.plant import Plant, SampledPlant
 
@@ -86,6 +87,7 @@ def mpc(
     rate_weight: float = 0.0,
     Q: ArrayLike | None = None,
     R: ArrayLike | None = None,
+    verify: bool = True,
 ) -> PredictiveController:
     """Constrained model-predictive control of a design plant, with the Kalman filter of the sampled ``lqg``.
 
@@ -96,15 +98,21 @@ def mpc(
     The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h; by default they are
     ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike;
     ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``; ``Q`` and ``R`` are other weights than the plant's, as in
-    ``lqg``. Raises ValueError for blocks that are not positive whole numbers, ModuleNotFoundError without DAQP.
+    ``lqg``. What it is while no limit is in sight, LQG, is ``verified`` on ``plant`` unless ``verify=False``. One law may serve
+    several threads at once. Raises ValueError for blocks that are not positive whole numbers and as ``lqg`` does,
+    ModuleNotFoundError without DAQP.
     """
-    blocks = doubling_blocks(plant) if move_blocks is None else _checked(move_blocks)
-    held, P, K, L = sampled_design(weighted(plant, Q, R), persistent_load, rate_weight=rate_weight)
+    blocks = doubling_blocks(checked_plant(plant)) if move_blocks is None else _checked(move_blocks)
+    load = checked_persistent_load(persistent_load)
+    name = "MPC" if load is None else "MPC with load estimate"
+    held, regulated, filtered = sampled_design(weighted(plant, Q, R), load, rate_weight=rate_weight)
+    (P, K), L = regulated, filtered.gain
+    verified(compensator(plant, name, held, K, L), plant, regulated, filtered, verify=verify)
     deviation, moves = _deviation(held, P, K, blocks), len(blocks)
     by_state, by_move = np.split(deviation, [len(held.A)], axis=1)
     lowest, highest = (np.tile(limit, moves) for limit in plant.voltage_limits)
     return PredictiveController(
-        name="MPC" if persistent_load is None else "MPC with load estimate",
+        name=name,
         instruments=Instruments.of(plant),
         transition=held.A,
         voltage_input=held.B,

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
-from scipy.optimize import minimize
 
 from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
 from baselines.design.matrix import one_or_each
+from baselines.design.verification import verified
+from baselines.laws.gain_search import least_cost_gains
 from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
 from beamenv.configuration import Count, Number, checked
 from beamenv.plant.hold import hold
 from beamenv.plant.plant import Plant, sample
+
+NAME = "positive position feedback"
 
 POSITIVE = Number(gt=0.0)
 
@@ -33,9 +34,16 @@ _GAINS = np.logspace(-3.0, 0.0, 16)
 
 
 def positive_position_feedback(
-    plant: Plant, gain: ArrayLike | None = None, modes: int = 3, filter_damping: float = FILTER_DAMPING, leak: float = LEAK
+    plant: Plant,
+    gain: ArrayLike | None = None,
+    modes: int | None = None,
+    filter_damping: float = FILTER_DAMPING,
+    leak: float = LEAK,
+    *,
+    verify: bool = True,
 ) -> LinearController:
-    """Voltages u_j = Σ_k g_k q_k / c_j, with a filter for each of the first ``modes`` natural frequencies on each pair of patches.
+    """Voltages u_j = Σ_k g_k q_k / c_j, with a filter for each of the first ``modes`` natural frequencies on each pair of patches:
+    by default three, or as many as the plant has.
 
         q̈_k + 2 ζ_f ω_k q̇_k + ω_k² q_k = ω_k² q,        q̇ = y_j − (leak ω_1) q,
 
@@ -45,22 +53,26 @@ def positive_position_feedback(
 
     ``gain`` (modes,) or one number for all are the g_k. By default those of least stationary cost under the plant's white loads
     and sensor noise, among stable loops: the best common one of a few, then each for itself (Nelder and Mead's simplex). Integrated
-    exactly from sample to sample, the newest reading held over the interval that it ends. Raises ValueError when sensors and
-    actuators cannot be paired, or for modes, damping, leak or gains that are not allowed.
+    exactly from sample to sample, the newest reading held over the interval that it ends. ``verified`` on ``plant`` unless
+    ``verify=False``. Raises ValueError when sensors and actuators cannot be paired, for modes, damping, leak or gains that are not
+    allowed, and where the loop is unstable, be it with the gains given or with any.
     """
-    modes = checked("modes", modes, Count(1, len(checked_plant(plant).natural_frequencies)))
+    known = len(checked_plant(plant).natural_frequencies)
+    count = min(3, known) if modes is None else checked("modes", modes, Count(1, known))
     filter_damping, leak = (checked(name, value, POSITIVE) for name, value in (("filter_damping", filter_damping), ("leak", leak)))
-    frequencies = plant.natural_frequencies[:modes]
-    pairs = pairing(plant, "positive position feedback")
+    frequencies = plant.natural_frequencies[:count]
+    pairs = pairing(plant, NAME)
     filters = _held_filters(frequencies, filter_damping, leak * frequencies[0], plant.control_interval)
 
     def law(gains: ArrayLike) -> LinearController:
-        return _law(plant, pairs, filters, np.broadcast_to(np.asarray(gains, dtype=np.float64), modes))
+        return _law(plant, pairs, filters, np.broadcast_to(np.asarray(gains, dtype=np.float64), count))
 
     if gain is None:
         held = sample(plant)
-        return law(_least_cost_gains(lambda gains: stationary_cost(held, law(gains)), modes))
-    return law(one_or_each("gain", gain, modes, "mode"))
+        gains = least_cost_gains(lambda each: stationary_cost(held, law(each)), _GAINS, count, NAME, xatol=np.inf, maxiter=400)
+    else:
+        gains = one_or_each("gain", gain, count, "mode")
+    return verified(law(gains), plant, instead="smaller gains", verify=verify)
 
 
 def _held_filters(frequencies: Array, damping: float, corner: float, interval: float) -> tuple[Array, Array]:
@@ -85,16 +97,4 @@ def _law(plant: Plant, pairs: Array, filters: tuple[Array, Array], gains: Array)
     F = block_diag(*[transition] * len(pairs))
     G: Array = block_diag(*[held_input[:, None]] * len(pairs)) @ pairs
     M = block_diag(*(outputs / each for each in charge_per_volt))
-    return observer(plant, "positive position feedback", F, G, np.zeros((len(F), len(pairs))), M @ F, M @ G)
-
-
-def _least_cost_gains(cost: Callable[[Array], float], modes: int) -> Array:
-    common = min(_GAINS, key=lambda gain: cost(np.full(modes, gain)))
-    start = np.full(modes, common)
-    options = {
-        "initial_simplex": np.vstack([start, start + common * np.eye(modes)]),
-        "fatol": 1e-6 * cost(start),
-        "xatol": np.inf,
-        "maxiter": 400,
-    }
-    return np.asarray(minimize(cost, start, method="Nelder-Mead", options=options).x)
+    return observer(plant, NAME, F, G, np.zeros((len(F), len(pairs))), M @ F, M @ G)

@@ -8,31 +8,29 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
-from baselines.analysis.stationary import closed_loop, stationary_cost
-from baselines.design.linear import LinearController
+from baselines.design.linear import LinearController, linear
+from baselines.design.loop import closed_loop, sampled, spectral_radius
 from baselines.design.riccati import Array
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from baselines.design.verification import verified
+from beamenv.configuration import Count, checked
+from beamenv.plant.plant import Plant, SampledPlant
 
 
-def reduced(plant: Plant | SampledPlant, law: LinearController, order: int) -> LinearController:
+def reduced(plant: Plant | SampledPlant, law: LinearController, order: int, *, verify: bool = True) -> LinearController:
     """The law with ``order`` numbers in its memory instead of ``law.order``.
 
     In the closed loop under the plant's white loads and sensor noise the memory has a covariance, and each direction of it a say in
     the cost that follows. Directions in which the product of the two is least are left out (Wortelboer and Bosgra 1994; what
-    Moore's balanced truncation is to a plant by itself). Raises ``ValueError`` for an order that is not below the law's, for a law
-    whose loop is unstable, and where the loop of the result is.
+    Moore's balanced truncation is to a plant by itself). The result is ``verified`` on ``plant`` unless ``verify=False``. Raises
+    ``ValueError`` for an order that is not below the law's, for a law whose loop is unstable, and where the loop of the result is.
     """
-    if not 0 < order < law.order:
-        raise ValueError(f"order = {order!r} must be a whole number from 1 to {law.order - 1}, below that of {law.name}.")
-    shorter = truncations(plant, law)(order)
-    if not np.isfinite(stationary_cost(plant, shorter)):
-        raise ValueError(f"order = {order} leaves {law.name} unstable on its own plant: allowed are larger ones.")
-    return shorter
+    order = checked("order", order, Count(1, linear(law).order - 1))
+    return verified(truncations(plant, law)(order), plant, instead="a larger order", verify=verify)
 
 
 def truncations(plant: Plant | SampledPlant, law: LinearController) -> Callable[[int], LinearController]:
     """The law of each order, from one balancing; it may be unstable."""
-    basis, dual = _balanced(sample(plant) if isinstance(plant, Plant) else plant, law)
+    basis, dual = _balanced(sampled(plant), law)
 
     def of(order: int) -> LinearController:
         onto, back = basis[:, :order], dual[:order]
@@ -50,7 +48,7 @@ def truncations(plant: Plant | SampledPlant, law: LinearController) -> Callable[
 def _balanced(held: SampledPlant, law: LinearController) -> tuple[Array, Array]:
     """Basis and dual basis (s, k), (k, s) of the memory, the most important direction first; k of them are not lost in rounding."""
     transition, noise_input, state_map, _, covariance = closed_loop(held, law)
-    if np.abs(np.linalg.eigvals(transition)).max() >= 1.0:
+    if spectral_radius(transition) >= 1.0:
         raise ValueError(f"law = {law.name} is unstable on the plant, and cannot be reduced there.")
     n = len(held.A)
     spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T)[n:, n:]

@@ -8,11 +8,14 @@ and then reduced: what is left out is memory of the law, in the closed loop, not
 from __future__ import annotations
 
 from baselines.analysis.stationary import stationary_cost
+from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
-from baselines.design.load_model import Load
+from baselines.design.load_model import Load, checked_load
+from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design, sampled_with_loads
 from baselines.laws.reduction import reduced, truncations
-from beamenv.plant.plant import Plant
+from beamenv.configuration import Text, checked
+from beamenv.plant.plant import Plant, SampledPlant
 
 RATE_WEIGHT = 1.0
 """Of changes of the voltage over that of the voltage itself: on the thesis' blade it costs 0.3 % and keeps the law in place where
@@ -23,31 +26,44 @@ ALLOWANCE = 0.005
 
 
 def full_order_lqg(
-    plant: Plant, rate_weight: float = RATE_WEIGHT, *, load: Load | None = None, name: str = "LQG"
+    plant: Plant, rate_weight: float = RATE_WEIGHT, *, load: Load | None = None, name: str = "LQG", verify: bool = True
 ) -> LinearController:
     """The sampled optimum for the plant's cost with ``rate_weight`` (u − u₋)ᵀ diag(R) (u − u₋) of each interval on top.
 
-    ``load`` adds the states of a load that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``. Raises ``ValueError``
-    for a weight that is negative and for a loop that comes out unstable.
+    ``load`` adds the states of a load that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``.
+    ``verified`` on ``plant`` unless ``verify=False``. Raises ``ValueError`` for a weight that is negative, for what is no load, and
+    as ``lqg`` does.
     """
-    held, _, K, L = sampled_design(plant, load, rate_weight=rate_weight)
-    law = compensator(plant, name, held, K, L)
-    if not stationary_cost(plant, law) < float("inf"):
-        raise ValueError(f"rate_weight = {rate_weight!r} leaves {name} unstable on its own plant.")
-    return law
+    load = checked_load("load", load)
+    held, regulated, filtered = sampled_design(checked_plant(plant), load, rate_weight=rate_weight)
+    law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
+    return verified(law, plant, regulated, filtered, instead="another rate_weight", verify=verify)
 
 
 def reference_lqg(
-    plant: Plant, rate_weight: float = RATE_WEIGHT, order: int | None = None, *, load: Load | None = None, name: str = "LQG"
+    plant: Plant,
+    rate_weight: float = RATE_WEIGHT,
+    order: int | None = None,
+    *,
+    load: Load | None = None,
+    name: str = "LQG",
+    verify: bool = True,
 ) -> LinearController:
     """``full_order_lqg`` with ``order`` numbers in its memory; None: the least even number that adds no more than 0.5 % to the mean
     cost under the plant's own noise and the ``load``.
 
-    ``plant`` is all that is known of the blade, such as ``Design.full_plant``. Raises ``ValueError`` as its parts do.
+    ``plant`` is all that is known of the blade, such as ``Design.full_plant``; the law is ``verified`` there, reduced, unless
+    ``verify=False``. Only what is stable can be reduced: raises ``ValueError`` as its parts do.
     """
-    whole, loaded = full_order_lqg(plant, rate_weight, load=load, name=name), sampled_with_loads(plant, load)
+    whole = full_order_lqg(plant, rate_weight, load=load, name=name)
+    loaded = sampled_with_loads(plant, load)
     if order is not None:
-        return reduced(loaded, whole, order)
+        return reduced(loaded, whole, order, verify=verify)
+    return verified(_least(loaded, whole), plant, verify=verify)
+
+
+def _least(loaded: SampledPlant, whole: LinearController) -> LinearController:
+    """Of the least even order within the allowance."""
     allowed, of = (1.0 + ALLOWANCE) * stationary_cost(loaded, whole), truncations(loaded, whole)
     shortest, low, high = whole, 1, whole.order // 2
     while low < high:  # the cost falls with the order, but for rounding

@@ -12,6 +12,7 @@ from scipy.linalg import block_diag
 
 from baselines.design.linear import LinearController
 from baselines.design.load_model import LoadModel
+from baselines.design.objects import instance, optional_instance
 from baselines.design.persistent_load import PersistentLoad
 from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_lqg
@@ -62,12 +63,16 @@ def rotor_lqg(
     *,
     Q: ArrayLike | None = None,
     R: ArrayLike | None = None,
+    verify: bool = True,
 ) -> LinearController:
     """The sampled LQG of a plant under rotor harmonics and, if given, under Gauss–Markov ``turbulence``.
 
     The loads are part of the state, for filter and regulator alike, so that the compensator holds a model of each harmonic and
     answers it (the internal model principle: Francis and Wonham, Automatica 12, 1976; for helicopter rotors Shaw and Albion, J. Am.
-    Helicopter Soc. 26, 1981). ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Raises ValueError for a harmonic
-    beyond half the sampling rate.
+    Helicopter Soc. 26, 1981). ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. ``verified`` on
+    ``plant`` unless ``verify=False``. Raises ValueError for a harmonic beyond half the sampling rate, for loads that are none, and
+    as ``lqg`` does.
     """
-    return sampled_lqg(weighted(plant, Q, R), "LQG with rotor harmonics", harmonics, turbulence)
+    harmonics = instance("harmonics", harmonics, RotorHarmonics, "a RotorHarmonics, such as RotorHarmonics(speed)")
+    turbulence = optional_instance("turbulence", turbulence, PersistentLoad, "a PersistentLoad, such as PersistentLoad()")
+    return sampled_lqg(weighted(plant, Q, R), "LQG with rotor harmonics", harmonics, turbulence, verify=verify)

@@ -14,9 +14,12 @@ from baselines.design.controller import Array
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
 from baselines.design.linear import LinearController
-from baselines.design.persistent_load import PersistentLoad
+from baselines.design.objects import instance
+from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
+from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Flag, checked
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 
@@ -81,19 +84,23 @@ def _mixed(weights: Array, rows: Array, matrices: Sequence[Array]) -> Array:
     return np.asarray(sum(weights[..., j, None] * (rows @ matrices[j]) for j in used))
 
 
-def scheduled_lqg(family: SpeedFamily, persistent_load: PersistentLoad | None = None, *, rate_weight: float = 0.0) -> ScheduledLQG:
+def scheduled_lqg(
+    family: SpeedFamily, persistent_load: PersistentLoad | None = None, *, rate_weight: float = 0.0, verify: bool = True
+) -> ScheduledLQG:
     """The sampled LQG of each plant of a family, all in its common coordinates; ``persistent_load`` as in ``lqg``, and
     ``rate_weight`` a price on quick changes as in ``full_order_lqg``.
 
-    Raises ValueError for plants that differ in their sensors' range, drive or clock.
+    Each law is ``verified`` on the plant of its own speed unless ``verify=False``; of speeds between, and of a speed that changes,
+    nothing is promised. Raises ValueError for plants that differ in their sensors' range, drive or clock, and as ``lqg`` does.
     """
-    first = family.plants[0]
+    load = checked_persistent_load(persistent_load)
+    first = instance("family", family, SpeedFamily, "a SpeedFamily, such as speed_family(config, speeds)").plants[0]
     for plant in family.plants:
         for name in ("sensor_full_scale", "voltage_limits", "control_interval"):
             if not np.array_equal(getattr(plant, name), getattr(first, name)):
                 raise ValueError(f"family has plants that differ in {name}, but one controller has one set of instruments")
-    laws = (_law(*each, persistent_load, rate_weight) for each in zip(family.plants, family.from_common, strict=True))
-    name = "LQG, scheduled with speed" if persistent_load is None else "LQG with load estimate, scheduled with speed"
+    laws = (_law(*each, load, rate_weight, verify) for each in zip(family.plants, family.from_common, strict=True))
+    name = "LQG, scheduled with speed" if load is None else "LQG with load estimate, scheduled with speed"
     return ScheduledLQG(name, Instruments.of(first, "observation and speed"), family.speeds, tuple(laws))
 
 
@@ -104,24 +111,30 @@ def scheduled_lqg_for(
     *,
     full: bool = False,
     rate_weight: float = 0.0,
+    verify: bool = True,
 ) -> ScheduledLQG:
     """The scheduled LQG of a blade over ``speeds`` (rad/s), by default nine within 20 % of the configuration's own.
 
     ``full`` designs it on all that is known of the blade, as ``speed_family`` has it, in place of the design plant.
 
-    Raises ValueError for speeds that ``speed_family`` refuses, or for a blade that does not turn and has none to be scheduled with.
+    Raises ValueError for speeds that ``speed_family`` refuses, for a blade that does not turn and has none to be scheduled with,
+    and as ``scheduled_lqg`` does.
     """
+    config = instance("config", config, BladeConfig, 'a BladeConfig, such as blade_config("thesis")')
+    checked_persistent_load(persistent_load)
     if speeds is None:
         if config.speed == 0.0:
-            raise ValueError("speeds must be given for a blade at rest: there is no speed to choose them around")
+            raise ValueError("speeds is None, but must be given for a blade at rest: there is no speed to choose them around")
         speeds = config.speed * _GRID
-    return scheduled_lqg(speed_family(config, speeds, full=full), persistent_load, rate_weight=rate_weight)
+    family = speed_family(config, speeds, full=checked("full", full, Flag()))
+    return scheduled_lqg(family, persistent_load, rate_weight=rate_weight, verify=verify)
 
 
-def _law(plant: Plant, from_common: Array, persistent_load: PersistentLoad | None, rate_weight: float) -> LinearController:
+def _law(plant: Plant, from_common: Array, load: PersistentLoad | None, rate_weight: float, verify: bool) -> LinearController:
     """The LQG of a plant with its memory, x and then any lasting load and voltages before, in the common coordinates."""
-    held, _, K, L = sampled_design(plant, persistent_load, rate_weight=rate_weight)
-    law = compensator(plant, "LQG", held, K, L)
+    held, regulated, filtered = sampled_design(plant, load, rate_weight=rate_weight)
+    law = compensator(plant, "LQG", held, regulated.gain, filtered.gain)
+    verified(law, plant, regulated, filtered, instead="another rate_weight or other speeds", verify=verify)
     there = block_diag(from_common, np.eye(len(law.transition) - len(from_common)))
     back = np.linalg.inv(there)
     return replace(

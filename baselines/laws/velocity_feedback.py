@@ -4,36 +4,43 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize
 
 from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
+from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController, static_law
 from baselines.design.matrix import one_or_each
+from baselines.design.objects import optional_instance
+from baselines.design.verification import verified
+from baselines.laws.gain_search import least_cost_gains
 from beamenv.plant.plant import Plant, sample
 
 _DECADES = np.linspace(-6.0, 1.0, 36)
 """Exponents of the common gains tried, in units of the gain that damps at about the first mode's own rate."""
 
 
-def velocity_feedback(plant: Plant, gain: ArrayLike | None = None, *, tuned_on: Plant | None = None) -> LinearController:
+def velocity_feedback(
+    plant: Plant, gain: ArrayLike | None = None, *, tuned_on: Plant | None = None, verify: bool = True
+) -> LinearController:
     """u_j = −g_j y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
 
     ``gain`` in V/A is one number or one for each actuator. By default the gains are those with the least stationary cost under the
     white loads and sensor noise of the plant, or of ``tuned_on``, such as ``Design.full_plant``, among those that keep that sampled
     loop stable. The thesis' sensors lie across the section from their actuators and so feel bending alike but extension with the
     opposite sign: with one gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between
-    them. Raises ValueError when sensors and actuators cannot be paired, for a plant with filters between blade and readings, which
-    hide what a pair feels, or for a gain of another shape.
+    them. ``verified`` on the plant, or on ``tuned_on``, unless ``verify=False``. Raises ValueError when sensors and actuators
+    cannot be paired, for a plant with filters between blade and readings, which hide what a pair feels, for a gain of another
+    shape, and where the loop is unstable, be it with the gain given or with any.
     """
-    pairs = pairing(plant, "velocity feedback")
+    pairs = pairing(checked_plant(plant), "velocity feedback")
+    meant_for = optional_instance("tuned_on", tuned_on, Plant, "a beamenv.Plant, such as design.full_plant") or plant
     felt = np.diag(pairs @ plant.C @ plant.B)
     if not felt.any():
         raise ValueError("plant hides what a pair feels behind filters: allowed is the design plant, with tuned_on= for this one")
     pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
-    if gain is None:
-        return _law(plant, "velocity feedback", pairs, _least_cost_gains(plant, plant if tuned_on is None else tuned_on, pairs))
-    return _law(plant, "velocity feedback", pairs, one_or_each("gain", gain, len(pairs), "actuator"))
+    given = None if gain is None else one_or_each("gain", gain, len(pairs), "actuator")
+    gains = _least_cost_gains(plant, meant_for, pairs) if given is None else given
+    return verified(_law(plant, "velocity feedback", pairs, gains), meant_for, instead="a smaller gain", verify=verify)
 
 
 def _law(plant: Plant, name: str, pairs: Array, gains: Array) -> LinearController:
@@ -63,10 +70,4 @@ def _least_cost_gains(plant: Plant, tuned_on: Plant, pairs: Array) -> Array:
     def cost(gains: Array) -> float:
         return stationary_cost(held, _law(plant, "trial", pairs, unit * gains))
 
-    common = min((10.0**decade for decade in _DECADES), key=lambda gain: cost(np.asarray(gain)))
-    start = np.full(len(pairs), common)
-    simplex = np.vstack([start, start + common * np.eye(len(start))])
-    found = minimize(
-        cost, start, method="Nelder-Mead", options={"initial_simplex": simplex, "fatol": 1e-6 * cost(start), "maxiter": 800}
-    )
-    return np.asarray(unit * found.x)
+    return unit * least_cost_gains(cost, 10.0**_DECADES, len(pairs), "velocity feedback", maxiter=800)

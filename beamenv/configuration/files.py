@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import sys
@@ -9,6 +10,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from beamenv.configuration.sentence import Refused
 
@@ -64,6 +67,16 @@ def parsed_table(text: str, source: str) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise Refused(f"file {source!r}", content, "a table of fields")
     return {name: value for name, value in content.items() if name != SCHEMA}
+
+
+def parsed_arrays(content: bytes, source: str) -> dict[str, Any]:
+    """The arrays in the content of an .npz archive, no objects of Python's; ``ValueError`` of one sentence names its source."""
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:  # which a single array is not
+            return {key: archive[key] for key in archive.files}
+    except Exception as error:  # noqa: BLE001 - a damaged archive makes zipfile, zlib and NumPy raise whatever comes first
+        why = "it holds Python objects" if "Object arrays" in str(error) else "it is no .npz archive of arrays"
+        raise ValueError(f"file {source!r} cannot be read: {why}.") from None
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium
@@ -54,6 +55,15 @@ class RollingHistory:
         """The histories (len(rows), length · (p + m)), a copy."""
         kept = np.array(self._buffer[rows, self._end - self.length : self._end], order="C")
         return kept.reshape(len(kept), -1)
+
+    def state_dict(self) -> dict[str, Array]:
+        """A copy of the windows."""
+        return {"window": self.window()}
+
+    def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
+        """Go back to a ``state_dict`` of an equally made history."""
+        self._end = self.length
+        self._buffer[:, : self.length] = np.asarray(state["window"]).reshape((-1, self.length, self.width))
 
 
 class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
@@ -123,6 +133,15 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
                 self._history.begin(readings[rows], rows)
             self._over = terminated | truncated
         return self._history.window(), reward, terminated, truncated, info
+
+    def state_dict(self) -> dict[str, Any]:
+        """The windows; the blades' own state is ``unwrapped.state_dict()``."""
+        return {**self._history.state_dict(), "over": self._over.copy()}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to a ``state_dict`` of an equally made wrapper."""
+        self._history.load_state_dict(state)
+        self._over = np.asarray(state["over"]).copy()
 
     def _finish(self, readings: Array, info: dict[str, Any]) -> None:
         """Put the whole histories of finished episodes into ``info``, and begin those of the next ones."""

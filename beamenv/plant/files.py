@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from beamenv.configuration import Instance, checked
-from beamenv.configuration.files import checked_path, content_of, of_file
+from beamenv.configuration.files import checked_path, content_of, of_file, parsed_arrays
 from beamenv.configuration.sentence import unknown_field
 from beamenv.configuration.writing import write_whole
 from beamenv.plant import named
@@ -62,13 +62,7 @@ def _shipped(name: str) -> ModalPlant:
 
 
 def _of_bytes(content: bytes, name: str) -> ModalPlant:
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:  # which a single array is not
-            arrays = {key: archive[key] for key in archive.files}
-    except Exception as error:  # noqa: BLE001 - damaged bytes fail in as many ways as there are readers within readers
-        objects = "Object arrays" in str(error)
-        why = "it holds Python objects" if objects else "it is no .npz archive of arrays"
-        raise ValueError(f"file {name!r} cannot be read: {why}.") from None
+    arrays = parsed_arrays(content, name)
     with of_file(name):
         return _of_arrays(arrays)
 

@@ -3,6 +3,7 @@
 import copy
 import pickle
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -49,3 +50,23 @@ def test_without_its_solver_it_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "daqp", None)
     with pytest.raises(ModuleNotFoundError, match="pip install daqp"):
         BoxQP(HESSIAN, np.full(2, -1.0), np.full(2, 1.0))
+
+
+def test_one_program_solved_by_eight_threads_at_once_is_solved_as_by_one():
+    """Each thread has a solver of its own: one solver's memory, shared, gave other minimisers and then corrupted the heap."""
+    random = np.random.default_rng(4)
+    root = random.normal(size=(24, 24))
+    program = BoxQP(root @ root.T + 1e-2 * np.eye(24), np.full(24, -1.0), np.full(24, 1.0))
+    gradients = 10.0 * random.normal(size=(8, 100, 24))
+    alone = [program.minimise(each) for each in gradients]
+    with ThreadPoolExecutor(8) as threads:
+        for together in (list(threads.map(program.minimise, gradients)) for _ in range(3)):
+            np.testing.assert_array_equal(together, alone)
+    assert program.failures == 0
+
+
+def test_failures_of_all_threads_are_counted():
+    program = BoxQP(HESSIAN, np.full(2, -1.0), np.full(2, 1.0))
+    with ThreadPoolExecutor(8) as threads:
+        list(threads.map(program.minimise, [np.full((5, 2), np.nan)] * 200))
+    assert program.failures == 1000

@@ -145,7 +145,7 @@ def test_velocity_feedback_refuses_what_it_cannot_pair(small_plant):
 
 
 def test_lqg_refuses_unknown_designs_by_name(small_plant):
-    with pytest.raises(ValueError, match='design = "?.?analog.*"sampled" and "continuous"'):
+    with pytest.raises(ValueError, match="^design is 'analog', but must be one of sampled, continuous"):
         lqg(small_plant(), "analog")
     with pytest.raises(ValueError, match='persistent_load.*needs design="sampled"'):
         lqg(small_plant(), "continuous", persistent_load=PersistentLoad())
@@ -164,7 +164,7 @@ def test_lqg_of_a_calm_blade_leaves_it_in_peace(small_plant, design):
 def test_sampled_lqg_copes_with_noiseless_sensors_where_the_thesis_filter_outruns_the_sampling(small_plant):
     exact = small_plant(sensor_noise=np.zeros((2, 2)))
     assert stationary_cost(exact, lqg(exact)) < 1.01 * stationary_cost(exact, lqr(exact))
-    assert stationary_cost(exact, lqg(exact, "continuous")) == np.inf
+    assert stationary_cost(exact, lqg(exact, "continuous", verify=False)) == np.inf
 
 
 def test_true_states_reveal_the_load_that_lasts(small_plant):

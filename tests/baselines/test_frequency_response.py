@@ -47,7 +47,7 @@ def test_the_mean_cost_is_the_integral_of_the_squared_response(small_plant):
 
 def test_an_unstable_loop_has_no_finite_norm(small_plant):
     plant = small_plant()
-    assert h_infinity_norm(plant, velocity_feedback(plant, gain=-1e12)) == np.inf
+    assert h_infinity_norm(plant, velocity_feedback(plant, gain=-1e12, verify=False)) == np.inf
 
 
 def test_a_square_root_squares_to_its_matrix_whatever_the_units(small_plant):

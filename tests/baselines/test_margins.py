@@ -105,6 +105,6 @@ def test_no_control_cannot_be_made_unstable(small_plant):
 def test_unstable_loops_and_unknown_places_are_refused_by_name(small_plant):
     plant = small_plant()
     with pytest.raises(ValueError, match="velocity feedback is unstable on this plant"):
-        stability_margins(plant, velocity_feedback(plant, gain=-1e12))
-    with pytest.raises(ValueError, match='at = .middle. is not.*"input" and "output"'):
+        stability_margins(plant, velocity_feedback(plant, gain=-1e12, verify=False))
+    with pytest.raises(ValueError, match="^at is 'middle', but must be one of input, output"):
         stability_margins(plant, lqg(plant), "middle")

@@ -72,7 +72,7 @@ def test_without_a_limit_in_sight_it_is_lqg(small_plant, load):
 def test_one_move_of_one_voltage_is_lqg_clipped(scalar_plant):
     """Least (u + Kx)² (R + BᵀPB) on an interval."""
     plant = scalar_plant()
-    held, _, K, _ = sampled_design(plant)
+    held, (_, K), _ = sampled_design(plant)
     state = np.linspace(-3.0, 3.0, 13)[:, None]
     voltage = decide(mpc(plant, move_blocks=[1]), state)
     np.testing.assert_allclose(voltage, np.clip(-state @ K.T, -1500.0, 1500.0), rtol=1e-9)
@@ -82,7 +82,7 @@ def test_one_move_of_one_voltage_is_lqg_clipped(scalar_plant):
 def test_one_move_of_two_voltages_lets_the_free_one_help_the_bound_one(small_plant):
     """With S = R + BᵀPB: u₂ = −(Kx)₂ − S₂₁/S₂₂ (u₁ + (Kx)₁), where u₁ is at its limit and u₂ is not."""
     plant = small_plant(voltage_limits=np.array([[-500.0, -1e5], [1500.0, 1e5]]))
-    held, P, K, _ = sampled_design(plant)
+    held, (P, K), _ = sampled_design(plant)
     S = held.input_weight + held.B.T @ P @ held.B
     state = states(20, 6)
     wanted, voltage = -state @ K.T, decide(mpc(plant, move_blocks=[1]), state)
@@ -94,7 +94,7 @@ def test_one_move_of_two_voltages_lets_the_free_one_help_the_bound_one(small_pla
 
 def test_moves_are_the_bounded_least_squares_solution(small_plant, load, blocks):
     plant = small_plant()
-    law, (held, P, _, _) = mpc(plant, load, blocks), sampled_design(plant, load)
+    law, (held, (P, _), _) = mpc(plant, load, blocks), sampled_design(plant, load)
     drive, bounds = 1500.0, (np.tile([-1 / 3, -1 / 3], len(blocks)), np.ones(2 * len(blocks)))
     bound = free = 0
     for state in states(20, len(held.A)):
@@ -147,8 +147,9 @@ def test_the_solver_is_left_alone_while_the_plan_keeps_within_the_limits(small_p
 
 def test_where_the_solver_gives_up_the_voltage_is_lqgs_clipped_and_counted(small_plant):
     plant = small_plant()
-    law, (_, _, K, _) = mpc(plant), sampled_design(plant)
-    law.program._model.settings = {**law.program._model.settings, "iter_limit": 1}
+    law, (_, (_, K), _) = mpc(plant), sampled_design(plant)
+    model, _ = law.program._solver()
+    model.settings = {**model.settings, "iter_limit": 1}
     state = states(10, 6, size=0.5)
     np.testing.assert_allclose(decide(law, state), np.clip(-state @ K.T, -500.0, 1500.0), rtol=1e-9)
     assert law.solver_failures == 10

@@ -10,12 +10,14 @@ import pytest
 import beamenv
 import train.comparison.compare
 import train.learning.job
-from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve
+from beamenv.task import resolve_task
+from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve, trained
 from train.comparison.page import shown_pair
 from train.controllers.named import named
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.session import follow
+from train.shared.interruption import Interrupted
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
 
@@ -133,25 +135,46 @@ def test_a_training_that_was_cut_off_resumes_from_its_checkpoint(tmp_path, monke
     assert json.loads((tmp_path / "agents" / "gradient" / "agent.json").read_text())["seconds"] >= 10.0
 
 
-def test_ctrl_c_ends_a_training_and_goes_on_to_the_evaluation(tmp_path):
+def test_ctrl_c_ends_a_comparison_at_once_and_keeps_no_half_trained_agent(tmp_path, ticking):
     class Hasty(Notes):
         def training(self, name, budget, progress):
             super().training(name, budget, progress)
-            raise KeyboardInterrupt
+            if len(self.trained) == 3:
+                raise KeyboardInterrupt
 
-    notes = Hasty()
-    compare(Comparison({"duration": 0.05}, {"gradient": 60.0}, seeds=2), tmp_path, notes)
-    assert len(notes.trained) == 1
-    assert len(notes.evaluated_names) == len(CLASSICAL) + 1
+    comparison, hasty, patient = Comparison({"duration": 0.05}, {"gradient": 2.0}, seeds=2), Hasty(), Notes()
+    with ticking(0.2):
+        with pytest.raises(Interrupted):
+            compare(comparison, tmp_path, hasty)
+        assert hasty.evaluated_names == []
+        assert {path.name for path in (tmp_path / "agents" / "gradient").iterdir()} == {CHECKPOINT, "tensorboard"}
+        trained(comparison, "gradient", tmp_path, resolve_task(duration=0.05).design_plant, patient)
+    seconds = [[progress.elapsed for _, progress in notes.trained] for notes in (hasty, patient)]
+    assert seconds[0] == pytest.approx([0.2, 0.4, 0.6])
+    assert seconds[1][0] == pytest.approx(0.8) and seconds[1][-1] >= 2.0
+    assert json.loads((tmp_path / "agents" / "gradient" / "agent.json").read_text())["finished"] is True
 
 
-@pytest.mark.parametrize("agent", ["gradient", "ppo"])
-def test_a_training_that_ends_before_its_first_report_is_evaluated_all_the_same(agent, tmp_path, monkeypatch):
-    monkeypatch.setattr(train.learning.job, "follow", lambda training, *_: training.policies())
-    evaluations = compare(Comparison({"duration": 0.05}, {agent: 1.0}, seeds=2), tmp_path)
-    assert len(evaluations) == len(CLASSICAL) + 1
-    assert read_curve(tmp_path, agent).shape == (0, 3)
-    assert not (tmp_path / "learning.png").exists()
+def test_an_agent_that_says_it_is_unfinished_is_trained_on(tmp_path, ticking):
+    comparison, notes = Comparison({"duration": 0.05}, {"gradient": 2.0}, seeds=2), Notes()
+    plant = resolve_task(duration=0.05).design_plant
+    path = tmp_path / "agents" / "gradient" / "agent.json"
+    with ticking(0.5):
+        trained(comparison, "gradient", tmp_path, plant, notes)
+        whole, count = path.read_bytes(), len(notes.trained)
+        trained(comparison, "gradient", tmp_path, plant, notes)
+        assert (path.read_bytes(), len(notes.trained)) == (whole, count)
+        path.write_text(json.dumps(json.loads(whole) | {"finished": False}))
+        trained(comparison, "gradient", tmp_path, plant, notes)
+    assert path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("content", ["", "{", "[1]", "\0"])
+def test_a_damaged_configuration_is_told_with_its_name(content, tmp_path):
+    (tmp_path / "configuration.json").write_text(content)
+    with pytest.raises(ValueError, match=r"configuration.json' cannot be read|holds another comparison"):
+        compare(Comparison({"duration": 0.05}, {}, seeds=2), tmp_path)
+    assert (tmp_path / "configuration.json").read_text() == content
 
 
 def test_another_comparison_does_not_overwrite_a_folder(finished):

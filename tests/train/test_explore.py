@@ -49,7 +49,7 @@ def plant():
 
 @pytest.fixture(scope="module")
 def design(plant):
-    held, _, K, L = sampled_design(plant)
+    held, (_, K), (_, L) = sampled_design(plant)
     return held, K, L
 
 

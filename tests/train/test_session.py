@@ -2,8 +2,10 @@
 
 import csv
 import json
+import os
 import pickle
 import signal
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,14 +20,22 @@ from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
 from train.learning.job import Job, run
 from train.learning.recipe import parsed
 from train.learning.session import Budget, follow
+from train.shared.interruption import Interrupted, ending_as_interrupted
 
 SHORT = {"duration": 0.02}  # 40 control intervals
 ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"
+CRITICS = "critic_units = 16\ncritic_first = 1\ncritic_steps = 2\ngradient_steps = 2\n"
 GRADIENT = parsed(ROWS.format("gradient") + "episodes = 8\nwindow = 10\n[settings.actor_settings]\nunits = 6\n", "brief")
 PPO = parsed(ROWS.format("ppo") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 32\nunits = 8\n", "brief")
 SAC = parsed(
-    ROWS.format("sac") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 16\nfirst = 32\nbuffer = 256\nunits = 8\n", "brief"
+    ROWS.format("sac") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 16\nfirst = 32\nbuffer = 256\nunits = 8\n" + CRITICS,
+    "brief",
 )
+
+TQC = parsed(
+    ROWS.format("tqc") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 16\nfirst = 32\nbuffer = 64\nunits = 8\n" + CRITICS, "brief"
+)
+RECURRENT = parsed(ROWS.format("recurrent-ppo") + "blades = 8\nrollout = 4\nbatch = 32\nunits = 8\n", "brief")
 
 
 def job(recipe, scenario="nominal", seed=0, updates=6):
@@ -98,19 +108,48 @@ def test_a_checkpoint_is_written_every_so_often_and_at_the_end(ticking):
     assert kept == [30.0, 60.0, 70.0]
 
 
-def test_ctrl_c_waits_for_the_end_of_an_update():
-    class Interrupted(Counting):
-        def update(self, remaining):
-            if self.updates == 2:
-                signal.raise_signal(signal.SIGINT)
-            super().update(remaining)
+class Signalled(Counting):
+    """A training whose third update meets signals."""
 
-    training, kept = Interrupted(), []
-    handler = signal.getsignal(signal.SIGINT)
-    follow(training, Budget(updates=9), ignore, kept.append)
+    def __init__(self, *numbers):
+        super().__init__()
+        self.numbers = numbers
+
+    def update(self, remaining):
+        if self.updates == 2:
+            for number in self.numbers:
+                signal.raise_signal(number)
+        super().update(remaining)
+
+
+ENDING = [signal.SIGINT, *(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if os.name == "posix")]
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_a_signal_waits_for_the_end_of_an_update(number):
+    training, kept = Signalled(number), []
+    handlers = [signal.getsignal(each) for each in ENDING]
+    with ending_as_interrupted(), nullcontext() if number == signal.SIGINT else pytest.raises(Interrupted) as raised:
+        follow(training, Budget(updates=9), ignore, kept.append)
     assert training.updates == 3
     assert len(kept) == 1
-    assert signal.getsignal(signal.SIGINT) is handler
+    assert [signal.getsignal(each) for each in ENDING] == handlers
+    if raised is not None:
+        assert raised.value.status == 128 + number
+
+
+def test_a_second_ctrl_c_does_not_wait_and_half_an_update_is_not_kept():
+    training, kept = Signalled(signal.SIGINT, signal.SIGINT), []
+    with pytest.raises(KeyboardInterrupt):
+        follow(training, Budget(updates=9), ignore, kept.append)
+    assert training.updates == 2
+    assert kept == []
+
+
+@pytest.mark.parametrize("given", [{"updates": "6"}, {"updates": True}, {"seconds": None}, {"seconds": [1.0]}])
+def test_a_budget_is_made_of_numbers(given):
+    with pytest.raises(ValueError, match="must be a positive number"):
+        Budget(**given)
 
 
 @pytest.mark.parametrize("given", [{"updates": 0}, {"seconds": -1.0}, {"seconds": float("nan")}, {}])
@@ -134,18 +173,76 @@ def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrup
     assert costs[0] == costs[1]
 
 
-@pytest.mark.parametrize("recipe", [PPO, SAC], ids=["ppo", "sac"])
-def test_a_training_resumes_with_its_networks_and_counters(recipe, tmp_path):
-    run(job(recipe), tmp_path, interrupted_after(3))
-    before = read_checkpoint(tmp_path)["training"]
-    seen = []
-    run(job(recipe), tmp_path, seen.append, resume=True)
-    assert [progress.updates for progress in seen] == [4, 5, 6]
-    assert seen[0].steps > before["counters"]["steps"]
-    after = read_checkpoint(tmp_path)["training"]["policy"]
-    distance = max(float((after[name] - value).abs().max()) for name, value in before["policy"].items())
-    assert 0.0 < distance < 0.1  # three updates on, not begun anew
-    assert json.loads((tmp_path / "agent.json").read_text())["updates"] == 6
+STABLE_BASELINES = [PPO, RECURRENT, SAC, TQC]
+
+
+@pytest.mark.parametrize("scenario", ["failure", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rotor", "spin-up"))])
+@pytest.mark.parametrize("recipe", STABLE_BASELINES, ids=lambda recipe: recipe.agent)
+def test_a_resumed_training_ends_with_the_very_weights_of_an_uninterrupted_one(recipe, scenario, tmp_path):
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    run(job(recipe, scenario, updates=8), whole, ignore)
+    run(job(recipe, scenario, updates=8), broken, interrupted_after(5))
+    halfway = weights(broken)
+    run(job(recipe, scenario, updates=8), broken, ignore, resume=True)
+    assert_same(weights(whole), weights(broken))
+    assert any((halfway[name] != weight).any() for name, weight in weights(whole).items())
+    costs = [[row["cost"] for row in curve(folder)] for folder in (whole, broken)]
+    assert costs[0] == costs[1]
+
+
+def test_several_scenarios_side_by_side_resume_to_the_same_weights(tmp_path, monkeypatch):
+    monkeypatch.setattr(train.learning.job, "NAMES", ("nominal", "hysteresis"))
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    run(job(PPO, "generalist", updates=5), whole, ignore)
+    run(job(PPO, "generalist", updates=5), broken, interrupted_after(2))
+    run(job(PPO, "generalist", updates=5), broken, ignore, resume=True)
+    assert_same(weights(whole), weights(broken))
+
+
+def test_a_training_can_be_resumed_from_its_first_update_on(tmp_path):
+    class Killed(Exception):  # noqa: N818 - no error of ours
+        pass
+
+    def at_once(progress):
+        raise Killed
+
+    run(job(PPO), tmp_path / "whole", ignore)
+    with pytest.raises(Killed):
+        run(job(PPO), tmp_path / "broken", at_once)
+    run(job(PPO), tmp_path / "broken", ignore, resume=True)
+    assert_same(weights(tmp_path / "whole"), weights(tmp_path / "broken"))
+
+
+def test_a_training_that_is_over_keeps_no_memory_of_experience(tmp_path):
+    run(job(SAC), tmp_path, interrupted_after(3))
+    assert len(read_checkpoint(tmp_path)["training"]["memory"]["rewards"]) == 3 * 4
+    run(job(SAC), tmp_path, ignore, resume=True)
+    assert "memory" not in read_checkpoint(tmp_path)["training"]
+    before = weights(tmp_path)
+    run(job(SAC), tmp_path, ignore, resume=True)
+    assert_same(before, weights(tmp_path))
+
+
+def test_an_agent_tells_whether_its_training_was_finished(tmp_path):
+    run(job(PPO), tmp_path, interrupted_after(3))
+    about = json.loads((tmp_path / "agent.json").read_text())
+    assert (about["finished"], about["updates"]) == (False, 3)
+    run(job(PPO), tmp_path, ignore, resume=True)
+    about = json.loads((tmp_path / "agent.json").read_text())
+    assert (about["finished"], about["updates"]) == (True, 6)
+
+
+def test_a_signal_to_end_saves_what_has_been_learnt(tmp_path):
+    def ended(progress):
+        if progress.updates == 2:
+            signal.raise_signal(signal.SIGTERM)
+
+    with pytest.raises(Interrupted):
+        run(job(PPO), tmp_path / "broken", ended)
+    assert json.loads((tmp_path / "broken" / "agent.json").read_text())["finished"] is False
+    run(job(PPO), tmp_path / "broken", ignore, resume=True)
+    run(job(PPO), tmp_path / "whole", ignore)
+    assert_same(weights(tmp_path / "whole"), weights(tmp_path / "broken"))
 
 
 @pytest.mark.parametrize("recipe", [GRADIENT, PPO, SAC], ids=["gradient", "ppo", "sac"])
@@ -210,6 +307,40 @@ def test_a_folder_s_training_is_neither_overwritten_nor_taken_for_another(tmp_pa
         run(job(PPO), tmp_path / "nothing", ignore, resume=True)
 
 
+def test_an_agent_without_a_checkpoint_is_not_overwritten_unless_told(tmp_path):
+    recipe = replace(GRADIENT, settings=replace(GRADIENT.settings, runs=2))
+    for name, made in (("one", PPO), ("several", recipe)):
+        folder = tmp_path / name
+        run(job(made, updates=1), folder, ignore)
+        (folder / NAME).unlink()
+        before = {path: path.read_bytes() for path in folder.rglob("*.*") if path.is_file()}
+        with pytest.raises(ValueError, match="holds a trained agent already: resume or overwrite it, or name another folder"):
+            run(job(SAC, updates=1), folder, ignore)
+        assert {path: path.read_bytes() for path in folder.rglob("*.*") if path.is_file()} == before
+        run(job(SAC, updates=1), folder, ignore, overwrite=True)
+        assert load_policy(folder).name == "SAC"
+        assert not list(folder.glob("*/agent.json"))
+    with pytest.raises(ValueError, match="resume and overwrite must not both be given"):
+        run(job(SAC, updates=1), folder, ignore, resume=True, overwrite=True)
+
+
+def test_what_cannot_be_trained_leaves_the_agent_that_was_to_be_overwritten(tmp_path):
+    run(job(PPO, updates=1), tmp_path, ignore)
+    before = weights(tmp_path)
+    with pytest.raises(ValueError, match="nothing to learn"):
+        run(job(PPO, "quiet"), tmp_path, ignore, overwrite=True)
+    assert_same(before, weights(tmp_path))
+
+
+def test_two_trainings_do_not_share_a_folder(tmp_path):
+    def second(progress):
+        with pytest.raises(ValueError, match=f"is in use by process {os.getpid()}: wait until that has ended, or name another"):
+            run(job(PPO, updates=1), tmp_path / "agent", ignore, overwrite=True)
+
+    run(job(GRADIENT, updates=1), tmp_path / "agent", second)
+    assert load_policy(tmp_path / "agent").name == "gradient (GRU)"
+
+
 class Bomb:
     """Unpickled, it leaves a file behind."""
 
@@ -236,3 +367,37 @@ def test_half_a_checkpoint_is_told_in_a_sentence(tmp_path):
         (tmp_path / NAME).write_bytes(whole[:length])
         with pytest.raises(ValueError, match="must be a checkpoint"):
             read_checkpoint(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ([1, 2], "holds a list"),
+        ({"weights": 1}, "is of format None where this version of beamenv reads 2"),
+        ({"format": 3}, "is of format 3 where"),
+        ({"format": 2, "identity": ""}, "has no 'training'"),
+    ],
+)
+def test_another_kind_of_checkpoint_is_told_with_the_file_s_name(content, sentence, tmp_path):
+    torch.save(content, tmp_path / NAME)
+    with pytest.raises(ValueError, match=f"checkpoint.pt' must be a checkpoint .* but {sentence}"):
+        run(job(PPO), tmp_path, ignore, resume=True)
+
+
+@pytest.mark.parametrize("recipe", [GRADIENT, *STABLE_BASELINES], ids=lambda recipe: recipe.agent)
+def test_a_checkpoint_whose_state_does_not_fit_is_told_with_the_file_s_name(recipe, tmp_path):
+    run(job(recipe), tmp_path, interrupted_after(1))
+    whole = read_checkpoint(tmp_path)
+    for wrong in ({}, [], {**whole["training"], "counters": {}}, None):
+        write_checkpoint(tmp_path, {**whole, "training": wrong})
+        with pytest.raises(ValueError, match="checkpoint.pt' must be a checkpoint .* a state that does not fit this training"):
+            run(job(recipe), tmp_path, ignore, resume=True)
+
+
+def test_a_scenario_file_that_has_changed_is_another_training(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_text("[plants]\nbank = 2\ndamping_ratio = [0.003, 0.02]\n")
+    run(job(PPO, "mine.toml"), tmp_path / "agent", interrupted_after(1))
+    (tmp_path / "mine.toml").write_text("[plants]\nbank = 2\ndamping_ratio = [0.004, 0.02]\n")
+    with pytest.raises(ValueError, match="holds another training"):
+        run(job(PPO, "mine.toml"), tmp_path / "agent", ignore, resume=True)

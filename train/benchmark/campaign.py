@@ -6,6 +6,7 @@ import json
 import os
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import check_folder
 from train.shared.held_out import SEEDS, held_out
+from train.shared.lock import alone_in
 from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
@@ -65,7 +67,8 @@ def benchmark(
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
     A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, when
-    no scenario is left, and for a folder with a benchmark of other settings, which it would replace.
+    no scenario is left, for a folder with a benchmark of other settings, which it would replace, and for one in which nothing can
+    be written or another process is at work.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
     if progress is not None and not callable(progress):
@@ -89,12 +92,13 @@ def benchmark(
     ]
     check_paths(queue)
     made = configuration(settings, listed)
-    if folder is not None:
-        claim(folder, made)
-    cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
-    table = tabulate(cells, listed, refused, made)
-    if folder is not None:
-        write_all(folder, table)
+    with nullcontext() if folder is None else alone_in(folder):
+        if folder is not None:
+            claim(folder, made)
+        cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
+        table = tabulate(cells, listed, refused, made)
+        if folder is not None:
+            write_all(folder, table)
     return table
 
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import threading
-import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -19,6 +16,7 @@ import cloudpickle
 from train.benchmark.bench import Bench
 from train.benchmark.cells import Cell, Job, measured
 from train.controllers.sources import Source
+from train.shared.interruption import end_with_parent
 from train.shared.threads import ONE_THREAD
 
 
@@ -59,7 +57,7 @@ def workers(processes: int) -> Iterator[Any]:
     """Fresh interpreters of joblib's, on one thread each, that end with this block or with this process, whichever is first."""
     from joblib.externals.loky import ProcessPoolExecutor  # takes a moment, and one process alone does without
 
-    pool = ProcessPoolExecutor(processes, initializer=prepare_worker, initargs=(os.getpid(),), env=ONE_THREAD)
+    pool = ProcessPoolExecutor(processes, initializer=end_with_parent, initargs=(os.getpid(),), env=ONE_THREAD)
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "A worker stopped", UserWarning)  # one that outgrew its memory, and was replaced
@@ -68,19 +66,6 @@ def workers(processes: int) -> Iterator[Any]:
         raise ChildProcessError("a worker process died: what was finished is kept, and the same command resumes.") from None
     finally:
         pool.shutdown(wait=True, kill_workers=True)
-
-
-def prepare_worker(parent: int) -> None:
-    """Leave Ctrl-C to the parent process, and end when it does, however it does."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
-        os._exit(1)
-
-    if os.name == "posix":  # elsewhere the identity of a parent outlives it
-        threading.Thread(target=watch, daemon=True).start()
 
 
 def check_portable(jobs: Sequence[Job]) -> None:

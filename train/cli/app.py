@@ -13,6 +13,7 @@ from rich.table import Table
 
 from train.cli.benchmark import benchmark
 from train.cli.options import (
+    RESUMES,
     BladeOption,
     JsonOption,
     PresetOption,
@@ -113,7 +114,11 @@ def _frequency(modes: Any, mode: int) -> str:
 @app.command()
 def evaluate(
     controller: Annotated[
-        str, typer.Argument(help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder.")
+        str,
+        typer.Argument(
+            help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder; where that "
+            "holds several runs, 0, 1 and so on, all of them, with mean and spread."
+        ),
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
@@ -129,19 +134,23 @@ def evaluate(
 
         import baselines
         import beamenv
-        from train.controllers.choice import chosen
+        from train.benchmark.runs import Runs
+        from train.controllers.choice import chosen_runs
         from train.shared.held_out import held_out
 
         arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
-        law = chosen(controller, envs.unwrapped.task, scenario, trained_seed)
-        evaluation = baselines.evaluate(law, envs, held_out(seeds))
+        found: dict[str, baselines.Evaluation] = {}
+        for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
+            reference = next((each.reference for each in found.values()), None)
+            found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
+        runs = Runs(controller, found)
     if as_json:
-        print_json(evaluation.to_dict())
+        print_json(runs.to_dict() if len(found) > 1 else runs.first.to_dict())
     else:
-        from train.cli.evaluations import screen_table
+        from train.cli.evaluations import runs_table, screen_table
 
-        Console().print(screen_table([evaluation]))
+        Console().print(runs_table(runs) if len(found) > 1 else screen_table([runs.first]))
 
 
 @app.command()
@@ -159,7 +168,7 @@ def compare(
 
     An interrupted run resumes from what its folder holds.
     """
-    with one_sentence():
+    with one_sentence(RESUMES):
         from train.cli.evaluations import screen_table
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison
@@ -203,7 +212,7 @@ def reproduce(
 
     An interrupted run resumes from what its folder holds.
     """
-    with one_sentence():
+    with one_sentence(RESUMES):
         from train.cli.reproduce import reproduce as run
 
         status = run(names or [], output, fresh, docs)

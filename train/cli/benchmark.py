@@ -12,8 +12,9 @@ import typer
 from rich.console import Console
 
 from beamenv.configuration.files import ENDINGS
-from train.cli.options import JsonOption, one_sentence, print_json
+from train.cli.options import RESUMES, JsonOption, one_sentence, print_json
 from train.shared.digests import digest
+from train.shared.files import check_folder
 
 if TYPE_CHECKING:
     from train.benchmark.table import BenchmarkTable, Row
@@ -52,7 +53,9 @@ def benchmark(
     An interrupted run resumes from what its folder holds; a folder with a benchmark of other settings is refused. What cannot be
     measured is reported in one sentence each, the rest is measured, and the status is then 1.
     """
-    with one_sentence():
+    with one_sentence(RESUMES):
+        if docs is not None:
+            check_folder(docs, "docs")
         from train.benchmark.campaign import benchmark as run
         from train.benchmark.showing.report import as_json as content
 
@@ -92,7 +95,7 @@ def default_folder(scenarios: Sequence[str], controllers: Sequence[str], seeds: 
 
 
 class _Bar:
-    """Cells done, on standard error; Ctrl-C says that nothing is lost."""
+    """Cells done, on standard error."""
 
     def __init__(self) -> None:
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -109,9 +112,6 @@ class _Bar:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if self._bars.live.is_started:
             self._bars.stop()
-        if kind is not None and issubclass(kind, KeyboardInterrupt):
-            self._bars.console.print("interrupted: what was finished is kept, and the same command resumes.")
-            raise typer.Exit(130)
 
     def show(self, done: int, total: int, cell: object) -> None:
         self._bars.start()

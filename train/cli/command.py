@@ -10,15 +10,21 @@ _EXTRAS = {"dash": "explore", "werkzeug": "explore"}
 
 
 def main() -> None:
-    """Run the command line.
+    """Run the command line; a signal to end does as Ctrl-C.
 
     Exits with status 1 and one sentence if a package of an extra is missing. A missing module of our own is
     a defect and stays an error with its traceback.
     """
-    try:
-        from train.cli.app import app
+    from train.shared.interruption import ending_as_interrupted, status_of
 
-        app()
+    try:
+        with ending_as_interrupted():
+            from train.cli.app import app
+
+            app()
+    except KeyboardInterrupt as error:
+        print("beamenv: interrupted.", file=sys.stderr)  # noqa: T201 - before a command could say so
+        sys.exit(status_of(error))
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if not package or package in _OWN_PACKAGES:

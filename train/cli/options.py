@@ -13,6 +13,10 @@ import typer
 
 from beamenv.blade.presets import PRESETS
 from beamenv.scenarios.scenario import SCENARIOS
+from train.shared.interruption import status_of
+
+RESUMES = "what was finished is kept, and the same command resumes"
+"""What is said of an interruption where it holds."""
 
 PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
 SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
@@ -34,13 +38,19 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None) 
 
 
 @contextmanager
-def one_sentence() -> Iterator[None]:
-    """Bad input ends with its one sentence on standard error and status 2, not with a traceback."""
+def one_sentence(interrupted: str = "") -> Iterator[None]:
+    """Bad input ends with its one sentence on standard error and status 2, not with a traceback.
+
+    So does an interruption, with what then holds and the status that shells know it by.
+    """
     try:
         yield
     except (ValueError, OSError) as error:
         print(f"beamenv: {error}", file=sys.stderr)  # noqa: T201 - the command's own voice
         raise typer.Exit(2) from None
+    except KeyboardInterrupt as error:
+        print(f"beamenv: interrupted{interrupted and ': '}{interrupted}.", file=sys.stderr)  # noqa: T201
+        raise typer.Exit(status_of(error)) from None
 
 
 def print_json(content: Any) -> None:

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
+from train.shared.files import check_file
 
 
 def place(
@@ -35,27 +36,29 @@ def place(
 
     Both sides are placed, with as many patches as the blade has, unless the options name one.
     """
+    drawn = picture or (None if as_json else Path("results/placement.png"))
     with one_sentence():
         from beamenv.blade.files import load_config
         from beamenv.blade.layouts import SIDES, positions_of
         from beamenv.blade.presets import blade_config
 
+        if drawn is not None:
+            check_file(drawn, "picture")
         config = blade_config(preset, load_config(blade) if blade else None, speed)
         config = config if passive else replace(config, patches=replace(config.patches, passive=False))
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
         with bars(counts) as report:
             sides = place_sides(config, counts, method, seed, report)
-        if picture is not None or not as_json:
+        if as_json:
+            print_json([side.to_dict() for side in sides])
+        else:
+            show(sides, Console())
+        if drawn is not None:  # last: whatever becomes of it, the positions have been told
             from train.placement.picture import draw_placement
 
-            drawn = picture or Path("results/placement.png")
             draw_placement(sides, drawn)
-    if as_json:
-        print_json([side.to_dict() for side in sides])
-        return
-    show(sides, Console())
-    Console().print(f"picture in {drawn}", markup=False)
+            Console(stderr=as_json).print(f"picture in {drawn}", soft_wrap=True, markup=False)
 
 
 @contextmanager

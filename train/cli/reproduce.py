@@ -13,25 +13,30 @@ from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import Record, load, run
+from train.shared.files import check_folder
+from train.shared.lock import alone_in
 
 
 def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:
     """Run the named studies (all for none), write the page, and return the exit status.
 
-    0: done; 1: a study failed; 130: interrupted, and the same call resumes from there. ``ValueError`` for an unknown name.
+    0: done; 1: a study failed. After an interruption the page of what is finished is written, and it is raised again.
+    ``ValueError`` for an unknown name, a folder in which nothing can be written or another process is at work, a damaged record.
     """
     studies = chosen(names)
+    if docs is not None:
+        check_folder(docs, "docs")
     records: list[Record] = []
-    interrupted = False
-    try:
-        run_with_progress(studies, output, fresh, records)
-    except KeyboardInterrupt:
-        interrupted = True
-    write_pages(output, records, docs)
-    report(records, output)
-    if interrupted:
-        typer.echo("Interrupted: the same command resumes from here.", err=True)
-        return 130
+    with alone_in(output):
+        for study in STUDIES:
+            if not (fresh and study in studies):
+                load(output, study.name)
+        try:
+            run_with_progress(studies, output, fresh, records)
+        except KeyboardInterrupt:
+            sum_up(output, records, docs)
+            raise
+        sum_up(output, records, docs)
     return int(any(record.error for record in records))
 
 
@@ -48,6 +53,12 @@ def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, rec
             progress.update(task, advance=1, description=next(following))
 
         run(studies, output, fresh=fresh, finished=finished)
+
+
+def sum_up(output: Path, records: list[Record], docs: Path | None) -> None:
+    """The page, and in a few lines what came out."""
+    write_pages(output, records, docs)
+    report(records, output)
 
 
 def write_pages(output: Path, records: list[Record], docs: Path | None) -> None:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
-from train.cli.options import JsonOption, print_json
+from train.cli.options import JsonOption, one_sentence, print_json
 from train.tools.speed import ROUNDS, ROWS, TARGETS, met
 from train.tools.speed import speed as measured
 
 
 def speed(as_json: JsonOption = False) -> None:
     """How fast it is: steps/s beside CartPole's, imports, assembly. About 20 s."""
-    results = measured()
+    with one_sentence():
+        results = measured()
     if as_json:
         print_json(results)
     else:

@@ -24,8 +24,14 @@ def train(
         Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
     ] = None,
     recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
-    start: Annotated[Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments.")] = False,
+    start: Annotated[
+        Path | None,
+        typer.Option("--from", help="Folder of a trained policy to clone first, then to tune; its best run of several."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments, to the same result.")
+    ] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the training or agent that the folder holds.")] = False,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -34,8 +40,9 @@ def train(
 
     The folder gets the policy, its learning curve, checkpoints and TensorBoard's files.
     """
-    with one_sentence():
+    with one_sentence("the same command with --resume resumes from the folder's last checkpoint"):
         from train.cli.progress import Progressbar
+        from train.controllers.policy_files import read_about
         from train.learning.job import Job, run
         from train.learning.recipe import load_recipe, named_recipe
         from train.learning.session import Budget
@@ -53,5 +60,7 @@ def train(
         job = Job(agent, chosen, scenario, seed, budget, environment, start)
         total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")
         with Progressbar({agent: total}, unit) as bar:
-            places = run(job, home, lambda progress: bar.training(agent, total, progress), resume)
-    Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)
+            places = run(job, home, lambda progress: bar.training(agent, total, progress), resume, overwrite)
+        Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)
+        if not read_about(places[0])["finished"]:
+            raise KeyboardInterrupt

@@ -21,15 +21,17 @@ from beamenv.plant.plant import Plant
 from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
 from train.controllers.named import named
-from train.controllers.policy_files import load_policy
+from train.controllers.policy_files import load_policy, read_about
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.job import Job, run
 from train.learning.recipe import Recipe
 from train.learning.session import Budget
 from train.learning.training import Progress
-from train.shared.files import check_folder, read_json, write_json
+from train.shared.files import read_json, write_json
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
+from train.shared.interruption import ending_as_interrupted
+from train.shared.lock import alone_in
 
 Array = NDArray[np.float64]
 
@@ -75,11 +77,16 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     """Train, evaluate, write tables, models, configuration, figures and a page to ``folder``, and return the evaluations.
 
     Each piece is written as soon as it is there. A folder of the same comparison is resumed: agents that it holds
-    are not trained again. ``ValueError`` if it holds another comparison.
+    are not trained again. ``ValueError`` if it holds another comparison, or another process is at work in it. An interruption ends
+    all of it at once, as ``Interrupted`` where an agent is being trained: its checkpoint is kept, and no half-trained agent.
     """
+    with alone_in(folder), ending_as_interrupted():
+        return _compare(comparison, folder, listener or Listener())
+
+
+def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[Evaluation]:
     from train.comparison.page import write_comparison_page  # plotly takes a while, and others want this module's names alone
 
-    listener = listener or Listener()
     envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
     try:
         plant = envs.unwrapped.plant
@@ -102,7 +109,6 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
 
 def claim(folder: Path, comparison: Comparison, task: Any) -> None:
     """Write the configuration, or see that the folder already holds this very one."""
-    check_folder(folder)
     path = folder / "configuration.json"
     content = {
         "comparison": {**asdict(comparison), "held_out_seeds": [HELD_OUT, HELD_OUT + comparison.seeds - 1]},
@@ -120,9 +126,15 @@ def claim(folder: Path, comparison: Comparison, task: Any) -> None:
 def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, listener: Listener) -> Controller:
     """The agent of an earlier run, or one trained now, from its checkpoint on if it was interrupted."""
     home = folder / "agents" / name
-    if not (home / "agent.json").exists():
-        budget = comparison.budget[name]
-        run(comparison.job(name), home, lambda progress: listener.training(name, budget, progress), (home / CHECKPOINT).exists())
+    if not ((home / "agent.json").exists() and read_about(home).get("finished", True)):
+        budget, resumes = comparison.budget[name], (home / CHECKPOINT).exists()
+        run(
+            comparison.job(name),
+            home,
+            lambda progress: listener.training(name, budget, progress),
+            resume=resumes,
+            keeps_unfinished=False,
+        )
     return load_policy(home, plant)
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -12,14 +10,20 @@ from typing import Any, cast
 
 import numpy as np
 
+from beamenv.configuration import Choice, Refused, Text, checked
+from beamenv.configuration.files import of_file, parsed_arrays
 from beamenv.configuration.writing import write_whole
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
-from train.shared.files import write_json
+from train.controllers.policy_parts import checked_settings, checked_weights, limits
+from train.shared.files import read_json, write_json
 
 KINDS: Mapping[str, type[Policy]] = {kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, ResidualPolicy, LSTMPolicy)}
+
+FORMAT = 1
+"""Of ``agent.json``, and what it says if it says none."""
 
 OWN_KEYS = ("kind", "name", "settings", "lowest", "highest")
 """What ``agent.json`` must hold."""
@@ -32,9 +36,10 @@ def save_policy(policy: Policy, folder: Path, about: Mapping[str, Any] | None = 
     """
     arrays = io.BytesIO()
     np.savez_compressed(arrays, **cast(dict[str, Any], policy.weights))
+    (folder / "agent.json").unlink(missing_ok=True)  # that of an earlier agent must never stand beside other weights
     write_whole(folder / "weights.npz", arrays.getvalue())
     own = (policy.kind, policy.name, dict(policy.settings), policy.lowest.tolist(), policy.highest.tolist())
-    write_json(folder / "agent.json", {**dict(zip(OWN_KEYS, own, strict=True)), **(about or {})})
+    write_json(folder / "agent.json", {"format": FORMAT, **dict(zip(OWN_KEYS, own, strict=True)), **(about or {})})
 
 
 def read_about(folder: Path) -> dict[str, Any]:
@@ -44,15 +49,14 @@ def read_about(folder: Path) -> dict[str, Any]:
         runs = sorted(str(each.parent) for each in folder.glob("*/agent.json"))
         found = f"it holds those of {len(runs)} runs, so name one of {', '.join(runs)}" if runs else "agent.json is not there"
         raise ValueError(f"folder = {str(folder)!r} must hold a trained agent: {found}.")
-    try:
-        about = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise ValueError(f"{str(path)!r} cannot be read: {error}.") from None
+    about = read_json(path)
     missing = [key for key in OWN_KEYS if not isinstance(about, dict) or key not in about]
     if missing:
         raise ValueError(f"{str(path)!r} must be a JSON object with the keys {', '.join(OWN_KEYS)}: {missing[0]!r} is not there.")
-    if about["kind"] not in KINDS:
-        raise ValueError(f"kind = {about['kind']!r} of the agent in {str(folder)!r} must be one of {', '.join(KINDS)}.")
+    with of_file(path):
+        if about.get("format", FORMAT) != FORMAT:
+            raise Refused("format", about["format"], f"{FORMAT}: another version of beamenv has written this agent")
+        checked("kind", about["kind"], Choice(tuple(KINDS)))
     whole: dict[str, Any] = about
     return whole
 
@@ -60,22 +64,24 @@ def read_about(folder: Path) -> dict[str, Any]:
 def load_policy(folder: Path, plant: Plant | None = None) -> Policy:
     """The policy saved in a folder, within the drive limits of ``plant``, the design plant it is to work on, if one is given.
 
-    Raises ValueError if there is none, if files are damaged, and if it was trained on other plants than ``plant``.
+    Raises ValueError of one sentence, with the file's name in it, if there is none, if files are damaged or hold what no policy can
+    act by, and if it was trained on other plants than ``plant``.
     """
     about = read_about(folder)
     if plant is not None:
         _check_plant(about, folder, plant)
     path = folder / "weights.npz"
+    with of_file(folder / "agent.json"):
+        name, lowest, highest = checked("name", about["name"], Text()), *limits(about["lowest"], about["highest"])
+        settings = checked_settings(about["kind"], about["settings"])
     try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:
-            weights = {name: arrays[name] for name in arrays.files}
-        lowest, highest = (np.array(about[name], dtype=np.float32) for name in ("lowest", "highest"))
-        policy = KINDS[about["kind"]](about["name"], weights, about["settings"], lowest, highest)
-        assert policy.memory_size
-    except KeyError as error:
-        raise ValueError(f"{str(path)!r} must hold the weights of a {about['kind']!r} policy: {error} is not there.") from None
-    except (OSError, ValueError, TypeError, IndexError, EOFError, AttributeError, zipfile.BadZipFile) as error:
-        raise ValueError(f"the agent in {str(folder)!r} cannot be read: {error}.") from None
+        content = path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+    arrays = parsed_arrays(content, str(path))
+    with of_file(path):
+        weights = checked_weights(about["kind"], arrays, len(lowest), None if plant is None else len(plant.C))
+    policy = KINDS[about["kind"]](name, weights, settings, lowest, highest)
     return policy if plant is None else within_limits(policy, plant)
 
 
@@ -87,7 +93,7 @@ def within_limits(policy: Policy, plant: Plant) -> Policy:
 
 def _check_plant(about: Mapping[str, Any], folder: Path, plant: Plant) -> None:
     known, own = about.get("plants"), fingerprint(plant)
-    if not isinstance(known, Mapping) or not known:
+    if not isinstance(known, Mapping) or not known or not all(isinstance(each, str) for each in known.values()):
         raise ValueError(f"the agent in {str(folder)!r} does not say what plant it was trained on: train it again.")
     if own not in known.values():
         raise ValueError(

@@ -96,7 +96,7 @@ def view(settings: Settings) -> View:
     beam, plant = blade.beam, blade.plant
     modes = beam.modes(config.speed, config.modes)
     stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * config.beam.width)
-    held, _, K, L = sampled_design(plant)
+    held, (_, K), (_, L) = sampled_design(plant)
     line_load = STEP_LOAD * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
     return View(
         speed=config.speed,

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import io
-import pickle
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
 
+from beamenv.configuration import shown
 from beamenv.configuration.writing import write_whole
 
 NAME = "checkpoint.pt"
+
+FORMAT = 2
+"""Of what a checkpoint holds of a training; one of another format is not resumed."""
 
 
 def write_checkpoint(folder: Path, content: Mapping[str, Any]) -> None:
@@ -33,17 +36,26 @@ def as_tensors(content: Any) -> Any:
     return torch.as_tensor(content) if isinstance(content, np.ndarray) else content
 
 
-def read_checkpoint(folder: Path) -> dict[str, Any]:
-    """What ``write_checkpoint`` wrote; ``ValueError`` if nothing is there, or something else."""
+def read_checkpoint(folder: Path, keys: Sequence[str] = ()) -> dict[str, Any]:
+    """What ``write_checkpoint`` wrote, a dictionary with these keys; ``ValueError`` if nothing is there, or something else."""
     path = folder / NAME
     if not path.is_file():
         raise ValueError(f"folder = {str(folder)!r} must hold a checkpoint to resume from: {NAME} is not there.")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # torch only warns of a protocol that it never writes
-            content: dict[str, Any] = torch.load(path, weights_only=True)
-    except (OSError, EOFError, RuntimeError, UserWarning, pickle.UnpicklingError):
-        raise ValueError(
-            f"{str(path)!r} must be a checkpoint of tensors and numbers, but is damaged or holds something else."
-        ) from None
+            content: Any = torch.load(path, weights_only=True)
+    except Exception:  # noqa: BLE001 - a damaged archive makes torch, zipfile and pickle raise whatever comes first
+        raise damaged(folder, "is damaged or holds something else") from None
+    if not isinstance(content, dict):
+        raise damaged(folder, f"holds a {type(content).__name__}")
+    if keys and content.get("format") != FORMAT:
+        raise damaged(folder, f"is of format {shown(content.get('format'))} where this version of beamenv reads {FORMAT}")
+    if missing := [key for key in keys if key not in content]:
+        raise damaged(folder, f"has no {missing[0]!r}")
     return content
+
+
+def damaged(folder: Path, what: str) -> ValueError:
+    """What is said of a checkpoint that cannot be resumed from."""
+    return ValueError(f"{str(folder / NAME)!r} must be a checkpoint of tensors and numbers to resume from, but {what}.")

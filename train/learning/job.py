@@ -15,13 +15,16 @@ from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
+from train.controllers.runs import best_run
 from train.learning.agents import AGENTS
-from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
+from train.learning.checkpoint import FORMAT, NAME, damaged, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
 from train.learning.scalars import Scalars
 from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
-from train.shared.files import check_folder, write_csv
+from train.shared.files import write_csv
+from train.shared.interruption import Interrupted, ending_as_interrupted
+from train.shared.lock import alone_in
 from train.shared.threads import one_torch_thread
 from train.shared.versions import versions
 
@@ -30,6 +33,9 @@ GENERALIST = "generalist"
 
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
+
+STATE = ("identity", "training", "seconds", "curve")
+"""What a checkpoint holds of a training."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +52,7 @@ class Job:
     environment: Mapping[str, Any]
     """Keyword arguments of the environment but the scenario, as JSON can hold them."""
     teacher: Path | None = None
-    """Folder of a trained policy to start from."""
+    """Folder of a trained policy to start from; of several runs in it, the one that ended its training at the least cost."""
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario."""
@@ -69,43 +75,81 @@ class Job:
 
 
 def _weights(teacher: Path) -> Path:
-    weights = teacher / "weights.npz"
+    weights = best_run(teacher) / "weights.npz"
     if not weights.is_file():
         raise ValueError(f"teacher = {str(teacher)!r} must be the folder of a trained agent, but has no weights.npz.")
     return weights
 
 
-def run(job: Job, folder: Path, report: Report, resume: bool = False) -> list[Path]:
+def run(
+    job: Job, folder: Path, report: Report, resume: bool = False, overwrite: bool = False, keeps_unfinished: bool = True
+) -> list[Path]:
     """Train, with checkpoints, learning curve and TensorBoard's files in ``folder``; the folders of the policies.
 
-    ``report`` is called after every update. Raises ValueError if the folder holds a training and it is not to be resumed, or if
-    what is to be resumed is another one.
+    ``report`` is called after every update. Ctrl-C keeps a checkpoint, and saves what has been learnt as an agent that says it is
+    not ``finished``; a signal to end does the same and raises ``Interrupted``. Unless ``keeps_unfinished``, both leave no agent and
+    raise ``Interrupted``.
+
+    Raises ValueError if the folder holds a training or an agent and it is neither to be resumed nor to be overwritten, if what is
+    to be resumed is another one, and if another process is at work in the folder.
     """
-    check_folder(folder)
-    identity = job.identity()
-    if not resume and (folder / NAME).exists():
-        raise ValueError(f"folder = {str(folder)!r} holds a training already: resume it, or name another folder.")
-    before = read_checkpoint(folder) if resume else None
-    if before is not None and before["identity"] != json.dumps(identity):
+    with alone_in(folder), ending_as_interrupted():
+        return _run(job, folder, report, _begun(folder, resume, overwrite), keeps_unfinished)
+
+
+def _begun(folder: Path, resume: bool, overwrite: bool) -> Mapping[str, Any] | None:
+    """The checkpoint to resume from, None to begin."""
+    if resume and overwrite:
+        raise ValueError("resume and overwrite must not both be given.")
+    if resume:
+        return read_checkpoint(folder, STATE)
+    if not overwrite and (held := held_in(folder)):
+        what = "training" if NAME in held else "trained agent"
+        raise ValueError(f"folder = {str(folder)!r} holds a {what} already: resume or overwrite it, or name another folder.")
+    return None
+
+
+def held_in(folder: Path) -> list[str]:
+    """Files of a training or of trained agents in a folder, by their paths there."""
+    runs = [f"{each.parent.name}/" for each in folder.glob("*/agent.json") if each.parent.name.isdigit()]
+    held = [f"{place}{name}" for place in ("", *runs) for name in ("agent.json", "weights.npz", "learning.csv")]
+    return [name for name in (NAME, *held) if (folder / name).is_file()]
+
+
+def _run(job: Job, folder: Path, report: Report, before: Mapping[str, Any] | None, keeps_unfinished: bool) -> list[Path]:
+    """What ``run`` does in a folder of its own, from a checkpoint on if there is one."""
+    identity, tasks = job.identity(), job.tasks()
+    told = json.dumps({**identity, "scenarios": {name: task.scenario.to_dict() for name, task in tasks.items()}})
+    if before is not None and before["identity"] != told:
         raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the same arguments.")
-    tasks = job.tasks()
+    ending = None
     with one_torch_thread():
         start = AGENTS[job.recipe.agent].training
         training = start(list(tasks.values()), job.recipe.settings, job.seed, teacher_for(job.teacher, tasks))
-        journal = Journal(folder, job.budget, training, json.dumps(identity), report)
+        journal = Journal(folder, job.budget, training, told, report)
         try:
-            elapsed = 0.0 if before is None else journal.resume(before)
+            elapsed = journal.begin() if before is None else journal.resume(before)
             policies = follow(training, job.budget, journal.note, journal.keep, elapsed)
+        except Interrupted as error:
+            ending, policies = error, training.policies()
         finally:
             journal.scalars.close()
             training.close()
-    return save_all(policies, folder, journal, identity, {name: fingerprint(task.design_plant) for name, task in tasks.items()})
+    finished = journal.finished
+    if not finished and not keeps_unfinished:
+        raise ending or Interrupted()
+    about = {**identity, "finished": finished, "updates": training.updates, "steps": training.steps}
+    places = save_all(policies, folder, journal, about, {name: fingerprint(task.design_plant) for name, task in tasks.items()})
+    if ending is not None:
+        raise ending
+    return places
 
 
 def teacher_for(folder: Path | None, tasks: Mapping[str, Task]) -> Policy | None:
-    """The policy in a folder, if one is named; ``ValueError`` if it does not know the plants of all tasks."""
+    """The policy in a folder, if one is named, or its best run; ``ValueError`` if it does not know the plants of all tasks."""
     if folder is None:
         return None
+    folder = best_run(folder)
     policies = [load_policy(folder, task.design_plant) for task in tasks.values()]
     return policies[0] if len(policies) == 1 else load_policy(folder)
 
@@ -119,14 +163,29 @@ class Journal:
         self.scalars = Scalars(folder / "tensorboard")
         self._folder, self._budget, self._training, self._identity, self._report = folder, budget, training, identity, report
 
+    def begin(self) -> float:
+        """A first checkpoint, in the place of whatever training or agents the folder held: from now on it can be resumed."""
+        for name in held_in(self._folder):
+            (self._folder / name).unlink()
+        self.keep(0.0)
+        return 0.0
+
     def resume(self, before: Mapping[str, Any]) -> float:
-        """Resume from a checkpoint; the seconds spent until then."""
-        self._training.load_state_dict(before["training"])
-        self.curve = [
-            Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]
-        ]
-        self.seconds = before["seconds"]
+        """Resume from a checkpoint; the seconds spent until then. ``ValueError`` if it does not fit the training."""
+        try:
+            self._training.load_state_dict(before["training"])
+            self.curve = [
+                Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]
+            ]
+            self.seconds = float(before["seconds"])
+        except Exception as error:  # noqa: BLE001 - torch, NumPy and SB3 each complain of a state in ways of their own
+            raise damaged(self._folder, f"holds a state that does not fit this training ({type(error).__name__})") from None
         return self.seconds
+
+    @property
+    def finished(self) -> bool:
+        """Whether the budget is spent."""
+        return self._budget.share(self._training.updates, self.seconds) >= 1.0
 
     def note(self, progress: Progress) -> None:
         """A point of the curve where it is time, and report."""
@@ -139,8 +198,11 @@ class Journal:
     def keep(self, elapsed: float) -> None:
         """Write a checkpoint."""
         curve = [[each.elapsed, each.steps, each.cost, each.updates, list(each.costs)] for each in self.curve]
-        state = {"training": self._training.state_dict(), "seconds": elapsed, "curve": curve, "identity": self._identity}
-        write_checkpoint(self._folder, state)
+        training = self._training.state_dict()
+        if self.finished:
+            training.pop("memory", None)  # of experience, which is large: nothing will be learnt from it any more
+        state = {"training": training, "seconds": elapsed, "curve": curve, "identity": self._identity}
+        write_checkpoint(self._folder, {"format": FORMAT, **state})
 
     def write_curve(self, folder: Path, run: int) -> None:
         """``learning.csv`` of one of the runs."""
@@ -150,13 +212,12 @@ class Journal:
 
 
 def save_all(
-    policies: list[Policy], folder: Path, journal: Journal, identity: Mapping[str, Any], plants: Mapping[str, str]
+    policies: list[Policy], folder: Path, journal: Journal, about: Mapping[str, Any], plants: Mapping[str, str]
 ) -> list[Path]:
     """Each policy with its curve and what it depends on: in ``folder``, or, of several runs, in folders there."""
     places = [folder] if len(policies) == 1 else [folder / str(run) for run in range(len(policies))]
-    last = journal.curve[-1] if journal.curve else Progress(journal.seconds, 0, float("nan"))
     for run, (policy, place) in enumerate(zip(policies, places, strict=True)):
         journal.write_curve(place, run)
-        about = {**identity, "run": run, "updates": last.updates, "steps": last.steps, "seconds": round(journal.seconds, 1)}
-        save_policy(policy, place, {**about, "versions": versions(), "plants": dict(plants)})
+        own = {"run": run, "seconds": round(journal.seconds, 1), "versions": versions(), "plants": dict(plants)}
+        save_policy(policy, place, {**about, **own})
     return places

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 import signal
-import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
-from types import FrameType, TracebackType
-from typing import Any
 
 import numpy as np
 
+from beamenv.configuration import Number, checked
 from train.controllers.policies import Policy
 from train.learning.training import Progress, Report, Training
+from train.shared.interruption import Deferred, Interrupted
 
 CHECKPOINT_INTERVAL = 30.0
 """s."""
@@ -25,8 +23,8 @@ CHECKPOINT_INTERVAL = 30.0
 class Budget:
     """How long a training lasts, and with it how fast learning rates fall.
 
-    By updates a training is deterministic; by the clock it takes the time it is given. ValueError for numbers that are not
-    positive, and if neither is given.
+    By updates a training is deterministic; by the clock it takes the time it is given. ValueError for what is no positive number,
+    and if neither is given.
     """
 
     updates: float = math.inf
@@ -34,8 +32,9 @@ class Budget:
 
     def __post_init__(self) -> None:
         for name in ("updates", "seconds"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} = {getattr(self, name)!r} must be a positive number.")
+            given = getattr(self, name)
+            if not (isinstance(given, float) and given == math.inf):
+                checked(name, given, Number(gt=0.0))
         if math.isinf(self.updates) and math.isinf(self.seconds):
             raise ValueError("updates or seconds must be given: a training must end.")
 
@@ -54,43 +53,27 @@ def follow(
 ) -> list[Policy]:
     """Train until the budget is spent, or until Ctrl-C; the policies learnt by then.
 
-    ``elapsed`` s were spent before. ``keep`` is called with the seconds spent about every ``interval`` s and at the end.
+    ``elapsed`` s were spent before. ``keep`` is called with the seconds spent about every ``interval`` s and at the end; never
+    after half an update. A signal to end does as Ctrl-C, and then raises ``Interrupted``; so does a
+    second one, at once and without ``keep``.
     """
-    begin = time.monotonic() - elapsed
-    kept = elapsed
-    with suppress(KeyboardInterrupt), Interruption() as interruption:
+    begin, kept = time.monotonic() - elapsed, elapsed
+    with Deferred() as interruption:
         while (spent := budget.share(training.updates, elapsed)) < 1.0 and not interruption.asked:
             training.update(1.0 - spent)
             elapsed = time.monotonic() - begin
-            report(progress(training, elapsed))
+            try:
+                report(progress(training, elapsed))
+            except KeyboardInterrupt:
+                interruption.asked = interruption.asked or signal.SIGINT
             if keep is not None and elapsed - kept >= interval:
                 keep(elapsed)
                 kept = elapsed
-    if keep is not None:
-        keep(elapsed)
+        if keep is not None:
+            keep(elapsed)
+    if interruption.asked not in (0, signal.SIGINT):
+        raise Interrupted(interruption.asked)
     return training.policies()
-
-
-class Interruption:
-    """Ctrl-C that waits for the end of an update: a checkpoint must not hold half of one. A second Ctrl-C does not wait."""
-
-    def __init__(self) -> None:
-        self.asked = False
-        self._before: Any = None
-
-    def __enter__(self) -> Interruption:
-        if threading.current_thread() is threading.main_thread():
-            self._before = signal.signal(signal.SIGINT, self._ask)
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
-
-    def _ask(self, number: int, frame: FrameType | None) -> None:
-        if self.asked:
-            raise KeyboardInterrupt
-        self.asked = True
 
 
 def progress(training: Training, elapsed: float) -> Progress:

@@ -16,6 +16,7 @@ from train.reproduce.judging.study import Outcome, Study
 from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
 from train.shared.digests import digest, source_digest
+from train.shared.files import read_json
 
 DEPENDS_ON = ("beamenv", "baselines", "train.reproduce", "train.figures.figure", "train.figures.paper")
 """Packages that decide what a study finds and shows."""
@@ -89,16 +90,23 @@ def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Recor
 
 
 def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | None:
-    """The record of a finished study, if it and its files are there and, when a fingerprint is given, up to date."""
+    """The record of a finished study, if it and its files are there and, when a fingerprint is given, up to date.
+
+    Raises ValueError that names the file if it is none, or a damaged one.
+    """
     path = folder / f"{name}.json"
     if not all((folder / f"{name}.{kind}").is_file() for kind in ("json", "csv", "png")):
         return None
-    kept = json.loads(path.read_text(encoding="utf-8"))
-    if fingerprint is not None and kept["fingerprint"] != fingerprint:
-        return None
-    judgements = {key: Judgement(**(value | {"verdict": Verdict(value["verdict"])})) for key, value in kept["judgements"].items()}
-    record = Record(**(kept | {"judgements": judgements}))
-    return replace(record, notes=tuple(record.notes), header=tuple(record.header), rows=tuple(tuple(row) for row in record.rows))
+    kept = read_json(path)
+    try:
+        if fingerprint is not None and kept["fingerprint"] != fingerprint:
+            return None
+        judged = {key: Judgement(**(value | {"verdict": Verdict(value["verdict"])})) for key, value in kept["judgements"].items()}
+        record = Record(**(kept | {"judgements": judged}))
+        rows = tuple(tuple(row) for row in record.rows)
+        return replace(record, notes=tuple(record.notes), header=tuple(record.header), rows=rows)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise ValueError(f"file {str(path)!r} must hold the record of a study: remove it, and the study is run again.") from None
 
 
 def source_fingerprint(model: Model) -> str:

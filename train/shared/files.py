@@ -5,17 +5,70 @@ from __future__ import annotations
 import csv
 import io
 import json
+import secrets
+import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from beamenv.configuration.writing import write_whole
 
+SPACE = 16_000_000
+"""Bytes that must be free where a run writes what it finds: checkpoints, tables, pictures, a page."""
 
-def check_folder(folder: Path) -> None:
-    """``ValueError`` if a file has the name of the folder: better raised before a training than after it."""
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"folder = {str(folder)!r} must be a folder, or not be there yet, but is a file.")
+PICTURE = 1_000_000
+"""… where a single file is written."""
+
+PROBE = 4096
+"""Bytes of the file that is written on trial."""
+
+
+def check_folder(folder: Path, name: str = "folder", space: int = SPACE) -> None:
+    """``ValueError`` of one sentence if nothing can be written in a folder, there or to be made: told before work, not after it.
+
+    A file is written and removed where the folder is or would be made, and ``space`` bytes must be free there.
+    """
+    place = _standing(folder, name)
+    if not place.is_dir():
+        what = "is a file" if place == folder.absolute() else f"{str(place)!r} is a file"
+        raise ValueError(f"{name} = {str(folder)!r} must be a folder, or not be there yet, but {what}.")
+    try:
+        _probe(place)
+        free = shutil.disk_usage(place).free
+    except OSError as error:
+        raise ValueError(f"{name} = {str(folder)!r} must be a folder that can be written in: {error.strerror}.") from None
+    if free < space:
+        raise ValueError(f"{name} = {str(folder)!r} must have {space / 1e6:g} MB free on its disk, but has {free / 1e6:.1f}.")
+
+
+def _standing(path: Path, name: str) -> Path:
+    """The path, or the nearest of the folders that are to hold it that is there."""
+    whole = path.absolute()
+    for place in (whole, *whole.parents):
+        try:
+            place.stat()
+        except (FileNotFoundError, NotADirectoryError):
+            continue
+        except (OSError, ValueError) as error:  # too long a name, a zero byte, no right to look
+            raise ValueError(f"{name} = {str(path)!r} cannot be looked at: {getattr(error, 'strerror', error)}.") from None
+        return place
+    return Path(whole.anchor)
+
+
+def _probe(folder: Path) -> None:
+    """OSError if no file can be made in a folder, or nothing written to it."""
+    path = folder / f".probe.{secrets.token_hex(4)}.part"
+    try:
+        path.write_bytes(bytes(PROBE))
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def check_file(path: Path, name: str, space: int = PICTURE) -> None:
+    """As ``check_folder`` of the folder that is to hold a file; and the file's own name is no folder's."""
+    check_folder(path.parent, name, space)
+    if path.is_dir():
+        raise ValueError(f"{name} = {str(path)!r} must be a file, or not be there yet, but is a folder.")
 
 
 def read_json(path: Path) -> Any:

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from train.shared.interruption import end_with_parent
 from train.shared.threads import ONE_THREAD
 
 BATCHES = (256, 4096, 16384)
@@ -52,17 +53,19 @@ def speed() -> dict[str, float]:
     """All measurements by name: the best of several rounds, on one BLAS thread, in a process of its own. About 20 s."""
     environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     command = [sys.executable, "-m", "beamenv.train.tools.speed"]
-    output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
-    results: dict[str, float] = json.loads(output)
+    results: dict[str, float] = json.loads(_output(command, environment))
     results["import_s"] = min(_import_seconds(environment) for _ in range(3))
     return results
 
 
 def _import_seconds(environment: dict[str, str]) -> float:
     code = "import time; start = time.perf_counter(); import beamenv; print(time.perf_counter() - start)"
-    return float(
-        subprocess.run([sys.executable, "-c", code], env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout
-    )
+    return float(_output([sys.executable, "-c", code], environment))
+
+
+def _output(command: list[str], environment: dict[str, str]) -> str:
+    """What a process prints that Ctrl-C does not reach: it is ended by this one."""
+    return subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True, start_new_session=True).stdout
 
 
 def measure() -> dict[str, float]:
@@ -183,4 +186,5 @@ def met(name: str, value: float) -> bool | None:
 
 
 if __name__ == "__main__":
+    end_with_parent(os.getppid())
     sys.stdout.write(json.dumps(measure()))

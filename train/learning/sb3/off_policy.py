@@ -5,7 +5,7 @@ sb3-contrib: on a batch of blades, with the same actor, critics on the true stat
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Annotated, Any, ClassVar
 
@@ -16,13 +16,17 @@ from stable_baselines3 import SAC
 from stable_baselines3.common.type_aliases import TrainFreq, TrainFrequencyUnit
 from torch import nn
 
-from beamenv.configuration import Choice, Natural, Number, Positive, Real, Share, Whole, configuration
+from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Share, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.policies import HistoryPolicy, Policy
+from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
+
+REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+"""Arrays of SB3's replay buffer, a row for each action of every blade."""
 
 _ACTIVATIONS: dict[str, type[nn.Module]] = {"tanh": nn.Tanh, "relu": nn.ReLU}
 
@@ -31,50 +35,56 @@ _ACTIVATIONS: dict[str, type[nn.Module]] = {"tanh": nn.Tanh, "relu": nn.ReLU}
 class OffPolicySettings:
     """One experiment."""
 
-    blades: Whole = 256
+    blades: Annotated[int, BLADES] = 256
     """Environments stepped together."""
-    history: Whole = 12
+    history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
-    held: Whole = 4
+    held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms."""
-    rollout: Whole = 4
+    rollout: Annotated[int, INSTANTS] = 4
     """Actions of every blade between updates."""
-    critic_steps: Whole = 12
+    critic_steps: Annotated[int, PASSES] = 12
     """Gradient steps of the critics alone, in an update."""
-    gradient_steps: Whole = 4
+    gradient_steps: Annotated[int, PASSES] = 4
     """Gradient steps of critics and actor after them: an actor that is quicker than its critics saturates."""
-    batch: Whole = 256
+    batch: Annotated[int, SAMPLES] = 256
     """Samples in a gradient step."""
-    buffer: Whole = 200_000
+    buffer: Annotated[int, SAMPLES] = 200_000
     """Actions remembered."""
     first: Natural = 10_000
     """Actions remembered before learning begins."""
-    learning_rate: Positive = 1e-3
+    learning_rate: Annotated[float, RATE] = 1e-3
     """Adam's, falling linearly to zero over the training."""
-    discount: Share = 0.95
+    discount: Annotated[float, RATE] = 0.95
     """γ: 20 actions, 40 ms."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
     reward_unit: Positive = 0.04
     """Reward of a control interval without control, about, with its sign changed: values must outgrow untrained critics' noise."""
-    exploration: Real = -1.4
+    exploration: Annotated[float, LOGARITHM] = -1.4
     """Logarithm of a standard deviation of the actions: its entropy is what the temperature is steered to."""
     temperature: Positive = 0.003
     """Weight of the entropy to begin with, in rewards."""
-    target_rate: Share = 0.01
+    target_rate: Annotated[float, RATE] = 0.01
     """At which target critics follow."""
-    units: Whole = 64
+    units: Annotated[int, UNITS] = 64
     """Of each of two layers of the actor."""
-    critic_units: Whole = 128
+    critic_units: Annotated[int, UNITS] = 128
     """Of each of two layers of the critics."""
     activation: Annotated[str, Choice(tuple(_ACTIVATIONS))] = "relu"
     """Of all layers: tanh or relu."""
-    input_gain: Real = 1.0
+    input_gain: Positive = 1.0
     """Readings are a few per cent of full scale most of the time."""
     critic_first: Natural = 50
     """Updates that train the critics alone: an actor must not follow critics that know nothing."""
     smoothing: Share = 0.02
     """Weight of the latest rollout in the running cost."""
+
+    def __post_init__(self) -> None:
+        if self.buffer < self.blades:
+            raise Refused("buffer", self.buffer, f"at least one action of each of the {self.blades} blades")
+        if self.first > self.buffer // self.blades * self.blades:
+            raise Refused("first", self.first, f"at most what the buffer of {self.buffer} holds, or learning never begins")
 
 
 class OffPolicyTraining(SB3Training):
@@ -91,7 +101,7 @@ class OffPolicyTraining(SB3Training):
             self.networks,
             envs,
             learning_rate=lambda remaining: settings.learning_rate * max(remaining, 1e-3),
-            buffer_size=max(settings.buffer, settings.blades),
+            buffer_size=settings.buffer,
             learning_starts=0,
             batch_size=settings.batch,
             tau=settings.target_rate,
@@ -138,6 +148,23 @@ class OffPolicyTraining(SB3Training):
             self.model.train(self.settings.critic_steps, self.settings.batch)
             self._free(self.updates >= self.settings.critic_first)
             self.model.train(self.settings.gradient_steps, self.settings.batch)
+
+    def state_dict(self) -> dict[str, Any]:
+        """With the actions remembered."""
+        memory = self.model.replay_buffer
+        rows = memory.size()
+        remembered = {name: getattr(memory, name)[:rows].copy() for name in REMEMBERED}
+        return {**super().state_dict(), "memory": {"place": memory.pos, "full": memory.full, **remembered}}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume, remembering what was; a training that is over has no memory left."""
+        super().load_state_dict(state)
+        if "memory" not in state:
+            return
+        memory, before = self.model.replay_buffer, state["memory"]
+        memory.pos, memory.full = int(before["place"]), bool(before["full"])
+        for name in REMEMBERED:
+            getattr(memory, name)[: memory.size()] = np.asarray(before[name])
 
     def policy(self) -> HistoryPolicy:
         """The actor's most likely action as arrays."""

@@ -14,10 +14,11 @@ import torch
 from stable_baselines3 import PPO
 from torch import nn
 
-from beamenv.configuration import Natural, Number, Positive, Real, Share, Whole, configuration
+from beamenv.configuration import Natural, Number, Positive, Refused, Share, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.policies import HistoryPolicy, Policy
+from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricPolicy
 from train.learning.sb3.cloning import Cloning, clone
 from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs
@@ -27,41 +28,45 @@ from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_l
 class PPOSettings:
     """One experiment."""
 
-    blades: Whole = 1024
+    blades: Annotated[int, BLADES] = 1024
     """Environments stepped together."""
-    history: Whole = 12
+    history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
-    held: Whole = 4
+    held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms: exploration that lasts tells more of the slow modes than white noise
     does, against the white load."""
-    rollout: Whole = 16
+    rollout: Annotated[int, INSTANTS] = 16
     """Actions of every blade between updates."""
-    batch: Whole = 8192
+    batch: Annotated[int, SAMPLES] = 8192
     """Samples in a gradient step."""
-    epochs: Whole = 4
+    epochs: Annotated[int, PASSES] = 4
     """Passes over a rollout."""
-    learning_rate: Positive = 1e-3
+    learning_rate: Annotated[float, RATE] = 1e-3
     """Adam's, falling linearly to zero over the training."""
-    discount: Share = 0.95
+    discount: Annotated[float, RATE] = 0.95
     """γ: 20 actions, 40 ms."""
     trace: Share = 0.8
     """λ of the advantage estimate."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
-    exploration: Real = -1.4
+    exploration: Annotated[float, LOGARITHM] = -1.4
     """Logarithm of the standard deviation of the actions, constant."""
-    units: Whole = 64
+    units: Annotated[int, UNITS] = 64
     """Of each of two tanh layers, actor and critic alike."""
-    clip: Positive = 0.2
+    clip: Annotated[float, RATE] = 0.2
     """Of the probability ratio."""
     gradient_norm: Positive = 1e3
     """Gradients are clipped to it: hardly ever."""
-    input_gain: Real = 1.0
+    input_gain: Positive = 1.0
     """Readings are a few per cent of full scale most of the time."""
     critic_first: Natural = 0
     """Updates that train the critic alone, for an actor that is good already."""
     smoothing: Share = 0.2
     """Weight of the latest rollout in the running cost."""
+
+    def __post_init__(self) -> None:
+        if self.batch > self.blades * self.rollout:
+            raise Refused("batch", self.batch, f"at most the {self.blades * self.rollout} samples of a rollout, blades · rollout")
 
 
 class OnPolicyTraining(SB3Training):

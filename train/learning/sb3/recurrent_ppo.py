@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from typing import Annotated, Any
 
 import numpy as np
 from sb3_contrib import RecurrentPPO
 from torch import nn
 
-from beamenv.configuration import Real, Whole, configuration
+from beamenv.configuration import Positive, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import Policy
+from train.learning.ranges import BLADES, INSTANTS, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricRecurrentPolicy
 from train.learning.sb3.ppo import OnPolicyTraining, PPOSettings
 
@@ -22,17 +24,17 @@ from train.learning.sb3.ppo import OnPolicyTraining, PPOSettings
 class RecurrentPPOSettings(PPOSettings):
     """One experiment: PPO's settings with other values to begin with."""
 
-    blades: Whole = 256
+    blades: Annotated[int, BLADES] = 256
     """Environments stepped together."""
-    history: Whole = 4
+    history: Annotated[int, INSTANTS] = 4
     """Instants the cells read at a time: all since the last action."""
-    rollout: Whole = 32
+    rollout: Annotated[int, INSTANTS] = 32
     """Actions of every blade between updates, and back-propagated through: 64 ms."""
-    batch: Whole = 4096
+    batch: Annotated[int, SAMPLES] = 4096
     """Samples in a gradient step."""
-    units: Whole = 48
+    units: Annotated[int, UNITS] = 48
     """Cells of the LSTM, and units of the critic's two tanh layers."""
-    input_gain: Real = 4.0
+    input_gain: Positive = 4.0
     """Readings are a few per cent of full scale most of the time."""
 
 
@@ -49,6 +51,17 @@ class RecurrentPPOTraining(OnPolicyTraining):
     def _held_back(self) -> list[nn.Parameter]:
         policy = self.model.policy
         return [*policy.lstm_actor.parameters(), *policy.action_net.parameters()]
+
+    def state_dict(self) -> dict[str, Any]:
+        """With what the cells hold of the episodes under way."""
+        return {**super().state_dict(), "cells": [tensor.clone() for part in self.model._last_lstm_states for tensor in part]}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Resume within the episodes."""
+        super().load_state_dict(state)
+        parts = iter(state["cells"])
+        kind = type(self.model._last_lstm_states)
+        self.model._last_lstm_states = kind(*((next(parts).clone(), next(parts).clone()) for _ in kind._fields))
 
     def policy(self) -> LSTMPolicy:
         """The actor's mean as arrays."""

@@ -10,6 +10,7 @@ import torch
 from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
+from beamenv.configuration import Refused
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
@@ -28,6 +29,8 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held")}
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
+    if settings.held > min(task.steps for task in tasks):
+        raise Refused("settings.held", settings.held, f"at most the {min(task.steps for task in tasks)} intervals of an episode")
     batches = []
     for index, task in enumerate(map(on_training_bank, tasks)):
         count = blades // len(tasks) + (index < blades % len(tasks))
@@ -58,8 +61,8 @@ class Meter(BaseCallback):
 class SB3Training:
     """A training (``train.learning.training.Training``) of one of SB3's models.
 
-    Its state holds networks, optimisers and generators. When it is resumed, episodes begin anew and a replay buffer fills
-    anew: an interrupted training is no worse for it, but not bit for bit the uninterrupted one.
+    Its state holds networks, optimisers, generators, the episodes under way and what is remembered of others: by updates it
+    resumes bit for bit.
     """
 
     def __init__(self, model: Any, envs: Envs, tasks: Sequence[Task], settings: Any, seed: int) -> None:
@@ -118,7 +121,7 @@ class SB3Training:
         self.envs.close()
 
     def state_dict(self) -> dict[str, Any]:
-        """Networks, optimisers, generators and counters."""
+        """Networks, optimisers, generators, counters, the episodes under way, and a ``memory`` of experience if there is one."""
         kind, keys, position, has_gauss, cached = np.random.get_state(legacy=True)  # noqa: NPY002 - SB3's own generator
         return {
             "policy": self.model.policy.state_dict(),
@@ -127,10 +130,12 @@ class SB3Training:
             "torch": torch.get_rng_state(),
             "numpy": [str(kind), torch.as_tensor(np.asarray(keys, np.int64)), int(position), int(has_gauss), float(cached)],
             "counters": {"steps": self.steps, "updates": self.updates, "cost": self.cost, "timesteps": self.model.num_timesteps},
+            "episodes": self.envs.state_dict(),
+            "shown": {"observations": self.model._last_obs.copy(), "starts": self.model._last_episode_starts.copy()},
         }
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Resume from a ``state_dict``, in new episodes."""
+        """Resume from the ``state_dict`` of an equally made training, with its arrays or as a checkpoint has them."""
         self.model.policy.load_state_dict(state["policy"])
         for name, each in self._optimisers().items():
             each.load_state_dict(state["optimisers"][name])
@@ -139,12 +144,12 @@ class SB3Training:
         counters = state["counters"]
         self.steps, self.updates, self.cost = counters["steps"], counters["updates"], counters["cost"]
         self.model.num_timesteps = counters["timesteps"]
-        self.envs.seed(self._seed + 7919 * self.updates)  # not the episodes it has seen already
-        self.model._last_obs = self.envs.reset()
-        self.model._last_episode_starts = np.ones(self.envs.num_envs, dtype=bool)
+        self.envs.load_state_dict(state["episodes"])
+        self.model._last_obs = np.asarray(state["shown"]["observations"]).copy()
+        self.model._last_episode_starts = np.asarray(state["shown"]["starts"]).copy()
         torch.set_rng_state(state["torch"])
         kind, keys, position, has_gauss, cached = state["numpy"]
-        np.random.set_state((kind, keys.numpy().astype(np.uint32), position, has_gauss, cached))  # noqa: NPY002
+        np.random.set_state((kind, np.asarray(keys).astype(np.uint32), position, has_gauss, cached))  # noqa: NPY002
 
 
 def layers_as_arrays(layers: Sequence[nn.Linear]) -> dict[str, np.ndarray[Any, Any]]:

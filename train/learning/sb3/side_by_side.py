@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -47,6 +47,15 @@ class SideBySide(VecEnv):
     def reset(self) -> Array:
         """Begin episodes in every batch."""
         return np.concatenate([self._widened(k, batch.reset()) for k, batch in enumerate(self.batches)])
+
+    def state_dict(self) -> dict[str, Any]:
+        """Where the episodes are, batch by batch."""
+        return {"batches": [batch.state_dict() for batch in self.batches]}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go back to the ``state_dict`` of equally made batches."""
+        for batch, own in zip(self.batches, state["batches"], strict=True):
+            batch.load_state_dict(own)
 
     def _widened(self, index: int, observations: Array) -> Array:
         """Observations (…, seen + n) of one batch as all have them."""

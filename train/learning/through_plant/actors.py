@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
+from typing import Annotated, Any
 
 import torch
 from torch import Tensor, nn
 
-from beamenv.configuration import Real, Whole, configuration
+from beamenv.configuration import Number, Positive, configuration
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
+from train.learning.ranges import INSTANTS, UNITS
 from train.learning.through_plant.linear_base import LinearBase
 from train.learning.through_plant.windows import Memory
 
@@ -19,13 +20,13 @@ from train.learning.through_plant.windows import Memory
 class ActorSettings:
     """What an actor is made of."""
 
-    units: Whole = 48
+    units: Annotated[int, UNITS] = 48
     """Hidden units of a GRU: twice the plant's states, about."""
-    history: Whole = 24
+    history: Annotated[int, INSTANTS] = 24
     """Instants that a linear policy sees, 12 ms."""
-    input_gain: Real = 4.0
+    input_gain: Positive = 4.0
     """Readings are a few per cent of full scale most of the time."""
-    output_gain: Real = 0.1
+    output_gain: Annotated[float, Number(ge=0.0)] = 0.1
     """Of the initial output layer: the untrained policy does next to nothing."""
 
 

@@ -14,9 +14,10 @@ from typing import Annotated, Any
 import numpy as np
 import torch
 
-from beamenv.configuration import Choice, Number, Positive, Whole, configuration
+from beamenv.configuration import Choice, Number, Positive, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
+from train.learning.ranges import BLADES, INSTANTS, PASSES, RATE
 from train.learning.session import Budget, follow
 from train.learning.through_plant.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
 from train.learning.through_plant.linear_base import BASES, linear_base
@@ -33,13 +34,13 @@ class GradientSettings:
     base: Annotated[str, Choice(BASES)] = "lqg"
     """What a residual actor adds to: see ``train.learning.through_plant.linear_base``."""
     actor_settings: ActorSettings = field(default_factory=ActorSettings)
-    runs: Whole = 1
+    runs: Annotated[int, PASSES] = 1
     """Independent trainings side by side."""
-    episodes: Whole = 128
+    episodes: Annotated[int, BLADES] = 128
     """Blades of each run unrolled together."""
-    window: Whole = 125
+    window: Annotated[int, INSTANTS] = 125
     """Steps back-propagated through, 62 ms: two periods of the slowest mode."""
-    learning_rate: Positive = 5e-3
+    learning_rate: Annotated[float, RATE] = 5e-3
     """Adam's, falling linearly to zero over the training."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.05
     """s: the cost of a joule left at a window's end."""

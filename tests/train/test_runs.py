@@ -1,0 +1,128 @@
+"""Folders of several training runs: evaluated together, and the best of them taught from."""
+
+import io
+import json
+import shutil
+
+import gymnasium
+import numpy as np
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner
+
+import beamenv
+from baselines import evaluate
+from beamenv.blade.build import build_plant
+from beamenv.blade.presets import blade_config
+from beamenv.plant.fingerprint import fingerprint
+from beamenv.task import resolve_task
+from train.benchmark.runs import Runs
+from train.cli.app import app
+from train.cli.evaluations import runs_table
+from train.controllers.choice import chosen, chosen_runs
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import save_policy
+from train.controllers.runs import best_run, runs_in
+from train.learning.job import teacher_for
+
+LIMITS = (-np.ones(4, np.float32), np.ones(4, np.float32))
+GAINS = {"0": 0.0, "1": 0.02, "2": -0.02, "10": 0.04}
+
+
+def agent(gain):
+    weights = {"weight0": np.zeros((4, 24), np.float32), "bias0": np.full(4, gain, np.float32)}
+    return HistoryPolicy(f"biased by {gain}", weights, {"input_gain": 1.0, "held": 1}, *LIMITS)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    home = tmp_path_factory.mktemp("agents") / "mine"
+    plants = {"nominal": fingerprint(build_plant(blade_config()))}
+    for run, gain in GAINS.items():
+        save_policy(agent(gain), home / run, {"plants": plants})
+        (home / run / "learning.csv").write_text(f"elapsed,steps,updates,cost\n1.0,10,1,0.1\n2.0,20,2,{1.0 - abs(gain - 0.02)}\n")
+    (home / "tensorboard").mkdir()
+    return home
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, list(arguments))
+
+
+def test_the_runs_of_a_folder_are_those_with_numbers_in_their_order(folder):
+    assert list(runs_in(folder)) == ["0", "1", "2", "10"]
+    assert dict(runs_in(folder / "1")) == {"": folder / "1"}
+    assert dict(runs_in(folder / "nowhere")) == {"": folder / "nowhere"}
+
+
+@pytest.fixture(scope="module")
+def together(folder):
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, duration=0.05)
+    laws = chosen_runs(str(folder), envs.unwrapped.task, "default")
+    return Runs("mine", {name: evaluate(law, envs, range(3)) for name, law in laws.items()})
+
+
+def test_runs_have_a_mean_and_a_spread(together):
+    content = together.to_dict()
+    for estimate in ("relative_cost", "cost", "peak_tip", "effort"):
+        values = np.array([each.estimates()[estimate].value for each in together.evaluations.values()])
+        found, spread = content["estimates"][estimate], content["spread"][estimate]
+        assert found["value"] == pytest.approx(values.mean(), rel=1e-12)
+        assert found["low"] <= found["value"] <= found["high"]
+        assert spread["deviation"] == pytest.approx(values.std(ddof=1), rel=1e-9)
+        assert (spread["least"], spread["greatest"]) == (values.min(), values.max())
+    assert content["spread"]["relative_cost"]["deviation"] > 0.0
+    assert {name: each["controller"] for name, each in content["runs"].items()} == {k: f"biased by {v}" for k, v in GAINS.items()}
+
+
+def test_a_screen_shows_the_runs_together_and_one_by_one(together):
+    console = Console(width=200, file=io.StringIO(), record=True)
+    console.print(runs_table(together))
+    text = console.export_text()
+    assert "over 4 runs: mean" in text
+    assert text.index("mean of 4 runs") < text.index("run 0") < text.index("run 1 ") < text.index("run 2") < text.index("run 10")
+
+
+def test_the_command_evaluates_every_run_of_a_folder(folder, tmp_path):
+    for name in ("0", "1"):
+        shutil.copytree(folder / name, tmp_path / name)
+    result = run("evaluate", str(tmp_path), "--seeds", "2", "--json")
+    assert result.exit_code == 0, result.stderr
+    content = json.loads(result.stdout)
+    assert list(content["runs"]) == ["0", "1"]
+    assert content["runs"]["0"]["estimates"]["relative_cost"]["value"] == 1.0
+    mean = np.mean([each["estimates"]["relative_cost"]["value"] for each in content["runs"].values()])
+    assert content["estimates"]["relative_cost"]["value"] == pytest.approx(mean, rel=1e-12)
+
+
+def test_one_run_is_still_one_controller(folder):
+    task = resolve_task()
+    assert list(chosen_runs(str(folder / "2"), task, "default")) == [""]
+    assert list(chosen_runs("lqg", task, "default")) == [""]
+    with pytest.raises(ValueError, match="holds those of 4 runs, so name one of"):
+        chosen(str(folder), task, "default")
+    with pytest.raises(ValueError, match="trained_seed is 1, but must be left out"):
+        chosen_runs(str(folder), task, "default", 1)
+
+
+def test_the_run_that_ended_at_the_least_cost_teaches(folder, tmp_path):
+    assert best_run(folder) == folder / "2"  # 1 − 0.04
+    assert teacher_for(folder, {"nominal": resolve_task()}).name == "biased by -0.02"
+    assert best_run(folder / "1") == folder / "1"
+    for name, curve in (("0", None), ("1", "elapsed,steps,updates,cost\n1.0,1,1,nan\n"), ("2", "nonsense\n")):
+        save_policy(agent(0.0), tmp_path / name)
+        if curve is not None:
+            (tmp_path / name / "learning.csv").write_text(curve)
+    assert best_run(tmp_path) == tmp_path / "0"
+
+
+def test_a_run_that_does_not_fit_is_named(folder, tmp_path):
+    for name in ("0", "1"):
+        save_policy(agent(0.0), tmp_path / name, {"plants": {"elsewhere": "0" * 64}})
+    refused = run("evaluate", str(tmp_path), "--seeds", "2")
+    assert refused.exit_code == 2
+    assert "is none of those the agent in" in refused.stderr and len(refused.stderr.splitlines()) == 1
+
+
+def test_the_readme_s_commands_are_taken():
+    assert "several runs" in " ".join(run("evaluate", "--help").stdout.split())

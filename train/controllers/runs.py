@@ -1,0 +1,33 @@
+"""The training runs in a folder: of one training that made several, each is an agent in a folder of its number."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+AGENT = "agent.json"
+
+
+def runs_in(folder: Path) -> Mapping[str, Path]:
+    """The folders of all runs by their numbers, in their order; {"": folder} if the folder is that of one agent, or of none."""
+    found = {path.parent.name: path.parent for path in folder.glob(f"*/{AGENT}") if path.parent.name.isdecimal()}
+    if (folder / AGENT).exists() or not found:
+        return {"": folder}
+    return {name: found[name] for name in sorted(found, key=lambda name: (int(name), name))}
+
+
+def best_run(folder: Path) -> Path:
+    """The folder of the run that ended its training at the least cost, by its learning curve; the first where none tells."""
+    places = list(runs_in(folder).values())
+    return min(places, key=_last_cost) if len(places) > 1 else places[0]
+
+
+def _last_cost(folder: Path) -> float:
+    """Infinite where no curve can be read."""
+    try:
+        with (folder / "learning.csv").open(encoding="utf-8", newline="") as file:
+            costs = [float(row["cost"]) for row in csv.DictReader(file)]
+    except (OSError, ValueError, KeyError, TypeError, csv.Error):
+        return float("inf")
+    return costs[-1] if costs and costs[-1] == costs[-1] else float("inf")

@@ -1,0 +1,92 @@
+"""One process in a folder at a time: two that write there would mix what they write."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from beamenv.configuration.writing import remove_unfinished
+from train.shared.files import check_folder
+
+NAME = ".in-use"
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Hold a folder, which is made if it is not there, until the block or this process ends, however it ends.
+
+    The system's own lock lies on a file in the folder: it goes with its process, so that none is ever left behind. What an earlier
+    process that was killed had begun to write is removed; so are folders made here in which nothing was written.
+    Raises ``ValueError`` of one sentence if another process holds the folder, or nothing can be written there.
+    """
+    check_folder(folder)
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = -1
+    try:
+        handle = _locked(folder)
+        remove_unfinished(folder)
+        yield
+    finally:
+        if handle >= 0:
+            _let_go(handle, folder / NAME)
+        with suppress(OSError):  # one that is not empty stays
+            for each in made:
+                each.rmdir()
+
+
+def _locked(folder: Path) -> int:
+    """The open file of the lock; it may have been removed by its last holder between being opened and being locked."""
+    path = folder / NAME
+    while True:
+        handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            _lock(handle)
+            if path.exists() and os.path.samestat(os.fstat(handle), path.stat()):
+                os.ftruncate(handle, 0)
+                os.write(handle, f"{os.getpid()}\n".encode())
+                return handle
+        except BlockingIOError:
+            holder = _holder(handle)
+            os.close(handle)
+            raise ValueError(
+                f"folder = {str(folder)!r} is in use by {holder}: wait until that has ended, or name another folder."
+            ) from None
+        except FileNotFoundError:
+            pass
+        os.close(handle)
+
+
+def _holder(handle: int) -> str:
+    with suppress(OSError):  # Windows lets nobody else read it
+        if number := os.read(handle, 32).decode(errors="replace").strip():
+            return f"process {number}"
+    return "another process"
+
+
+def _let_go(handle: int, path: Path) -> None:
+    with suppress(OSError):
+        path.unlink()  # while it is locked: whoever opened it already finds that it is gone
+    os.close(handle)
+
+
+if sys.platform == "win32":
+
+    def _lock(handle: int) -> None:
+        import msvcrt
+
+        try:
+            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+        except OSError:
+            raise BlockingIOError from None
+
+else:
+
+    def _lock(handle: int) -> None:
+        """Raises BlockingIOError if another process has it."""
+        import fcntl
+
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
