@@ -98,6 +98,7 @@ class RotatingBeam:
             terms=terms_of(self.model, self.terms),
             rigid=self.shear == "rigid",
             warping=self.model == "blade",
+            plane=not self.layup.walls and self.section.stays_plane,
             clamp_reach=CLAMP_REACH * self.section.perimeter,
         )
 
@@ -108,7 +109,7 @@ class RotatingBeam:
         beside_clamp = CLAMP_PIECE * self.space.clamp_reach
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.space.terms + EXTRA_STATIONS),
+            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.stations_per_span),
             sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
@@ -124,9 +125,15 @@ class RotatingBeam:
         return matrices
 
     def _wall_matrices(self) -> BeamMatrices:
-        stations = Stations.between(self.breakpoints(self._edges), self.space.terms + EXTRA_STATIONS)
+        stations = Stations.between(self.breakpoints(self._edges), self.stations_per_span)
         walls = self.walls_at(stations.z)
         return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+
+    @property
+    def stations_per_span(self) -> int:
+        """Gauss stations on a piece as long as the span: for the trial functions, and for pretwist beyond a quarter of a turn."""
+        turned = abs(np.radians(self.pretwist_deg)) - 0.5 * np.pi
+        return self.space.terms + EXTRA_STATIONS + max(0, int(np.ceil(turned)))
 
     @property
     def _edges(self) -> list[float]:

@@ -36,13 +36,16 @@ class TrialSpace:
     rigid: bool
     warping: bool = False
     """Whether sections warp at will and shear, so that no slope need vanish at the clamp."""
+    plane: bool = False
+    """Whether sections stay plane in torsion, so that the clamp holds no warping back."""
     clamp_reach: float = 1.0
     """m: distance from the clamp over which sections come to warp at will."""
 
     def root_order(self, field: str) -> int:
         """The power of z with which a field leaves the clamp."""
         bends = field in ("u", "v") and self.rigid
-        return ROOT_ORDER[field] if bends or not self.warping else 1
+        free = self.warping or (field == "phi" and self.plane)
+        return ROOT_ORDER[field] if bends or not free else 1
 
     @property
     def fields(self) -> tuple[str, ...]:

@@ -67,6 +67,14 @@ class Section(ABC):
         return vertices - 0.5 * (length @ (vertices + np.roll(vertices, -1, axis=0))) / length.sum()
 
     @property
+    def stays_plane(self) -> bool:
+        """Whether a uniform wall does not warp in torsion: where its edges touch one circle about the centroid, as a tube's do."""
+        start = self.placed_vertices
+        end = np.roll(start, -1, axis=0)
+        distance = (start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]) / self.edge_lengths
+        return bool(np.ptp(distance) <= 1e-9 * np.abs(distance).max())
+
+    @property
     def perimeter(self) -> float:
         """Length (m) of the mid-line."""
         return float(self.edge_lengths.sum())
