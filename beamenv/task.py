@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -36,6 +36,9 @@ Array = NDArray[np.float64]
 BladeArgument = BladeConfig | Mapping[str, Any] | None
 DesignArgument = BladeConfig | Mapping[str, Any] | str | None
 ScenarioArgument = Scenario | Mapping[str, Any] | str | Path | None
+
+DType = Literal["float32", "float64"]
+"""Numbers of the spaces, and of what is in them; what is stepped has 64 bits always."""
 
 INFO = ("volts", "tip_displacement", "energy", "effort", "cost_increment")
 """What info holds of a ``Motion``."""
@@ -101,16 +104,20 @@ class Task:
         """What is to be said of where the true blade's patches are; empty if nothing is."""
         return clamp_note(self.config)
 
-    def action_space(self) -> Box:
+    def action_space(self, dtype: DType = "float32") -> Box:
         """Voltages, normalised or in V."""
         lowest, highest = self.plant.voltage_limits
-        return Box(lowest, highest, dtype=np.float64) if self.physical_units else Box(-1.0, 1.0, (len(lowest),), np.float64)
+        one = np.ones_like(lowest)
+        return _box(lowest, highest, dtype) if self.physical_units else _box(-one, one, dtype)
 
-    def observation_space(self) -> Box:
+    def observation_space(self, dtype: DType = "float32") -> Box:
         """Sensor readings, normalised or in A."""
-        full_scale = self.plant.sensor_full_scale
-        one = np.ones_like(full_scale)
-        return Box(-full_scale, full_scale, dtype=np.float64) if self.physical_units else Box(-one, one, dtype=np.float64)
+        high = self.plant.sensor_full_scale if self.physical_units else np.ones_like(self.plant.sensor_full_scale)
+        return _box(-high, high, dtype)
+
+
+def _box(low: Array, high: Array, dtype: DType) -> Box:
+    return Box(low.astype(dtype), high.astype(dtype), dtype=np.dtype(dtype).type)
 
 
 def resolve_task(
@@ -208,6 +215,19 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     if shapes[0] != shapes[1]:
         raise ValueError(f"design has {shapes[0]} voltages and sensors, but must have as many as the true blade, {shapes[1]}.")
     return designed
+
+
+def checked_dtype(dtype: Any) -> DType:
+    """One of the two, also from NumPy's types of these names; ``ValueError`` for any other."""
+    try:
+        name = np.dtype(dtype).name if dtype is not None else ""
+    except TypeError:
+        name = ""
+    if name == "float32":
+        return "float32"
+    if name == "float64":
+        return "float64"
+    raise Refused("dtype", dtype, "'float32' or 'float64'")
 
 
 _DOUBLE = np.dtype(np.float64)

@@ -70,12 +70,44 @@ def test_citation_cites_the_software_and_the_thesis():
     assert thesis["institution"]["name"] == "Indian Institute of Technology Guwahati"
 
 
-def test_command_without_the_train_extra_says_how_to_install_it():
+def test_command_without_its_extra_says_how_to_install_it():
     hide_typer_and_torch = "import sys; sys.modules.update(typer=None, torch=None); from train.cli.command import main; main()"
     run = subprocess.run([sys.executable, "-c", hide_typer_and_torch, "--help"], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 1
     assert run.stderr.count("\n") == 1
-    assert "pip install 'beamenv[train]'" in run.stderr
+    assert "pip install 'beamenv[cli]'" in run.stderr
+
+
+WITH_TRAIN_ALONE = ("torch", "stable_baselines3", "sb3_contrib", "tensorboard", "plotly", "jinja2", "joblib", "cloudpickle", "dash")
+
+
+WITHOUT_TRAINING = (
+    ["frequencies", "--json"],
+    ["place", "--sensors", "1", "--method", "grid", "--picture", "p.png"],
+    ["evaluate", "none", "--seeds", "2", "--json"],
+)
+
+
+def test_what_needs_no_training_runs_with_the_extra_of_the_command_line_alone(tmp_path):
+    code = f"""
+import sys
+sys.modules.update(dict.fromkeys({WITH_TRAIN_ALONE}))
+sys.path.insert(0, {str(ROOT)!r})
+from beamenv.train.cli.app import app
+for words in {WITHOUT_TRAINING}:
+    app(words, standalone_mode=False)
+"""
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert (tmp_path / "p.png").is_file()
+
+
+def test_training_without_its_extra_says_how_to_install_it(tmp_path):
+    code = f"import sys; sys.modules['torch'] = None; sys.path.insert(0, {str(ROOT)!r}); "
+    code += "from beamenv.train.cli.command import main; main()"
+    run = subprocess.run([sys.executable, "-c", code, "train", "ppo"], cwd=tmp_path, capture_output=True, text=True)
+    assert (run.returncode, run.stderr.count("\n")) == (1, 1)
+    assert "'torch' is missing; install it with pip install 'beamenv[train]'" in run.stderr
 
 
 # Imports run one way: configuration → structure → patches → plant → environment; baselines know plants, never environments;

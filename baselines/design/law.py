@@ -6,11 +6,11 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from baselines.design.controller import Array, Observes
 from baselines.design.instruments import Instruments
+from baselines.design.predicting import observed, remembered
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -47,14 +47,10 @@ class Law(ABC):
         """Action (m,) or (N, m) in units of the drive limit, and the next memory (None for a law without memory).
 
         ``observation`` (p,) or (N, p) is normalised as the environment gives it, and what the law ``observes``; rows where
-        ``episode_start`` is true forget their memory. Raises ValueError for an observation of another length.
+        ``episode_start`` is true forget their memory. Raises ValueError for an observation of another length or of no numbers, and
+        for a state or starts that are not of this law and this batch.
         """
-        seen, order = np.asarray(observation, dtype=np.float64), self.order
-        if seen.ndim not in (1, 2) or seen.shape[-1] != self.instruments.measurement_scale.size:
-            raise ValueError(
-                f"observation has shape {seen.shape}, but {self.name} takes {self.observes} vectors of length "
-                f"{self.instruments.measurement_scale.size}, alone or in rows"
-            )
+        seen, order = observed(observation, self.name, self.observes, self.instruments.measurement_scale.size), self.order
         action, following = self.decide(seen, remembered(state, episode_start, seen.shape[:-1], order))
         return action, following if order else None
 
@@ -69,13 +65,3 @@ class Law(ABC):
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}: order {self.order}; {self.instruments.sizes})"
-
-
-def remembered(state: Array | None, episode_start: ArrayLike | None, batch: tuple[int, ...], order: int) -> Array:
-    """The memory (*batch, order) that a decision starts from: zero without a state, and where an episode starts."""
-    if state is None:
-        return np.zeros((*batch, order))
-    if episode_start is None:
-        return state
-    begins = np.asarray(episode_start, dtype=bool).reshape(batch)
-    return np.where(begins[..., None], 0.0, state)

@@ -8,29 +8,27 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
-from gymnasium.envs.registration import EnvSpec
-from gymnasium.utils import seeding
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.configuration import Count, checked
-from beamenv.envs.batch_arguments import chosen_mode, drawn_rows, elapsed_intervals, own_seeds
+from beamenv.envs.batch_arguments import batch_reset, chosen_mode, drawn_rows
+from beamenv.envs.batch_blades import blades_of, masked, of_rows
+from beamenv.envs.seeds import SeededVectorEnv, Seeds
+from beamenv.envs.specification import Specified
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.blades import Blades
-from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.simulation.motion import Motion
 from beamenv.task import (
-    INFO,
     STEADY_INFO,
     Task,
     checked_action,
+    checked_dtype,
     checked_task,
     information,
-    reset_options,
     resolve_task,
     steady_information,
 )
@@ -43,7 +41,7 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 
-class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
+class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
     """``num_envs`` blades, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
 
     In the scenarios with several plants (`off-speed`, `off-model`) every episode draws its own from one bank, in `spin-up` each
@@ -59,21 +57,24 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     ```
 
-    The arguments ``preset``, ``speed``, ``blade``, ``design``, ``scenario``, ``duration`` and ``physical_units`` are those of
-    ``RotatingBeamEnv``; the others are
+    The arguments ``preset``, ``speed``, ``blade``, ``design``, ``scenario``, ``duration``, ``physical_units`` and ``dtype`` are
+    those of ``RotatingBeamEnv``; the others are
 
     - `num_envs`: how many blades, default 1.
     - `autoreset_mode`: an `AutoresetMode` or its value. `"NextStep"` (Gymnasium's own default): the step after the last one of an
       episode ignores the action, begins the next episode and returns its first observation with reward 0. `"SameStep"` (what
       Stable-Baselines3 expects): the last step returns the first observation and info of the next episode, and those of the
-      finished one as `info["final_obs"]` and `info["final_info"]`.
+      finished one as `info["final_obs"]` and `info["final_info"]`. `"Disabled"`: nothing begins by itself; blades whose episode
+      has ended must begin another one by `reset(options={"reset_mask": mask})`, with a mask (N,) of bools, before the next step.
     - `max_episode_steps`: a time limit in control intervals, if it is to be shorter than `duration`.
-    - `render_mode`: None or `"rgb_array"`; `render_index`: which blade is drawn, default 0, or a sequence of several. `render`
-      returns a tuple of one picture for each of them. `gymnasium.wrappers.vector.RecordVideo` wants all: `range(num_envs)`.
+    - `render_mode`: None or `"rgb_array"`; `render_index`: which blade is drawn, or a sequence of several. `render` returns a
+      tuple of one picture for each of them. None, the default, is all blades, as Gymnasium's wrappers want it; a batch of more
+      than 64 must be told which, for each takes 20 MB and 40 ms a picture.
 
     **Seeds.** `reset(seed=7)` makes one generator for the whole batch: fast. `reset(seed=[7, 8, ...])`, one for each blade,
     gives each blade its own, and with it exactly the load cases and noise, bit for bit, that `RotatingBeamEnv` has after
-    `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. `reset()` never re-seeds.
+    `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. None among them leaves a blade the generator
+    that it has. `reset()` never re-seeds. `np_random` and `np_random_seed` are then tuples, one for each blade.
 
     **Info.** `volts` (N, m) asked for, after saturation, `tip_displacement` (N, 2), `energy`, `effort` and `cost_increment` (N,),
     each with Gymnasium's mask `_volts`, …. `reset`, and a step with which blades begin another episode, tell of these the
@@ -92,20 +93,22 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         scenario: Scenario | Mapping[str, Any] | str | None = None,
         duration: float = 0.5,
         physical_units: bool = False,
+        dtype: Any = "float32",
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         max_episode_steps: int | None = None,
         render_mode: str | None = None,
-        render_index: int | Sequence[int] = 0,
+        render_index: int | Sequence[int] | None = None,
     ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
         self.num_envs = checked("num_envs", num_envs, Count())
-        self._drawn = drawn_rows("render_index", render_index, self.num_envs)
+        is_drawn = render_mode is not None or render_index is not None
+        self._drawn = drawn_rows("render_index", render_index, self.num_envs) if is_drawn else ()
         self._time_limit = sys.maxsize if max_episode_steps is None else checked("max_episode_steps", max_episode_steps, Count())
-        self._mode = chosen_mode(autoreset_mode)
-        self.metadata = {**self.metadata, "autoreset_mode": self._mode}
-        self._generators: np.random.Generator | list[np.random.Generator] | None = None
+        self._dtype = checked_dtype(dtype)
+        self.autoreset_mode = chosen_mode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.set_task([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
 
     def set_task(self, tasks: Sequence[Task]) -> None:
@@ -115,21 +118,18 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         ``task``, ``plant`` and ``design_plant`` are then the first blade's; ``tasks`` has them all.
         """
         tasks = [checked_task(task) for task in tasks]
-        blades: Blades | MixedBlades  # what cannot be built is refused before anything has changed
-        if len(tasks) == 1:
-            blades = Blades(tasks[0].bank, tasks[0].scenario, self.num_envs, tasks[0].physical_units)
-        else:
-            blades = _mixed(tasks, self.num_envs)
+        blades = blades_of(tasks, self.num_envs)  # what cannot be built is refused before anything has changed
         self.task, self.tasks, self._blades = tasks[0], tuple(tasks), blades
         self._notes = np.resize(np.array([task.note for task in tasks], dtype=object), self.num_envs)
-        self.single_action_space = self.task.action_space()
-        self.single_observation_space = self.task.observation_space()
+        self.single_action_space = self.task.action_space(self._dtype)
+        self.single_observation_space = self.task.observation_space(self._dtype)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self._actions_shape = (self.num_envs, *self.single_action_space.shape)
         self._steps = min(self.task.steps, self._time_limit)
+        self._generators = None
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
-        self._over: Rows = np.arange(0)  # rows whose episode ended at the last step, with NEXT_STEP
+        self._over: Rows = np.arange(0)  # rows whose episode ended, with NEXT_STEP at the last step
         self._pictures = None if self.render_mode is None else self._make_pictures(tasks)
 
     @property
@@ -167,38 +167,35 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """(N,) rad/s: what a tachometer shows now."""
         return self._blades.speed
 
-    @property
-    def spec(self) -> EnvSpec | None:
-        """What made this environment; its ``to_json`` works with an ``AutoresetMode`` too."""
-        return self._spec
-
-    @spec.setter
-    def spec(self, spec: EnvSpec | None) -> None:
-        if spec is not None and isinstance(mode := spec.kwargs.get("autoreset_mode"), AutoresetMode):
-            spec.kwargs = {**spec.kwargs, "autoreset_mode": mode.value}
-        self._spec = spec
-
-    _spec: EnvSpec | None = None
-
-    def reset(
-        self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Array, dict[str, Any]]:
+    def reset(self, *, seed: Seeds = None, options: dict[str, Any] | None = None) -> tuple[NDArray[Any], dict[str, Any]]:
         """Begin an episode of every blade. ``seed``: one for the batch, or a sequence of one for each blade.
 
         ``options`` are those of ``RotatingBeamEnv``; its "initial_state" may be (N, n), one for each blade. "elapsed" (N,) takes
         so many control intervals off each first episode: episodes that begin together otherwise stay in step for ever.
+        "reset_mask" (N,) of bools begins episodes of these blades alone; the others go on, and are shown as they were.
         """
-        options = dict(options or {})
-        elapsed = elapsed_intervals(options.pop("elapsed", 0), self._steps, self.num_envs)
-        scenario, initial_state = reset_options(self.task, options, self.num_envs)
-        self._seed(seed)
-        assert self._generators is not None
-        self._elapsed[:] = elapsed
-        self._over = np.arange(0)
-        motion = self._blades.begin(self._generators, scenario=scenario, initial_state=initial_state)
+        asked = batch_reset(self.task, options, self._steps, self.num_envs)
+        generators = self._seed(seed) if asked.rows is None else self._seed_some(seed, asked.rows)
+        rows = np.arange(self.num_envs) if asked.rows is None else asked.rows
+        motion = self._blades.begin(generators, asked.rows, asked.scenario, asked.initial_state)
+        self._elapsed[rows] = asked.elapsed[rows]
+        self._over = np.setdiff1d(self._over, rows)
+        if asked.rows is None:
+            self._last, info = motion, masked(information(motion))
+        else:
+            self._last = Motion(*(_with(whole, rows, new) for whole, new in zip(self._last, motion, strict=True)))
+            info = of_rows(information(motion), rows, self.num_envs)
         if self._pictures is not None:
-            self._pictures.begin(self._blades, motion)
-        return motion.observation, {**_masked(information(motion)), **self._begun(np.arange(self.num_envs))}
+            self._pictures.begin(self._blades, self._last, rows)
+        return self._shown(self._last.observation), {**info, **self._begun(rows)}
+
+    def check_options(self, options: dict[str, Any] | None) -> None:
+        """``ValueError`` for options that a reset would refuse."""
+        batch_reset(self.task, options, self._steps, self.num_envs)
+
+    def _shown(self, observation: Array) -> NDArray[Any]:
+        """A copy in the numbers of the observation space."""
+        return observation.astype(self._dtype)
 
     def _begun(self, rows: Rows) -> dict[str, Any]:
         """What info tells besides of ``rows`` whose episode begins, with Gymnasium's masks."""
@@ -208,22 +205,15 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         told = steady_information(steady, notes)
         return {**told, **{f"_{name}": mask.copy() for name in told}}
 
-    def _seed(self, seed: int | Sequence[int] | None) -> None:
-        if seed is None:
-            self._generators = self.np_random if self._generators is None else self._generators
-        elif isinstance(seed, (int, np.integer)):
-            super().reset(seed=int(seed))
-            self._generators = self.np_random
-        else:
-            self._generators = [seeding.np_random(number)[0] for number in own_seeds(seed, self.num_envs)]
-
-    def step(self, actions: Array) -> tuple[Array, Array, Mask, Mask, dict[str, Any]]:
+    def step(self, actions: Array) -> tuple[NDArray[Any], Array, Mask, Mask, dict[str, Any]]:
         """Hold the voltages of every blade over one control interval."""
         if self._generators is None:
             raise gymnasium.error.ResetNeeded("Call reset before step.")
+        if len(self._over) and self.autoreset_mode is AutoresetMode.DISABLED:
+            raise gymnasium.error.ResetNeeded(f"Episodes of blades {self._over.tolist()} have ended: reset these before step.")
         actions = checked_action(actions, self._actions_shape)
         resting = self._over if len(self._over) else None
-        motion = self._blades.step(actions, self._generators, resting)
+        motion = self._last = self._blades.step(actions, self._generators, resting)
         self._elapsed += 1
         truncated = self._elapsed >= self._steps
         if resting is not None:
@@ -235,13 +225,13 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         info = information(motion)
         if over.any():
             rows = np.flatnonzero(over)
-            if self._mode is AutoresetMode.SAME_STEP:
+            if self.autoreset_mode is AutoresetMode.SAME_STEP:
                 return self._begun_at_once(rows, motion, truncated)
             self._over = rows
         elif resting is not None:
             self._over = np.arange(0)
-        info = _masked(info) if resting is None else {**_masked(info), **self._begun(resting)}
-        return motion.observation, motion.reward, motion.failed, truncated, info
+        info = masked(info) if resting is None else {**masked(info), **self._begun(resting)}
+        return self._shown(motion.observation), motion.reward, motion.failed, truncated, info
 
     def _begin(self, rows: Rows, motion: Motion) -> None:
         """Begin another episode of ``rows`` and put its start into their rows of ``motion``."""
@@ -251,22 +241,20 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             each[rows] = first
         self._elapsed[rows] = 0
 
-    def _begun_at_once(self, rows: Rows, motion: Motion, truncated: Mask) -> tuple[Array, Array, Mask, Mask, dict[str, Any]]:
+    def _begun_at_once(self, rows: Rows, motion: Motion, truncated: Mask) -> tuple[NDArray[Any], Array, Mask, Mask, dict[str, Any]]:
         """SAME_STEP: what a step returns after which ``rows`` begin another episode."""
-        final = {name: np.zeros_like(value) for name, value in information(motion).items()}
-        for name, value in information(motion).items():
-            final[name][rows] = value[rows]
+        final = of_rows({name: value[rows] for name, value in information(motion).items()}, rows, self.num_envs)
         final_obs = np.full(self.num_envs, None, dtype=object)
-        for row, observation in zip(rows.tolist(), motion.observation[rows], strict=True):
+        for row, observation in zip(rows.tolist(), self._shown(motion.observation[rows]), strict=True):
             final_obs[row] = observation
         reward, terminated, over = motion.reward.copy(), motion.failed.copy(), np.zeros(self.num_envs, dtype=np.bool_)
         over[rows] = True
         self._begin(rows, motion)
         if self._pictures is not None:
             self._pictures.begin(self._blades, motion, rows)
-        info = {**_masked(information(motion)), **self._begun(rows)}
-        info.update(final_obs=final_obs, _final_obs=over, final_info=_masked(final, over), _final_info=over.copy())
-        return motion.observation, reward, terminated, truncated, info
+        info = {**masked(information(motion)), **self._begun(rows)}
+        info.update(final_obs=final_obs, _final_obs=over, final_info=final, _final_info=over.copy())
+        return self._shown(motion.observation), reward, terminated, truncated, info
 
     def state_dict(self) -> dict[str, Any]:
         """Where a batch with one generator is, in dictionaries of arrays and numbers; ``ResetNeeded`` before the first reset.
@@ -306,18 +294,7 @@ class RotatingBeamVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._generators = None
 
 
-def _mixed(tasks: Sequence[Task], count: int) -> MixedBlades:
-    """Blades of several tasks, blade k that at k modulo their number; equal ones are one."""
-    different: dict[Any, Task] = {}
-    for task in tasks[:count]:
-        different.setdefault((task.blade, task.design_blade), task)
-    place = {blades: place for place, blades in enumerate(different)}
-    kind = np.resize(np.array([place[task.blade, task.design_blade] for task in tasks[:count]]), count)
-    return MixedBlades([task.bank for task in different.values()], kind, tasks[0].scenario, tasks[0].physical_units)
-
-
-def _masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:
-    """Info with Gymnasium's mask "_key" beside every key: which rows it holds for, all if None."""
-    for name in INFO:
-        info[f"_{name}"] = np.ones(len(info[name]), dtype=np.bool_) if mask is None else mask.copy()
-    return info
+def _with(whole: NDArray[Any], rows: Rows, new: NDArray[Any]) -> NDArray[Any]:
+    whole = whole.copy()
+    whole[rows] = new
+    return whole

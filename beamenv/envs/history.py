@@ -14,6 +14,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Count, checked
+from beamenv.envs.within import task_within
 from beamenv.plant.plant import Plant, drive_limit
 
 Array = NDArray[np.floating[Any]]
@@ -69,15 +70,15 @@ class RollingHistory:
 class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Observes the last ``length`` readings and own voltages in place of the last reading; see ``RollingHistory``.
 
-    - `env`: a `RotatingBeamEnv` with normalised units.
+    - `env`: a `RotatingBeamEnv` with normalised units, under no wrapper that changes its readings.
     - `length`: instants shown, default 12: at 0.5 ms they cover 6 ms, a sixth of the slowest mode's period and
       two of the fastest retained one's.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
         RecordConstructorArgs.__init__(self, length=length)
+        plant, length = _normalised_plant(env, length, of_batch=False)
         gymnasium.Wrapper.__init__(self, env)
-        plant, length = _normalised_plant(env.unwrapped, length)
         self._drive = drive_limit(plant)
         self._history = RollingHistory(1, length, len(plant.C), len(self._drive))
         self.observation_space = _space(self._history)
@@ -96,7 +97,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
 
 class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type parameters
-    """``SensorHistory`` for the batched environment, in both of its autoreset modes.
+    """``SensorHistory`` for the batched environment, in each of its autoreset modes.
 
     - `env`: a `RotatingBeamVectorEnv` with normalised units.
     - `length`: instants shown, default 12.
@@ -105,29 +106,31 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
     """
 
     def __init__(self, env: VectorEnv[Any, Any, NDArray[Any]], length: int = 12) -> None:
+        plant, length = _normalised_plant(env, length, of_batch=True)
         super().__init__(env)
-        plant, length = _normalised_plant(env.unwrapped, length)
         self._drive = drive_limit(plant)
         self._history = RollingHistory(env.num_envs, length, len(plant.C), len(self._drive))
         self.single_observation_space = _space(self._history)
         self.observation_space = batch_space(self.single_observation_space, env.num_envs)
-        self._same_step = env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+        self._mode = env.metadata["autoreset_mode"]
         self._over = np.zeros(env.num_envs, dtype=np.bool_)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
-        """Begin every episode with an empty past."""
+        """Begin every episode with an empty past, or those of a "reset_mask" alone."""
         readings, info = self.env.reset(seed=seed, options=options)
-        self._history.begin(readings)
-        self._over[:] = False
+        mask = (options or {}).get("reset_mask")
+        rows = np.arange(self.num_envs) if mask is None else np.flatnonzero(mask)
+        self._history.begin(readings[rows], rows)
+        self._over[rows] = False
         return self._history.window(), info
 
     def step(self, actions: Array) -> tuple[Array, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
         """Step and show the past of each blade."""
         readings, reward, terminated, truncated, info = self.env.step(actions)
         self._history.append(readings, info["volts"] / self._drive)
-        if self._same_step:
+        if self._mode is AutoresetMode.SAME_STEP:
             self._finish(readings, info)
-        else:
+        elif self._mode is AutoresetMode.NEXT_STEP:
             if self._over.any():
                 rows = np.flatnonzero(self._over)
                 self._history.begin(readings[rows], rows)
@@ -158,10 +161,10 @@ def _space(history: RollingHistory) -> Box:
     return Box(-1.0, 1.0, (history.length * history.width,), np.float32)
 
 
-def _normalised_plant(unwrapped: Any, length: Any) -> tuple[Plant, int]:
+def _normalised_plant(env: Any, length: Any, of_batch: bool) -> tuple[Plant, int]:
     """The plant of the environment within, and the length as an integer; ValueError unless both will do."""
     length = checked("length", length, Count())
-    if unwrapped.task.physical_units:
+    task = task_within(env, of_batch)
+    if task.physical_units:
         raise ValueError("env has physical_units=True, but a history is made of normalised readings and voltages.")
-    plant: Plant = unwrapped.plant
-    return plant, length
+    return task.plant, length

@@ -16,6 +16,8 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
 from beamenv.configuration import Count, Refused, Table, checked, checked_table
+from beamenv.envs.specification import plain
+from beamenv.envs.within import task_within
 from beamenv.task import Task, reset_options
 
 Layout = Mapping[Side, Positions | Drawn]
@@ -39,9 +41,9 @@ class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorA
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], actuators: Any = None, sensors: Any = None) -> None:
-        RecordConstructorArgs.__init__(self, actuators=actuators, sensors=sensors)
+        RecordConstructorArgs.__init__(self, actuators=plain(actuators), sensors=plain(sensors))
+        self._home = _with_fixed_range(_unplaced(env, of_batch=False))
         gymnasium.Wrapper.__init__(self, env)
-        self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
         self._layout = _resolved(self._home.config, {"actuators": actuators, "sensors": sensors})
         self._positions = {side: _first(self._layout[side]) for side in SIDES}
         self._move_to(self._positions)
@@ -98,9 +100,9 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         layouts: Sequence[Mapping[str, Any]] | None = None,
         bank: int = 16,
     ) -> None:
-        super().__init__(env)
         self._bank: int = checked("bank", bank, Count())
-        self._home = _with_fixed_range(env.unwrapped.task)  # type: ignore[attr-defined]
+        self._home = _with_fixed_range(_unplaced(env, of_batch=True))
+        super().__init__(env)
         self._own: np.random.Generator | None = None
         """What layouts are drawn with when every blade has a seed of its own; the batch's generator otherwise."""
         given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
@@ -113,18 +115,28 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode of every blade."""
         options = _options(options)
+        if options.get("reset_mask") is not None:
+            return self._reset_some(seed, options)
         layouts = self._resolved(options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
-        reset_options(self.env.unwrapped.task, options, rows=self.num_envs)  # type: ignore[attr-defined]
+        self.env.unwrapped.check_options(options)  # type: ignore[attr-defined]
         drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
         if drawn:
             self.env.reset(seed=seed)
-            if seed is not None:
-                self._own = None if isinstance(seed, (int, np.integer)) else np.random.default_rng(list(seed))
+            seeds = self.np_random_seed
+            if seed is not None or self._own is None:
+                self._own = np.random.default_rng(seeds) if isinstance(seeds, tuple) else None
             seed = None
         positions = self._draw(layouts) if drawn else [{side: _first(layout[side]) for side in SIDES} for layout in layouts]
         self._layouts = layouts
         if positions != self._positions:
             self._move_to(positions)
+        observations, info = self.env.reset(seed=seed, options=options)
+        return observations, self._told(info)
+
+    def _reset_some(self, seed: Any, options: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """Begin episodes of some blades, whose layouts stay as at an autoreset."""
+        if "layout" in options:
+            raise Refused("options['layout']", options["layout"], "left out beside a reset_mask: the blades that go on keep theirs")
         observations, info = self.env.reset(seed=seed, options=options)
         return observations, self._told(info)
 
@@ -167,6 +179,16 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         layout: dict[str, Any] = {side: whole.copy() for side, whole in self._whole.items()}
         layout.update({f"_{side}": everywhere.copy() for side in SIDES})
         return {**info, "layout": layout, "_layout": everywhere}
+
+
+def _unplaced(env: Any, of_batch: bool) -> Task:
+    """The task of the environment within, which must not be placed by another such wrapper already."""
+    task, inner = task_within(env, of_batch, ("observation", "action")), env
+    while inner is not env.unwrapped:
+        if isinstance(inner, (PlacementWrapper, VectorPlacementWrapper)):
+            raise Refused("env", env, "one whose patches no other wrapper places")
+        inner = inner.env
+    return task
 
 
 def _with_fixed_range(task: Task) -> Task:

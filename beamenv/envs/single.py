@@ -11,11 +11,22 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
+from beamenv.envs.seeds import checked_seed
+from beamenv.envs.specification import Specified
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.motion import Motion
-from beamenv.task import Task, checked_action, checked_task, information, reset_options, resolve_task, steady_information
+from beamenv.task import (
+    Task,
+    checked_action,
+    checked_dtype,
+    checked_task,
+    information,
+    reset_options,
+    resolve_task,
+    steady_information,
+)
 
 if TYPE_CHECKING:
     from beamenv.rendering import BladeRenderer, Instant
@@ -23,7 +34,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-class RotatingBeamEnv(gymnasium.Env[Any, Any]):
+class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     """Damp the vibration of a rotating composite blade with piezoelectric patches.
 
     ## Description
@@ -55,7 +66,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     ## Action Space
 
-    `Box(-1, 1, (4,), float64)`: one voltage for each actuator, from root to tip, in units of the drive limit. It is clipped
+    `Box(-1, 1, (4,), float32)`: one voltage for each actuator, from root to tip, in units of the drive limit. It is clipped
     to the limits and held over one control interval. With `physical_units=True` it is in volts.
 
     | Num | Action                       | Min | Max | Unit   |
@@ -70,7 +81,7 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
 
     ## Observation Space
 
-    `Box(-1, 1, (4,), float64)`: one reading of each sensor, from root to tip, in units of its full scale, with noise of 2 %
+    `Box(-1, 1, (4,), float32)`: one reading of each sensor, from root to tip, in units of its full scale, with noise of 2 %
     of full scale, clipped as a data acquisition clips. Full scale is twice the largest current that a sudden 30 N/m brings
     about, so that clipping is rare (one reading in 10⁵ in the default scenario). With `physical_units=True` it is in amperes.
 
@@ -166,6 +177,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
     - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
       40 % of it.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
+    - `dtype`: of both spaces and the observations, `"float32"` or `"float64"`; default `"float32"`, which agents' networks
+      have. What is stepped, and info, has 64 bits always.
     - `render_mode`: None, `"rgb_array"` (pictures 540 × 960 from `render`) or `"human"` (a window that shows every step); both
       need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life.
 
@@ -220,11 +233,13 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         scenario: Scenario | Mapping[str, Any] | str | None = None,
         duration: float = 0.5,
         physical_units: bool = False,
+        dtype: Any = "float32",
         render_mode: str | None = None,
     ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
+        self._dtype = checked_dtype(dtype)
         self.set_task(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
 
     def set_task(self, task: Task) -> None:
@@ -234,8 +249,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         """
         blade = Blades(checked_task(task).bank, task.scenario, None, task.physical_units)
         self.task, self._blade = task, blade
-        self.action_space = task.action_space()
-        self.observation_space = task.observation_space()
+        self.action_space = task.action_space(self._dtype)
+        self.observation_space = task.observation_space(self._dtype)
         self._action_shape = (self.plant.B.shape[1],)
         self._steps = task.steps
         self._elapsed = 0
@@ -273,18 +288,19 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         """() rad/s: what a tachometer shows now."""
         return self._blade.speed
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[NDArray[Any], dict[str, Any]]:
         """Begin an episode; ``options`` may fix its "load" or give its "initial_state" (see the class)."""
         scenario, initial_state = reset_options(self.task, options, rows=1)
-        super().reset(seed=seed)
+        super().reset(seed=checked_seed(seed))
         self._generators = [self.np_random]
         self._elapsed = 0
         motion = self._blade.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._renderer is not None:
             self._renderer.begin(self._instant(motion))
-        return motion.observation, {**information(motion), **steady_information(self._blade.steady(), self.task.note)}
+        info = {**information(motion), **steady_information(self._blade.steady(), self.task.note)}
+        return motion.observation.astype(self._dtype), info
 
-    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+    def step(self, action: Array) -> tuple[NDArray[Any], float, bool, bool, dict[str, Any]]:
         """Hold the voltages over one control interval."""
         if self._generators is None:
             raise gymnasium.error.ResetNeeded("Call reset before step.")
@@ -292,7 +308,8 @@ class RotatingBeamEnv(gymnasium.Env[Any, Any]):
         self._elapsed += 1
         if self._renderer is not None:
             self._renderer.record(self._instant(motion))
-        return motion.observation, float(motion.reward), bool(motion.failed), self._elapsed >= self._steps, information(motion)
+        observation, ended = motion.observation.astype(self._dtype), self._elapsed >= self._steps
+        return observation, float(motion.reward), bool(motion.failed), ended, information(motion)
 
     def render(self) -> NDArray[np.uint8] | None:
         """A picture (540, 960, 3) of the blade, deflection magnified, with its patches and the last 0.2 s of the episode.

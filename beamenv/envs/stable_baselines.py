@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,6 +10,9 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
+
+from beamenv.configuration import Refused
+from beamenv.envs.seeds import checked_seed
 
 try:
     from stable_baselines3.common.vec_env import VecEnv
@@ -21,22 +25,49 @@ Array = NDArray[Any]
 class BladeVecEnv(VecEnv):
     """``num_envs`` blades for an agent of Stable-Baselines3; ``arguments`` are those of ``RotatingBeamVectorEnv``.
 
-    Observations and rewards are the environment's; an agent without memory wants ``VecFrameStack`` around it.
+    Observations and rewards are the environment's; an agent without memory wants ``VecFrameStack`` around it. ``set_options`` takes
+    the options of the next reset, one dictionary for all blades or a list of one for each.
     """
 
     def __init__(self, num_envs: int = 64, seed: int | None = None, **arguments: Any) -> None:
+        if "autoreset_mode" in arguments:
+            raise Refused("autoreset_mode", arguments["autoreset_mode"], "left out: Stable-Baselines3 knows 'SameStep' alone")
         self.envs: Any = gymnasium.make_vec(
             "beamenv/RotatingBeam-v0", num_envs=num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **arguments
         )
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
-        self._seed = seed
+        self.metadata["render_fps"] = self.envs.metadata["render_fps"]
+        self._seed = checked_seed(seed)
         self._actions: Array = np.zeros(())
 
     def reset(self) -> Array:
         """Begin an episode of every blade; observations (N, p)."""
-        observations, _ = self.envs.reset(seed=self._seed)
+        alike: dict[bytes, list[int]] = {}
+        for row, options in enumerate(self._options):
+            alike.setdefault(pickle.dumps(options), []).append(row)
+        groups = [(self._options[rows[0]], rows) for rows in alike.values()]
+        for options, _ in groups:
+            self.envs.unwrapped.check_options(options)
+        observations, info = self.envs.reset(seed=self._seed, options=groups[0][0])
+        for options, rows in groups[1:]:
+            mask = np.isin(np.arange(self.num_envs), rows)
+            observations, begun = self.envs.reset(options={**options, "reset_mask": mask})
+            info = {name: _merged(values, begun[name], mask) for name, values in info.items()}
+        self.reset_infos = [{name: values[row] for name, values in info.items() if name[0] != "_"} for row in range(self.num_envs)]
         self._seed = None
+        self._reset_options()
         return np.asarray(observations)
+
+    def set_options(self, options: list[dict[str, Any]] | dict[str, Any] | None = None) -> None:
+        """Options of the next reset: one dictionary for all blades, or a list of one for each."""
+        each = options if isinstance(options, list) else [{} if options is None else options] * self.num_envs
+        if len(each) != self.num_envs or not all(isinstance(one, dict) for one in each):
+            raise Refused("options", options, f"a dictionary, or a list of {self.num_envs} of them")
+        super().set_options(each)
+
+    def get_images(self) -> Sequence[Array]:
+        """Pictures of the blades that are drawn."""
+        return list(self.envs.render() or ())
 
     def step_async(self, actions: Array) -> None:
         """Keep the actions for ``step_wait``."""
@@ -53,7 +84,7 @@ class BladeVecEnv(VecEnv):
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
         """The seed of the next ``reset``, one for the whole batch."""
-        self._seed = seed
+        self._seed = checked_seed(seed)
         return [seed] * self.num_envs
 
     def close(self) -> None:
@@ -75,3 +106,10 @@ class BladeVecEnv(VecEnv):
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """No blade has wrappers of its own."""
         return [False] * len(list(self._get_indices(indices)))
+
+
+def _merged(values: Array, new: Array, mask: Array) -> Array:
+    """``new`` where the mask holds."""
+    merged = values.copy()
+    merged[mask] = new[mask]
+    return merged

@@ -179,7 +179,9 @@ class RotatingBeam:
 
     @cached_property
     def critical_speed(self) -> float:
-        """Speed (rad/s) at which spin softening has used up the stiffness of the extension: unstable from there on."""
+        """Speed (rad/s) at which K_e + Ω² K_Ω is first singular: in the thesis' model spin softening has then used up the stiffness
+        of the extension. A non-linear steady state may end, or be unstable, at a lower one.
+        """
         return critical_speed(self.matrices.elastic_stiffness, self.matrices.spin_stiffness)
 
     def natural_frequencies(

@@ -47,8 +47,11 @@ def test_a_bad_argument_is_named(cls, arguments, sentence):
         ({"num_envs": 2.5}, "num_envs is 2.5"),
         ({"num_envs": True}, "num_envs is True"),
         ({"max_episode_steps": 0}, "max_episode_steps is 0, but must be a whole number not below 1"),
-        ({"autoreset_mode": "Never"}, "autoreset_mode is 'Never', but must be one of 'NextStep', 'SameStep'"),
-        ({"autoreset_mode": gymnasium.vector.AutoresetMode.DISABLED}, "autoreset_mode is"),
+        ({"autoreset_mode": "Never"}, "autoreset_mode is 'Never', but must be one of 'NextStep', 'SameStep', 'Disabled'"),
+        ({"autoreset_mode": np.zeros(2)}, "autoreset_mode is"),
+        ({"render_index": [[0]]}, "render_index is .*, but must be None, an integer from 0 to 0, or a sequence of such integers"),
+        ({"render_index": 1}, "render_index is 1, but must be"),
+        ({"render_index": [[0], [0, 1]]}, "render_index is"),
     ],
 )
 def test_a_bad_argument_of_the_batch_is_named(arguments, sentence):
@@ -125,7 +128,7 @@ def test_a_bad_reset_option_is_named_and_changes_nothing(options, sentence):
         assert np.array_equal(env.step(np.zeros(shape))[0], twin.step(np.zeros(shape))[0])
 
 
-@pytest.mark.parametrize("seed", [[1, 2], [1, 2, -3], [1, 2, 0.5], [1, 2, None], "abc", 0.5])
+@pytest.mark.parametrize("seed", [[1, 2], [1, 2, -3], [1, 2, 0.5], [1, 2, True], "abc", b"abc", {1: 2}, 0.5])
 def test_bad_seeds_of_a_batch_are_named(seed):
     envs = RotatingBeamVectorEnv(3)
     with pytest.raises(ValueError, match="seed is .*, but must be an integer, or a sequence of 3 integers that are not negative"):

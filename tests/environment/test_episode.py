@@ -153,7 +153,7 @@ def test_sensor_noise_is_two_per_cent_of_full_scale():
 
 
 def test_physical_units_are_the_same_episode_in_volts_and_amperes():
-    env, physical = RotatingBeamEnv(), RotatingBeamEnv(physical_units=True)
+    env, physical = RotatingBeamEnv(dtype="float64"), RotatingBeamEnv(physical_units=True, dtype="float64")
     full_scale = env.plant.sensor_full_scale
     observation, _ = env.reset(seed=4)
     amperes, _ = physical.reset(seed=4)

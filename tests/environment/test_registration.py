@@ -96,16 +96,13 @@ def test_every_public_name_is_there():
 @pytest.mark.parametrize("then", ["", "import gymnasium; gymnasium.make('beamenv/RotatingBeam-v0').reset()"])
 def test_neither_import_nor_environment_loads_what_is_slow(then):
     code = f"""
-import json, sys, time
-start = time.perf_counter()
+import json, sys
 import beamenv
-seconds = time.perf_counter() - start
 {then}
-print(json.dumps([seconds, [name for name in ("torch", "matplotlib", "pygame", "control", "scipy.signal") if name in sys.modules]]))
+print(json.dumps([name for name in ("torch", "matplotlib", "pygame", "control", "scipy.signal") if name in sys.modules]))
 """
-    seconds, loaded = json.loads(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
-    assert loaded == []
-    assert seconds < 1.0
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert json.loads(run.stdout) == []
 
 
 @pytest.mark.parametrize("cls", [RotatingBeamEnv, RotatingBeamVectorEnv])

@@ -94,3 +94,32 @@ def test_bad_input_is_one_sentence(arguments, sentence):
     assert result.exit_code == 2
     assert sentence in result.stderr and result.stderr.strip().count("\n") == 0
     assert result.stdout == ""
+
+
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_a_picture_that_cannot_be_written_is_told_before_the_search(more, tmp_path, monkeypatch):
+    def searched(*_, **__):
+        raise AssertionError("searched in vain")
+
+    monkeypatch.setattr("train.cli.place.place_sides", searched)
+    (tmp_path / "note").write_text("kept")
+    for picture in (tmp_path / "note" / "picture.png", tmp_path):
+        result = run("--picture", str(picture), *more)
+        assert result.exit_code == 2, result.output
+        assert result.stdout == "" and result.stderr.startswith("beamenv: picture = ")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "results").write_text("")
+    assert run(*more).exit_code == (1 if more else 2)  # without --json a picture is drawn in results
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_positions_are_told_even_if_the_picture_fails(error, sides, monkeypatch, tmp_path):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr("train.cli.place.place_sides", lambda *_: sides)
+    monkeypatch.setattr("train.placement.picture.draw_placement", fail)
+    result = run("--json", "--picture", str(tmp_path / "picture.png"))
+    assert result.exit_code == (2 if isinstance(error, OSError) else 130)
+    assert [each["positions"] for each in json.loads(result.stdout)] == [list(side.placement.positions) for side in sides]
+    assert list(tmp_path.iterdir()) == []

@@ -1,3 +1,4 @@
+import errno
 import json
 from dataclasses import replace
 
@@ -110,3 +111,55 @@ def test_command_lists_the_known_names_for_an_unknown_one(tmp_path):
     result = CliRunner().invoke(app, ["reproduce", "table-9", "--output", str(tmp_path)])
     assert result.exit_code == 2
     assert "table-9" in result.output and "figure-5.17" in result.output
+
+
+@pytest.mark.parametrize(
+    "content", ["", "{", "[]", "{}", '{"fingerprint": "%s"}', '{"fingerprint": "%s", "judgements": 3, "name": ""}']
+)
+def test_a_damaged_record_is_told_with_its_name_and_run_again_when_asked(content, tmp_path):
+    study, calls = counted()
+    (whole,) = run([study], tmp_path)
+    path = tmp_path / "figure-3.2.json"
+    path.write_text(content.replace("%s", whole.fingerprint))
+    with pytest.raises(ValueError, match=r"file '.*figure-3.2.json' (cannot be read|must hold the record of a study)"):
+        run([study], tmp_path)
+    run([study], tmp_path, fresh=True)
+    assert len(calls) == 2
+    assert load(tmp_path, "figure-3.2", whole.fingerprint) is not None
+
+
+@pytest.mark.parametrize("arguments", [("--output", "note"), ("--docs", "note"), ("--output", "note/deeper")])
+def test_an_output_that_cannot_be_written_is_told_before_anything_is_computed(arguments, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "note").write_text("kept")
+    result = CliRunner().invoke(app, ["reproduce", "table-3.4", *arguments])
+    assert result.exit_code == 2
+    assert "must be a folder" in result.output
+    assert [path.name for path in tmp_path.iterdir()] == ["note"]
+
+
+def test_a_disk_that_fills_up_leaves_no_part_of_a_file(tmp_path, monkeypatch):
+    study, _ = counted()
+    run([study], tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("beamenv.configuration.writing.os.replace", full)
+    with pytest.raises(OSError, match="No space left"):
+        run([study], tmp_path, fresh=True)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_ctrl_c_writes_the_page_of_what_is_finished_and_says_how_to_go_on(tmp_path, monkeypatch):
+    def interrupted(model):
+        raise KeyboardInterrupt
+
+    (first,), (second,) = chosen(["table-3.4"]), chosen(["figure-3.3"])
+    monkeypatch.setattr("train.cli.reproduce.chosen", lambda names: (first, replace(second, compute=interrupted)))
+    result = CliRunner().invoke(app, ["reproduce", "--output", str(tmp_path)])
+    assert result.exit_code == 130
+    assert "beamenv: interrupted: what was finished is kept, and the same command resumes." in result.output
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["report.html", "report.md", "table-3.4.csv", "table-3.4.json", "table-3.4.png"]

@@ -149,10 +149,12 @@ def test_a_dead_sensor_gives_noise_alone_and_a_biased_one_its_bias_besides():
         each.reset(seed=2, options={"load": {"case": "step", "magnitude": 30.0, "direction_deg": 60.0, "onset": 0.0}})
         found.extend(each.step(np.zeros((64, 4)))[0] for _ in range(999))
     faults, readings = envs._blades.electronics.faults, np.array(readings)
-    for row, sensor in np.argwhere(faults.sensor_gain == 0.0)[:8]:
+    dead, biased = np.argwhere(faults.sensor_gain == 0.0)[:8], np.argwhere(faults.sensor_bias != 0.0)[:8]
+    assert len(dead) == len(biased) == 8
+    for row, sensor in dead:
         assert readings[:, row, sensor].std() == pytest.approx(0.02, rel=0.1)  # 2 % of full scale
         assert abs(readings[:, row, sensor].mean()) < 4.0 * 0.02 / np.sqrt(999)
-    for row, sensor in np.argwhere(faults.sensor_bias != 0.0)[:8]:
+    for row, sensor in biased:
         others = np.array(truth)[:, :, sensor].std(axis=0).mean()
         assert readings[:, row, sensor].mean() == pytest.approx(faults.sensor_bias[row, sensor], abs=0.01)
         assert readings[:, row, sensor].std() == pytest.approx(others, rel=0.5)

@@ -81,7 +81,7 @@ def finished(tmp_path_factory):
 
 def test_every_controller_meets_the_seeds_of_an_evaluation(finished):
     _, table = finished
-    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, scenario="spillover", **SHORT)
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, scenario="spillover", dtype="float64", **SHORT)
     expected = evaluate(reference_lqg(envs.unwrapped.design.full_plant), envs, range(HELD_OUT, HELD_OUT + 3))
     row = table.row("spillover", "lqg")
     for name, estimate in expected.estimates().items():

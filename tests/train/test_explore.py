@@ -166,11 +166,7 @@ def check_figures(shown):
 @pytest.mark.parametrize("ends", list(itertools.product("01", repeat=len(ONE_HANDLE))), ids="".join)
 def test_the_sliders_ends_give_figures(ends):
     values = {name: (RANGES[name].low, RANGES[name].high)[int(end)] for name, end in zip(ONE_HANDLE, ends, strict=True)}
-    shown = redraw(**START | values)
-    if ends == tuple("1110"):  # fibres across the span, twisted by 90 degrees: at 400 rad/s its steady state is unstable
-        assert "steady state" in shown["message"]
-    else:
-        check_figures(shown)
+    check_figures(redraw(**START | values))
 
 
 @pytest.mark.parametrize("edges", [INWARD, OUTWARD])

@@ -151,3 +151,22 @@ def test_an_agent_that_counts_in_drive_limits_is_refused_where_volts_are_wanted(
     assert evaluate(idle, plain, range(2)).relative_cost.value == 1.0
     with pytest.raises(ValueError, match="^controller = idle is an agent for an environment without physical_units=True"):
         evaluate(idle, physical, range(2))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("x",), "observation is 'x', but must be an array of real numbers"),
+        ((np.zeros((2, 2, 4)),), "observation has shape .2, 2, 4., but windowed takes"),
+        ((np.zeros((2, 3)),), "observation has shape .2, 3., which is not what windowed was trained to read"),
+        ((np.zeros((2, 4)), "x"), "state is 'x', but must be None, or what predict returned last"),
+        ((np.zeros((2, 4)), np.zeros((3, 29), np.float32)), "state is .*, but must be None, or what predict returned last"),
+        (
+            (np.zeros((2, 4)), np.zeros((2, 29), np.float32), [True]),
+            "episode_start is .*, but must be None, or 2 of True and False",
+        ),
+    ],
+)
+def test_what_a_policy_is_given_is_refused_as_a_law_does(windowed, arguments, words):
+    with pytest.raises(ValueError, match=f"^{words}"):
+        windowed.predict(*arguments)

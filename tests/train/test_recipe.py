@@ -5,6 +5,7 @@ from dataclasses import fields, is_dataclass
 import pytest
 
 from beamenv import BENCHMARK_SCENARIOS
+from beamenv.configuration import read
 from train.learning.agents import AGENTS
 from train.learning.job import GENERALIST, Job
 from train.learning.recipe import load_recipe, named_recipe, parsed
@@ -79,3 +80,51 @@ def test_generalists_train_on_every_named_scenario_but_where_a_plant_file_moves(
     tasks = Job("gradient", recipe, GENERALIST, 0, Budget(updates=1), {}).tasks()
     assert set(tasks) == set(BENCHMARK_SCENARIOS) - {"solid", "solid-20"}
     assert set(Job("gradient", recipe, "solid", 0, Budget(updates=1), {}).tasks()) == {"solid"}
+
+
+MAY_BE_ZERO = {"first", "critic_first", "energy_horizon", "exploration", "output_gain", "trace", "smoothing"}
+"""Settings that mean something at zero: no waiting, no potential, a deviation of one, an idle start, one step ahead, a mean."""
+
+NUMBERS = [
+    (name, table, each.name)
+    for name, agent in AGENTS.items()
+    for table, settings in (("", agent.settings()), ("actor_settings", getattr(agent.settings(), "actor_settings", None)))
+    for each in (fields(settings) if settings is not None else ())
+    if isinstance(getattr(settings, each.name), int | float)
+]
+
+
+@pytest.mark.parametrize(("agent", "table", "name"), NUMBERS)
+def test_a_setting_out_of_its_range_is_refused_before_training(agent, table, name):
+    default = AGENTS[agent].settings()
+    standing = getattr(getattr(default, table) if table else default, name)
+    refused = [float("nan"), float("inf"), True, str(standing), None, [standing]]
+    refused += [0] if name not in MAY_BE_ZERO else []
+    refused += [-1] if name != "exploration" else [-21.0, 3.0]
+    refused += [standing + 0.5, 10**12] if isinstance(standing, int) else []
+    for value in refused:
+        given = {table: {name: value}} if table else {name: value}
+        path = f"settings.{table}.{name}" if table else f"settings.{name}"
+        with pytest.raises(ValueError, match=f"{path} is .*, but must be "):
+            read(default, given, "settings")
+
+
+@pytest.mark.parametrize(
+    ("agent", "given", "sentence"),
+    [
+        ("ppo", {"blades": 8, "rollout": 4}, "settings.batch is 8192, but must be at most the 32 samples of a rollout"),
+        ("recurrent-ppo", {"rollout": 1}, "settings.batch is 4096, but must be at most the 256 samples"),
+        ("sac", {"buffer": 100}, "settings.buffer is 100, but must be at least one action of each of the 256 blades"),
+        ("tqc", {"first": 200_000}, "settings.first is 200000, but must be at most what the buffer of 200000 holds"),
+    ],
+)
+def test_settings_that_together_learn_nothing_or_something_else_are_refused(agent, given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        read(AGENTS[agent].settings(), given, "settings")
+
+
+def test_an_action_held_longer_than_an_episode_is_refused():
+    (task,) = Job("ppo", named_recipe("ppo"), "nominal", 0, Budget(updates=1), {"duration": 0.02}).tasks().values()
+    settings = read(AGENTS["ppo"].settings(), {"held": 41, "blades": 8, "batch": 32}, "settings")
+    with pytest.raises(ValueError, match="settings.held is 41, but must be at most the 40 intervals of an episode"):
+        AGENTS["ppo"].training([task], settings, 0, None)

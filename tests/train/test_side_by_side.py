@@ -38,6 +38,7 @@ def test_windows_rewards_and_ends_are_those_of_the_batches():
     seen = together.seen
     rows = [each.reset() for each in alone]
     np.testing.assert_array_equal(together.reset()[:, :seen], np.concatenate([row[:, :seen] for row in rows]))
+    over = 0
     for step in range(25):
         actions = np.sin(step + np.arange(24.0)).reshape(6, 4)
         observations, rewards, ends, infos = together.step(actions)
@@ -49,6 +50,8 @@ def test_windows_rewards_and_ends_are_those_of_the_batches():
         for row in np.flatnonzero(ends):
             assert infos[row]["terminal_observation"].shape == together.observation_space.shape
             assert infos[row]["TimeLimit.truncated"] is True
+        over += np.count_nonzero(ends)
+    assert over >= 6  # every blade's episode ends at least once
 
 
 def test_a_critic_is_told_which_scenario_a_blade_is_in():

@@ -44,6 +44,7 @@ def test_it_is_a_vec_env_with_spaces_that_hold_what_it_gives():
 def test_its_episodes_are_those_of_the_gymnasium_batch():
     envs, (plain, expected) = batch(), plain_batch()
     np.testing.assert_array_equal(envs.reset(), expected)
+    over = 0
     for step in range(45):
         observations, rewards, ends, infos = envs.step(actions(step))
         expected, reward, terminated, truncated, info = plain.step(actions(step))
@@ -53,6 +54,8 @@ def test_its_episodes_are_those_of_the_gymnasium_batch():
         for row in np.flatnonzero(ends):
             np.testing.assert_array_equal(infos[row]["terminal_observation"], info["final_obs"][row])
             assert infos[row]["TimeLimit.truncated"]
+        over += np.count_nonzero(ends)
+    assert over >= 2 * COUNT  # of 20 steps each, the first of them shorter
 
 
 def test_a_terminal_observation_ends_in_the_voltages_of_the_last_action():
@@ -101,6 +104,7 @@ def test_held_actions_are_steps_of_the_blades_with_their_rewards_added():
     slow.reset()
     elapsed = np.arange(COUNT) * 20 // COUNT // 2 * 2
     fast.envs.reset(seed=5, options={"elapsed": elapsed})
+    over = 0
     for step in range(12):
         observations, rewards, ends, infos = slow.step(actions(step))
         halves = [fast.step(actions(step)) for _ in range(2)]
@@ -110,6 +114,8 @@ def test_held_actions_are_steps_of_the_blades_with_their_rewards_added():
         assert not halves[0][2].any()
         for row in np.flatnonzero(ends):
             np.testing.assert_array_equal(infos[row]["terminal_observation"], halves[1][3][row]["terminal_observation"])
+        over += np.count_nonzero(ends)
+    assert over >= COUNT
 
 
 def test_wrappers_of_stable_baselines_work_on_top():

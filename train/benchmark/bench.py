@@ -66,6 +66,7 @@ class Bench:
 
 
 def _made(setting: Setting) -> Blades:
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **json.loads(setting.arguments))
+    arguments = {"dtype": "float64", **json.loads(setting.arguments)}
+    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **arguments)
     reference = roll_out(named("none").build_for(envs.unwrapped.task), envs, held_out(setting.seeds))
     return Blades(envs, reference, cost_without_control(reference), settling_band(reference))

@@ -139,7 +139,7 @@ def evaluate(
         from train.shared.held_out import held_out
 
         arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
-        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, **arguments)
+        envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
         found: dict[str, baselines.Evaluation] = {}
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
             reference = next((each.reference for each in found.values()), None)

@@ -5,7 +5,13 @@ from __future__ import annotations
 import sys
 
 _OWN_PACKAGES = ("beamenv", "baselines", "train")
-_EXTRAS = {"dash": "explore", "werkzeug": "explore"}
+_EXTRAS = {
+    **dict.fromkeys(("rich", "typer"), "cli"),
+    **dict.fromkeys(("cma", "pymoo"), "placement"),
+    **dict.fromkeys(("matplotlib", "pygame"), "render"),
+    **dict.fromkeys(("dash", "werkzeug"), "explore"),
+    "daqp": "predictive",
+}
 """Which extra brings a package; all others come with ``train``."""
 
 

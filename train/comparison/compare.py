@@ -87,7 +87,7 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
 def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[Evaluation]:
     from train.comparison.page import write_comparison_page  # plotly takes a while, and others want this module's names alone
 
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **comparison.environment)
+    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **{"dtype": "float64", **comparison.environment})
     try:
         plant = envs.unwrapped.plant
         claim(folder, comparison, envs.unwrapped.task)

@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from baselines import Controller
 from baselines.design.controller import name_of
+from baselines.design.predicting import observed
+from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant, normalised
 
 Array = NDArray[np.floating[Any]]
@@ -98,7 +100,9 @@ class ShownHistory:
         deterministic: bool = True,
     ) -> tuple[Array, tuple[Array, Array, Any]]:
         """Action (N, m) on readings (N, p), and the next memory."""
-        readings = np.asarray(observation, dtype=np.float32)
+        readings = observed(observation, self.name).astype(np.float32)
+        if readings.ndim != 2:
+            raise Refused("observation", observation, "rows of readings (N, p)")
         instant = readings.shape[1] + len(self.lowest)
         if state is None:
             state = np.zeros((len(readings), self.length * instant), np.float32), np.zeros((len(readings), len(self.lowest))), None

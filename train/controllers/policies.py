@@ -9,6 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from baselines.design.predicting import observed, remembered
+
 Array = NDArray[np.floating[Any]]
 
 
@@ -38,14 +40,19 @@ class Policy:
         episode_start: ArrayLike | None = None,
         deterministic: bool = True,
     ) -> tuple[Array, Array]:
-        """Action (m,) or (N, m) and the next memory; ``observation`` (p,) or (N, p) as the environment gives it."""
-        readings = np.asarray(observation, dtype=np.float32)
+        """Action (m,) or (N, m) and the next memory; ``observation`` (p,) or (N, p) as the environment gives it.
+
+        Raises ValueError as a ``Law`` does.
+        """
+        readings = observed(observation, self.name).astype(np.float32)
         single = readings.ndim == 1
         rows = np.atleast_2d(readings)
-        memory = np.zeros((len(rows), self.memory_size), np.float32) if state is None else state
-        if state is not None and episode_start is not None:
-            memory = np.where(np.reshape(episode_start, (-1, 1)), np.float32(0.0), memory)
-        action, following = self.act(rows, memory)
+        memory: Array = remembered(state, episode_start, (len(rows),), self.memory_size)
+        memory = memory.astype(np.float32) if state is None else memory
+        try:
+            action, following = self.act(rows, memory)
+        except ValueError:
+            raise ValueError(f"observation has shape {readings.shape}, which is not what {self.name} was trained to read") from None
         action = np.clip(action, self.lowest, self.highest)
         following[:, -action.shape[1] :] = action
         return (action[0] if single else action), following
@@ -85,6 +92,8 @@ class HistoryPolicy(Policy):
         """Shift the window; where it is time, layer by layer to new voltages."""
         m = len(self.lowest)
         instant = readings.shape[1] + m
+        if self.weights["weight0"].shape[1] % instant:
+            raise ValueError(f"instants of {instant} numbers do not fill the window")
         age, voltages = memory[:, -m - 1 : -m], memory[:, -m:]
         window = np.hstack([memory[:, instant : -m - 1], readings, voltages])
         action = np.where(age == 0.0, self._network(window), voltages)

@@ -77,7 +77,7 @@ def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controll
 
     A controller called as ``baselines.laws.no_control`` is counts as the episode without control, and is not run twice.
     """
-    env = gym.make(beamenv.ENV_ID, **arguments)
+    env = gym.make(beamenv.ENV_ID, **{"dtype": "float64", **arguments})
     try:
         inner: Any = env.unwrapped
         idle = no_control(inner.plant)

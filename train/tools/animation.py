@@ -41,7 +41,7 @@ TITLE_AT, TITLE_SIZE, INK = (330, 15), 22, "#1f2933"
 
 def pictures(controller: Controller, count: int) -> list[Picture]:
     """``count`` pictures (540, 960, 3) of one episode under a controller."""
-    env = gymnasium.make(beamenv.ENV_ID, render_mode="rgb_array")
+    env = gymnasium.make(beamenv.ENV_ID, render_mode="rgb_array", dtype="float64")
     episode = instants(controller, env, [SEED], {"load": PULSE})
     shown = [np.asarray(env.render()) for _ in islice(episode, 0, STEPS_PER_PICTURE * (count - 1) + 1, STEPS_PER_PICTURE)]
     env.close()

@@ -76,7 +76,7 @@ class BareBlade:
     strains: Array
     """s (S, STRAINS, n)."""
     steady: Array
-    """(S, 6): beam strains of the steady state."""
+    """(S, STRAINS): strains of the steady state."""
 
     @classmethod
     def of(cls, exact: ExactBeam, point: OperatingPoint, z: Array, basis: Array) -> BareBlade:
@@ -88,7 +88,7 @@ class BareBlade:
             placement=exact.placement(z, exact.about(point)),
             increments=increment_rows(exact.space, z) @ basis,
             strains=exact.section_strains(z, point) @ basis,
-            steady=exact.steady_strains(z, point)[:, :RIGID],
+            steady=exact.steady_strains(z, point),
         )
 
     def stress_stiffness(self, strain: Array, moments: Array) -> Array:
@@ -130,9 +130,9 @@ class Covering:
         def under(values: Array) -> Array:
             return self.sections.under(code, z, values)
 
-        energy, stiffness, moments = under(elastic(bare, solid.energy)), under(solid.stiffness), under(solid.stress_moments)
+        energy, stiffness, moments = under(elastic(bare, solid.energy)), under(solid.stiffness), under(solid.saint_venant_moments)
         inertia, shape_mass = under(solid.inertia), under(solid.shape_mass)
-        resultants = self.sections.under(0, z, solid.stiffness) @ bare.steady[..., None]
+        resultants = self.sections.under(0, z, elastic(bare, solid.energy))[:, :RIGID] @ bare.steady[..., None]
         strain = np.asarray(np.linalg.solve(stiffness, resultants)[..., 0])
         arm = np.zeros((len(z), 3))
         arm[:, 2] = bare.exact.hub_radius + z

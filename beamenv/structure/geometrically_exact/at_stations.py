@@ -20,6 +20,7 @@ from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, Fi
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.section.element_sums import MONOMIALS
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES, STRAINS
 from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clamped_table, polynomial_table
@@ -54,7 +55,7 @@ class BladeAtStations(Sealed):
     energy: Array
     """(S, STRAINS, STRAINS): of the sections, see ``SolidSections``."""
     stress_moments: Array
-    """(S, 6, 6)"""
+    """(S, 6, STRAINS): of the spanwise stress, see ``SolidSections``."""
     section_inertia: Array
     """(S, 6)"""
     shape_mass: Array
@@ -65,6 +66,9 @@ class BladeAtStations(Sealed):
         """Gather the sections and tabulate the trial functions."""
         z, solid = stations.z, sections.solid
         value, slope = shape_tables(space, z)
+        energy, stress_moments = solid.energy, solid.stress_moments
+        if space.rigid:
+            energy, stress_moments = without_shear(energy), moments_without_shear(stress_moments, energy)
         return cls(
             weight=stations.weight,
             arm=np.column_stack([np.zeros_like(z), np.zeros_like(z), hub_radius + z]),
@@ -73,8 +77,8 @@ class BladeAtStations(Sealed):
             tables=None if space.rigid else np.stack(field_tables(space, z), axis=1),
             value=value,
             slope=slope,
-            energy=sections.at(z, without_shear(solid.energy) if space.rigid else solid.energy),
-            stress_moments=sections.at(z, solid.stress_moments),
+            energy=sections.at(z, energy),
+            stress_moments=sections.at(z, stress_moments),
             section_inertia=sections.at(z, solid.inertia),
             shape_mass=sections.at(z, solid.shape_mass),
         )
@@ -145,6 +149,24 @@ class BladeAtStations(Sealed):
         own = (self.energy[:, BEAM, BEAM] @ strain[..., None])[..., 0]
         return np.asarray(own - (asked @ self.onto_shapes).reshape(own.shape) / self.weight[:, None])
 
+    def moments(self, strain: Array, asked: Array) -> Array:
+        """∫σ_zz (1, x, y, x², xy, y²) dA (S, 6) for strains (S, 6)."""
+        own = (self.stress_moments[:, :, BEAM] @ strain[..., None])[..., 0]
+        return np.asarray(own + (self._moments_of_asked @ asked).reshape(own.shape))
+
+    @sealed_property
+    def _moments_of_asked(self) -> Array:
+        """X (6S, AMPLITUDES × terms): what Z e adds to the moments, the amplitudes being −L⁻ᵀ Z e."""
+        of_shapes = self.stress_moments[:, :, SHAPE, None] * self.value[:, None, None, :]
+        of_shapes = of_shapes + self.stress_moments[:, :, SHAPE_SLOPE, None] * self.slope[:, None, None, :]
+        flat = of_shapes.reshape(len(self.weight) * MONOMIALS, -1).T
+        return np.asarray(-solve_triangular(self.shape_stiffness, flat, lower=True, check_finite=False).T)
+
+    def _drawn(self, squares: Array) -> Array:
+        """Xᵀ ∫ (AMPLITUDES × terms, …): what the fibres' quadratic extension (S, 6, …) asks of the shapes."""
+        weight = self.weight.reshape(-1, *[1] * (squares.ndim - 1))
+        return np.asarray(self._moments_of_asked.T @ (weight * squares).reshape(len(self.weight) * MONOMIALS, *squares.shape[2:]))
+
     def form(self, of_increments: Array) -> Array:
         """∫ of a form (S, 12, 12) of increments, (N, N)."""
         weighted = self.weight[:, None, None] * of_increments
@@ -178,29 +200,28 @@ class BladeAtStations(Sealed):
     def newton_step(self, q: Array, speed: float) -> Array:
         """Increment (N,) of displacements and spins towards the steady state from coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
-        strain_rows = placement.strain_rows
-        resultants, section = self._stressed(placement, self.asked(placement.strain))
-        inertia = self.inertia(placement)
-        pull = np.einsum("sfi,sf->si", strain_rows, resultants)
+        inertia, stressed = self.inertia(placement), self._stressed(placement, self.asked(placement.strain))
+        pull = np.einsum("sfi,sf->si", placement.strain_rows, stressed.resultants)
         push = self.force(speed**2 * inertia.centrifugal - pull)
-        asked = self.asked(strain_rows @ self.rows)
-        return np.asarray(np.linalg.solve(self._tangent(placement, resultants, section, inertia, speed, asked), push))
+        rows = placement.strain_rows @ self.rows
+        tangent = self._tangent(placement, stressed, inertia, speed, rows, self.asked(rows))
+        return np.asarray(np.linalg.solve(tangent, push))
 
-    def _stressed(self, placement: Placement, asked: Array) -> tuple[Array, Array]:
-        """Resultants (S, 6), and the section's stiffness (S, 6, 6) with what the fibres' quadratic extension adds."""
-        strain = placement.strain
-        moments = np.einsum("sfi,si->sf", self.stress_moments, strain)
-        fibres = FibreExtension.of(strain)
-        resultants = self.resultants(strain, asked) + fibres.resultants(moments, self.stress_moments)
-        return resultants, self.energy[:, BEAM, BEAM] + fibres.stiffness(moments, self.stress_moments)
+    def _stressed(self, placement: Placement, asked: Array) -> Stressed:
+        """The energy is ½ eᵀ E e − ½ |Z e|² + ½ ∫ m·s dz, with the moments m and the fibres' squares s of the strains e."""
+        strain, per_strain = placement.strain, self.stress_moments[:, :, BEAM]
+        moments, fibres = self.moments(strain, asked), FibreExtension.of(strain)
+        resultants = self.resultants(strain, asked - 0.5 * self._drawn(fibres.squares)) + fibres.resultants(moments, per_strain)
+        return Stressed(resultants, self.energy[:, BEAM, BEAM] + fibres.stiffness(moments, per_strain), fibres)
 
     def _tangent(
-        self, placement: Placement, resultants: Array, section: Array, inertia: SpinningSections, speed: float, asked: Array
+        self, placement: Placement, stressed: Stressed, inertia: SpinningSections, speed: float, strain_rows: Array, asked: Array
     ) -> Array:
-        """(N, N): ``asked`` is that of the strains per coefficient."""
+        """(N, N); ``asked`` is that of the strains per coefficient, ``strain_rows`` (S, 6, N)."""
         rows = placement.strain_rows
-        local = rows.swapaxes(-1, -2) @ section @ rows + placement.geometric(resultants)
-        return symmetric(self.form(local - speed**2 * inertia.centrifugal_softening) - asked.T @ asked)
+        local = rows.swapaxes(-1, -2) @ stressed.stiffness @ rows + placement.geometric(stressed.resultants)
+        shapes = asked.T @ (asked - self._drawn(stressed.fibres.slopes @ strain_rows))
+        return symmetric(self.form(local - speed**2 * inertia.centrifugal_softening) - shapes)
 
     def moved(self, q: Array, step: Array) -> Array:
         """Coefficients after an increment of displacements and spins: the rotations are put together and fitted again."""
@@ -223,17 +244,28 @@ class BladeAtStations(Sealed):
     def about(self, q: Array, speed: float) -> OperatingPoint:
         """M, K and G about the steady state with coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
-        steadily, asked = self.asked(placement.strain), self.asked(placement.strain_rows @ self.rows)
-        resultants, section = self._stressed(placement, steadily)
+        strain_rows = placement.strain_rows @ self.rows
+        steadily, asked = self.asked(placement.strain), self.asked(strain_rows)
         inertia, following = self.inertia(placement), self.amplitudes(asked)
         return OperatingPoint(
             speed=speed,
             mass=self.mass(inertia, following),
-            stiffness=self._tangent(placement, resultants, section, inertia, speed, asked),
+            stiffness=self._tangent(placement, self._stressed(placement, steadily), inertia, speed, strain_rows, asked),
             gyroscopic=speed * self.form(inertia.gyroscopic),
             steady=SteadyState(q, self.amplitudes(steadily)),
             following=following,
         )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stressed:
+    """Sections under the strains of a placement."""
+
+    resultants: Array
+    """(S, 6), in the sections' axes."""
+    stiffness: Array
+    """(S, 6, 6), with what the fibres' quadratic extension adds."""
+    fibres: FibreExtension
 
 
 def increment_rows(space: TrialSpace, z: Array) -> Array:
@@ -259,9 +291,18 @@ def shape_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
     return clamped_table(z / space.length, space.terms, space.length, space.clamp_reach)
 
 
+SHEARS = slice(0, 2)
+
+
 def without_shear(energy: Array) -> Array:
     """Energies (V, STRAINS, STRAINS) of sections that shear as they please, their shear strains held to cost nothing."""
-    shears = slice(0, 2)
-    free = energy - energy[:, :, shears] @ np.linalg.solve(energy[:, shears, shears], energy[:, shears, :])
-    free[:, shears, :] = free[:, :, shears] = 0.0
+    free = energy - energy[:, :, SHEARS] @ np.linalg.solve(energy[:, SHEARS, SHEARS], energy[:, SHEARS, :])
+    free[:, SHEARS, :] = free[:, :, SHEARS] = 0.0
+    return free
+
+
+def moments_without_shear(moments: Array, energy: Array) -> Array:
+    """Moments (V, 6, STRAINS) of the spanwise stress in such sections."""
+    free = moments - moments[:, :, SHEARS] @ np.linalg.solve(energy[:, SHEARS, SHEARS], energy[:, SHEARS, :])
+    free[:, :, SHEARS] = 0.0
     return free

@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 ITERATIONS = 30
 """Most Newton steps to the steady state; five or six do."""
 
+FREE = 2
+"""Newton steps that may grow; where later ones do, no steady state is near."""
+
 HALVINGS = 5
 """Most halvings of a step in Ω² towards a steady state that Newton's method does not find from the linear one."""
 
@@ -122,8 +125,8 @@ class ExactBeam:
         inertia = at.inertia(placement)
         coefficients = np.linalg.solve(elastic, at.force(inertia.centrifugal))
         strain = at.strain_rows @ coefficients
-        resultants = at.resultants(strain, at.asked(strain))
-        moments = np.einsum("sfi,si->sf", at.stress_moments, strain)
+        asked = at.asked(strain)
+        resultants, moments = at.resultants(strain, asked), at.moments(strain, asked)
         stressed = placement.strain_rows.swapaxes(-1, -2) @ under_stress(moments) @ placement.strain_rows
         spin = at.form(placement.geometric(resultants) - inertia.centrifugal_softening + stressed)
         return BeamMatrices(
@@ -175,13 +178,13 @@ class ExactBeam:
 
     def _newton(self, q: Array, speed: float) -> Array | None:
         """Coefficients of the steady state, or None where it is not found."""
-        at = self.at_stations
-        for _ in range(ITERATIONS):
+        at, before = self.at_stations, np.inf
+        for count in range(ITERATIONS):
             step = at.newton_step(q, speed)
             largest = np.abs(at.rows[:, : SPIN.stop] @ step).max()
-            if not np.isfinite(largest):
+            if not np.isfinite(largest) or (count >= FREE and largest > before):
                 return None
-            q = at.moved(q, step)
+            q, before = at.moved(q, step), largest
             if largest <= CONVERGED:
                 return q
         return None

@@ -49,7 +49,7 @@ class SolidSections(Sealed):
     shape_mass: Array
     """(V, AMPLITUDES, AMPLITUDES), per metre; the shapes' momenta on the whole are zero."""
     stress_moments: Array
-    """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, 6) per Saint-Venant's beam strain."""
+    """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, STRAINS)."""
     saint_venant: Array
     """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
     _forces: dict[tuple[str, float, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
@@ -71,7 +71,7 @@ class SolidSections(Sealed):
             energy=_energy(sums, here),
             inertia=sums.inertia,
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
-            stress_moments=_stress_moments(sums, central, pretwist),
+            stress_moments=_stress_moments(sums, here),
             saint_venant=_saint_venant(central, unit, pretwist),
         )
 
@@ -95,6 +95,7 @@ class SolidSections(Sealed):
             self,
             shapes=self.shapes @ turn,
             energy=strains.T @ self.energy @ strains,
+            stress_moments=self.stress_moments @ strains,
             shape_mass=turn.T @ self.shape_mass @ turn,
             _forces={},
         )
@@ -103,6 +104,11 @@ class SolidSections(Sealed):
     def classical_stiffness(self) -> Array:
         """(V, 4, 4) for (w′, θx′, θy′, φ′): no transverse force acts."""
         return np.asarray(np.linalg.inv(np.linalg.inv(self.stiffness)[:, 2:, 2:]))
+
+    @property
+    def saint_venant_moments(self) -> Array:
+        """``stress_moments`` (V, 6, 6) per beam strain, far from clamp and patches."""
+        return np.asarray(self.stress_moments @ self.saint_venant @ self.stiffness)
 
     @property
     def tension_centre(self) -> Array:
@@ -186,11 +192,8 @@ def _energy(sums: ElementSums, shapes: Array) -> Array:
     return sums.energy(warping, onward, beam)
 
 
-def _stress_moments(sums: ElementSums, central: CentralSolution, pretwist: float) -> Array:
-    """(V, 6, 6) per beam strain S⁻¹θ."""
-    here = sums.gather(central.warping)
+def _stress_moments(sums: ElementSums, shapes: Array) -> Array:
+    """(V, 6, STRAINS)."""
     size = sums.size
-    T = equilibrium(pretwist)
     warp, onward, beam = (sums.moments[..., part] for part in (slice(size), slice(size, 2 * size), slice(2 * size, None)))
-    per_resultant = (warp @ here + onward @ (here @ T) + beam @ central.strain[:, None]).sum(axis=1)
-    return np.asarray(per_resultant @ central.stiffness).reshape(-1, MONOMIALS, RIGID)
+    return np.asarray(np.concatenate([beam, warp @ shapes, onward @ shapes], axis=-1).sum(axis=1)).reshape(-1, MONOMIALS, STRAINS)

@@ -52,7 +52,7 @@ class TrainingVecEnv(BladeVecEnv):
         reward_unit: float = REWARD_UNIT,
     ) -> None:
         task = environment if isinstance(environment, Task) else None
-        super().__init__(count, seed, **({} if isinstance(environment, Task) else environment))
+        super().__init__(count, seed, **{"dtype": "float64", **({} if isinstance(environment, Task) else environment)})
         self.blades: Any = self.envs.unwrapped
         if task is not None:
             self.blades.set_task([task])

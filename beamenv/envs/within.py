@@ -1,0 +1,37 @@
+"""What wrappers of this package may be put around: told in one sentence instead of observations outside their space."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.vector import VectorEnv
+
+from beamenv.configuration import Refused
+from beamenv.task import Task
+
+
+def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observation",)) -> Task:
+    """The task of the blade, or batch of blades, whose observations are their readings, whose actions their voltages if so asked.
+
+    Raises ``ValueError`` for an environment without blades, and for one with a wrapper that shows something else or acts otherwise.
+    """
+    kind: type[Any] = VectorEnv if of_batch else gymnasium.Env
+    task = getattr(env.unwrapped, "task", None) if isinstance(env, kind) else None
+    if not isinstance(task, Task):
+        raise Refused("env", env, "a batch of blades" if of_batch else "an environment with a blade")
+    for what in unchanged:
+        name = f"single_{what}_space" if of_batch else f"{what}_space"
+        if not _alike(getattr(env, name), getattr(env.unwrapped, name)):
+            shows = "shows the sensors' readings as they are" if what == "observation" else "takes voltages as the blade does"
+            raise Refused("env", env, f"one that {shows}: put what changes its {what}s around this wrapper, not into it")
+    return task
+
+
+def _alike(space: Any, own: Any) -> bool:
+    """Whether a space holds the same numbers, whatever their type."""
+    is_box = isinstance(space, Box) and space.shape == own.shape
+    return is_box and np.array_equal(space.low, own.low) and np.array_equal(space.high, own.high)

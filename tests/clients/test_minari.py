@@ -1,0 +1,31 @@
+"""Minari records episodes, stores the specification, and makes the same environment from it again."""
+
+import gymnasium
+import numpy as np
+import pytest
+
+import beamenv
+
+minari = pytest.importorskip("minari")
+
+
+def test_a_data_set_goes_round(tmp_path, monkeypatch):
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
+    blade = {"patches": {"actuators": np.array([0.3, 0.9])}}
+    recorded = minari.DataCollector(gymnasium.make(beamenv.ENV_ID, duration=0.01, blade=blade))
+    rng, seen = np.random.default_rng(0), []
+    for seed in range(2):
+        seen.append([recorded.reset(seed=seed)[0]])
+        truncated = False
+        while not truncated:
+            observation, _, _, truncated, _ = recorded.step(rng.uniform(-1.0, 1.0, 2).astype(np.float32))
+            seen[-1].append(observation)
+    made = recorded.create_dataset("beamenv/test-v0", algorithm_name="random")
+    assert made.total_steps == 40
+    again = minari.load_dataset("beamenv/test-v0")
+    env = again.recover_environment()
+    for seed, episode in enumerate(again.iterate_episodes()):
+        np.testing.assert_array_equal(episode.observations, seen[seed])
+        np.testing.assert_array_equal(env.reset(seed=seed)[0], episode.observations[0])
+        for step, action in enumerate(episode.actions):
+            np.testing.assert_array_equal(env.step(action)[0], episode.observations[step + 1])

@@ -1,0 +1,24 @@
+"""skrl wraps one blade, Gymnasium's vectorisations and the native batch."""
+
+import gymnasium
+import pytest
+
+import beamenv
+
+pytest.importorskip("skrl")
+
+
+@pytest.mark.parametrize("count", [None, 3])
+def test_its_wrapper_steps(count):
+    import torch
+    from skrl.envs.wrappers.torch import wrap_env
+
+    made = (
+        gymnasium.make(beamenv.ENV_ID, duration=0.01) if count is None else gymnasium.make_vec(beamenv.ENV_ID, count, duration=0.01)
+    )
+    env = wrap_env(made, wrapper="gymnasium")
+    observations, _ = env.reset()
+    assert observations.shape == (count or 1, 4)
+    for _ in range(20):
+        observations, rewards, terminated, truncated, _ = env.step(torch.zeros((count or 1, 4)))
+    assert truncated.all() and observations.dtype == torch.float32

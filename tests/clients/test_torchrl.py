@@ -1,0 +1,26 @@
+"""TorchRL collects from the environment, one blade or the native batch."""
+
+import gymnasium
+import numpy as np
+import pytest
+
+import beamenv
+
+torchrl_envs = pytest.importorskip("torchrl.envs")
+
+
+def test_a_single_blade_rolls_out():
+    rollout = torchrl_envs.GymEnv("beamenv:beamenv/RotatingBeam-v0", duration=0.01).rollout(30)
+    assert rollout["observation"].shape == (20, 4)
+    assert bool(rollout["next", "truncated"][-1])
+
+
+@pytest.mark.parametrize("mode", ["Disabled"])
+def test_the_native_batch_rolls_out_through_the_ends_of_episodes(mode):
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, autoreset_mode=mode, duration=0.01)
+    envs.reset(seed=0)
+    wrapped = torchrl_envs.GymWrapper(envs)
+    rollout = wrapped.rollout(50, break_when_any_done=False)
+    assert rollout["observation"].shape == (3, 50, 4)
+    ends = np.flatnonzero(rollout["next", "done"][0, :, 0].numpy())
+    np.testing.assert_array_equal(ends, [19, 39])
