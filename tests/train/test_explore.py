@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from baselines import closed_loop_poles, lqg
 from baselines.laws.lqg import sampled_design
@@ -18,12 +17,11 @@ from beamenv.blade.presets import THESIS
 from beamenv.plant.plant import drive_limit, sample
 from beamenv.plant.poles import poles_of_sampled
 from beamenv.scenarios.load_cases import static_deflection
-from train.cli.app import app as command
 
 pytest.importorskip("dash", reason="dash is not installed")
 go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")
 
-from train.explore import Settings, serve, view  # noqa: E402 - they need the packages asked for above
+from train.explore import Settings, view  # noqa: E402 - they need the packages asked for above
 from train.explore.app import create_app, redraw  # noqa: E402
 from train.explore.blade import CAMPBELL_SPEEDS, built  # noqa: E402
 from train.explore.layout import RANGES  # noqa: E402
@@ -236,35 +234,6 @@ def test_the_page_loads_nothing_from_elsewhere():
         if "explore" in source or "graph" in source:
             with client.get(source) as response:
                 assert response.status_code == 200
-
-
-def test_another_name_for_this_computer_is_not_answered():
-    client = create_app().server.test_client()
-    assert client.get("/", headers={"Host": "127.0.0.1:8050"}).status_code == 200
-    assert client.get("/", headers={"Host": "rebound.example"}).status_code == 400
-
-
-def test_the_server_is_bound_to_the_loopback_address_alone():
-    server = serve(0)
-    try:
-        assert server.socket.getsockname() == ("127.0.0.1", server.port)
-        with pytest.raises(ValueError, match=f"port = {server.port}"):
-            serve(server.port)
-    finally:
-        server.server_close()
-
-
-@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.2", "example.org"])
-def test_a_host_that_others_reach_is_refused_in_one_sentence(host):
-    result = CliRunner().invoke(command, ["explore", "--host", host, "--port", "0"])
-    assert result.exit_code == 2
-    assert result.stderr.count("\n") == 1
-    assert "loopback" in result.stderr
-
-
-def test_a_port_that_is_none_is_refused_in_one_sentence():
-    result = CliRunner().invoke(command, ["explore", "--port", "70000"])
-    assert (result.exit_code, result.stderr) == (2, "beamenv: port = 70000 must be from 0 to 65535.\n")
 
 
 @pytest.mark.parametrize("hidden", ["dash", "werkzeug"])

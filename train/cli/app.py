@@ -197,7 +197,8 @@ def explore(
         from train.explore import serve
 
         server = serve(port, host)
-    Console().print(f"http://{host}:{server.port} (Ctrl-C ends it)")
+    name = f"[{host}]" if ":" in host else host
+    Console().print(f"http://{name}:{server.port} (Ctrl-C ends it)", markup=False, highlight=False)
     server.serve_forever()
 
 

@@ -14,7 +14,7 @@ from beamenv.plant.plant import Plant
 from train.figures.figure import Curve, Look, Panel
 from train.figures.palette import BEHIND, INK
 from train.figures.panels import LearningCurves, learning_panel, pole_panel, voltage_curves
-from train.figures.paper import STYLE, draw_panel, handles, save
+from train.figures.paper import STYLE, draw_panel, handles, plain, save
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
             drawn = [_tip_panel(evaluation, episode, largest), _voltage_panel(evaluation, episode)]
             for axis, panel in zip((tip, volts), drawn, strict=True):
                 draw_panel(axis, panel)
-            cell.suptitle(f"{evaluation.name}: J = {_relative(evaluation, episode):.3f} of no control", fontsize=9)
+            cell.suptitle(f"{plain(evaluation.name)}: J = {_relative(evaluation, episode):.3f} of no control", fontsize=9)
         for cell in cells[len(evaluations) :]:
             cell.set_facecolor("none")
         entries = handles(drawn)

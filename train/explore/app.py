@@ -4,19 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib.resources import files
+from threading import Lock
 from typing import Any
 
 from dash import ClientsideFunction, Dash, Input, Output, html, no_update
+from dash.exceptions import DashException
 from threadpoolctl import threadpool_limits
+from werkzeug.exceptions import HTTPException, NotFound
+from werkzeug.wrappers import Response
 
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
 from train.explore.layout import CONTROLS, RANGES, layout
+from train.explore.requests import ANSWERED, OnlyThePage, told
 from train.figures.themes import THEMES
 
 SIDES = ("actuators", "sensors")
 SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
 """Ids of the small figures."""
+
+ONE_AT_A_TIME = Lock()
 
 PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -46,7 +53,9 @@ def create_app() -> Dash:
         compress=False,
     )
     app.index_string = PAGE.replace("THEME", theme())
-    app.server.config["TRUSTED_HOSTS"] = ["127.0.0.1", "[::1]", "localhost"]
+    app.server.register_error_handler(HTTPException, refusal)
+    app.server.register_error_handler(DashException, lambda _: refusal(NotFound()))
+    app.server.view_functions["/<path:path>"] = lambda path: refusal(NotFound())  # Dash gives the page under every name
     app.layout = layout()
     app.clientside_callback(
         ClientsideFunction("explore", "newest"), Output("wanted", "data"), [Input(name, "value") for name in CONTROLS]
@@ -55,7 +64,14 @@ def create_app() -> Dash:
     app.callback(outputs(), Input("wanted", "data"), running=[(Output("busy", "data"), True, False)], prevent_initial_call=True)(
         lambda wanted: redraw(**dict(zip(CONTROLS, wanted, strict=True)))
     )
+    (callback,) = (name for name in app.callback_map if name.startswith(".."))
+    app.server.wsgi_app = OnlyThePage(app.server.wsgi_app, callback)
     return app
+
+
+def refusal(error: HTTPException) -> Response:
+    """What Flask and Dash refuse, in one sentence."""
+    return told(f"{error.name.lower()}: {ANSWERED}.", error.code)
 
 
 def theme() -> str:
@@ -83,9 +99,10 @@ def outputs() -> dict[str, Any]:
 def redraw(**values: Any) -> dict[str, Any]:
     """Figures for the controls' values; for what makes no blade, one sentence in their place.
 
-    On one BLAS thread: matrices are so small that a second one makes it five times slower.
+    On one BLAS thread, for matrices are so small that a second one makes it five times slower; one redraw at a time, for that
+    limit is the whole process'.
     """
-    with threadpool_limits(limits=1):
+    with ONE_AT_A_TIME, threadpool_limits(limits=1):
         return drawn(values)
 
 

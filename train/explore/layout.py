@@ -6,16 +6,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, get_args
 
 from dash import dcc, html
 
 from beamenv.blade.presets import THESIS
+from beamenv.configuration import Number, Numbers
 from beamenv.patches.layout import OUTERMOST
-from train.explore.blade import CAMPBELL_MODES, HIGHEST_SPEED, MOTIONS, STEP_LOAD, Settings
+from train.explore.blade import CAMPBELL_MODES, HIGHEST_SPEED, MOTIONS, STEP_LOAD, Direction, Settings
 from train.figures.palette import PALETTE
 
 START = Settings()
+DIRECTIONS = get_args(Direction)
+ROUND_OFF = 1e-6
+"""How far a slider's last step may lie beyond its end, in its unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,12 @@ class Range:
         several = isinstance(self.value, list)
         slider = dcc.RangeSlider(id=name, **limits, pushable=APART) if several else dcc.Slider(id=name, **limits)
         return _control(self.label, html.Output(id=f"{name}-value"), slider)
+
+    @property
+    def kind(self) -> Number | Numbers:
+        """What its value may be."""
+        each = Number(ge=self.low - ROUND_OFF, le=self.high + ROUND_OFF, unit=self.unit)
+        return Numbers(each, len(self.value), len(self.value)) if isinstance(self.value, list) else each
 
     def text(self, value: float | list[float] | None) -> str:
         """A value as the page writes it, with its unit."""
@@ -96,7 +106,7 @@ def _introduction() -> str:
 
 
 def _controls() -> list[Any]:
-    choice = dcc.RadioItems(id="load", options=["lag", "flap"], value=START.load, inline=True)
+    choice = dcc.RadioItems(id="load", options=list(DIRECTIONS), value=START.load, inline=True)
     return [*(entry.control(name) for name, entry in RANGES.items()), _control(f"step load of {STEP_LOAD:g} N/m in", choice)]
 
 

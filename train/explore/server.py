@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import socket
-from ipaddress import ip_address
 from typing import Any
 
 from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 
+from beamenv.configuration import Count, Refused, checked
 from train.explore.app import create_app
+from train.explore.requests import is_loopback
 
 LOOPBACK = "127.0.0.1"
 
 
 class _Quiet(WSGIRequestHandler):
+    timeout = 10.0
+    """s: a request whose next bytes take longer is dropped."""
+
     def log_request(self, *_: Any, **__: Any) -> None:
         """No line for every slider's move."""
 
@@ -24,21 +28,12 @@ def serve(port: int, host: str = LOOPBACK) -> BaseWSGIServer:
     Raises ``ValueError`` for a host that is not loopback, and for a port that is none or cannot be had.
     """
     if not is_loopback(host):
-        raise ValueError(f"host = {host!r} must be a loopback address such as {LOOPBACK}: the page is for this computer alone.")
-    if not 0 <= port <= 65535:
-        raise ValueError(f"port = {port!r} must be from 0 to 65535.")
+        raise Refused("host", host, f"a loopback address such as {LOOPBACK}, for the page is for this computer alone")
+    port = checked("port", port, Count(0, 65535))
     try:
         bound = socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except OSError as error:
-        raise ValueError(f"port = {port!r} of {host} must be a free one, but: {error.strerror}.") from None
+        raise ValueError(f"port {port} of {host} cannot be had: {error.strerror}.") from None
     with bound:
         taken, wsgi = bound.getsockname()[1], create_app().server
         return make_server(host, taken, wsgi, threaded=True, request_handler=_Quiet, fd=bound.fileno())
-
-
-def is_loopback(host: str) -> bool:
-    """Whether an address, in digits, is this computer's own."""
-    try:
-        return ip_address(host).is_loopback
-    except ValueError:
-        return False

@@ -9,6 +9,7 @@ from typing import Any
 
 from beamenv.configuration.writing import write_whole
 from train.figures.figure import Curve, Marker, Panel, listed
+from train.shared.files import on_one_line
 
 STYLE: Mapping[str, Any] = {
     "font.size": 9,
@@ -61,6 +62,12 @@ def save(figure: Any, path: Path) -> None:
     write_whole(path, picture.getvalue())
 
 
+def plain(text: str) -> str:
+    """Text drawn as it stands: matplotlib sets what is between dollars as formulae, and lists no label that begins with _."""
+    line = on_one_line(text).replace("$", r"\$")
+    return f" {line}" if line.startswith("_") else line
+
+
 def draw_panel(axis: Any, panel: Panel) -> None:
     """A panel on a pair of axes."""
     for x in panel.marked:
@@ -68,8 +75,8 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     for curve in panel.curves:
         draw_curve(axis, curve)
     for note in panel.notes:
-        axis.text(note.x, note.y, note.text, ha="right", va="top")
-    axis.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+        axis.text(note.x, note.y, plain(note.text), ha="right", va="top")
+    axis.set(title=plain(panel.title), xlabel=plain(panel.x_label), ylabel=plain(panel.y_label))
     if panel.x_linear_within is not None:
         axis.set_xscale("symlog", linthresh=panel.x_linear_within)
     if panel.logarithmic:
@@ -110,4 +117,4 @@ def handles(panels: Sequence[Panel]) -> list[Any]:
     """The entries of a legend of some panels, one for each label."""
     from matplotlib.lines import Line2D
 
-    return [Line2D([], [], label=curve.label, **appearance(curve)) for curve in listed(panels)]
+    return [Line2D([], [], label=plain(curve.label), **appearance(curve)) for curve in listed(panels)]

@@ -8,7 +8,7 @@ import numpy as np
 
 from train.figures.heat_map import HeatMap
 from train.figures.palette import DARK_IS_BAD
-from train.figures.paper import STYLE
+from train.figures.paper import STYLE, plain
 from train.shared.columns import number, share
 
 RANGE = (0.35, 2.0)
@@ -55,14 +55,20 @@ def _write(axis: Any, content: HeatMap, line: int, column: int) -> None:
 
 def _label(axis: Any, content: HeatMap) -> None:
     """Names, the kinds above their columns with lines between them, and what the marks mean."""
-    axis.set_xticks(range(len(content.controllers)), content.controllers, rotation=35, ha="right", rotation_mode="anchor")
-    axis.set_yticks(range(len(content.scenarios)), content.scenarios)
+    axis.set_xticks(
+        range(len(content.controllers)),
+        [plain(name) for name in content.controllers],
+        rotation=35,
+        ha="right",
+        rotation_mode="anchor",
+    )
+    axis.set_yticks(range(len(content.scenarios)), [plain(name) for name in content.scenarios])
     axis.tick_params(length=0)
     for side in axis.spines.values():
         side.set_visible(False)
     for kind in dict.fromkeys(content.kinds):
         places = [index for index, each in enumerate(content.kinds) if each == kind]
-        axis.text(np.mean(places), -0.62, kind, ha="center", va="bottom", fontsize=8, style="italic")
+        axis.text(np.mean(places), -0.62, plain(kind), ha="center", va="bottom", fontsize=8, style="italic")
         if places[0]:
             axis.axvline(places[0] - 0.5, color="white", linewidth=3.0)
     axis.set_title(LEGEND, fontsize=8, pad=18)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from train.figures.figure import Curve, Limits, Panel
 from train.figures.palette import NEUTRAL
+from train.shared.files import on_one_line
 
 Array = NDArray[np.float64]
 
@@ -20,6 +22,11 @@ MARGIN = {"l": 62, "r": 16, "t": 16, "b": 48}
 WIDTH, SIGN_SIZE = 1.5, 9.0
 TICKS = np.array([-10000.0, -1000.0, -100.0, -10.0, 0.0, 10.0, 100.0, 1000.0])
 """Of an axis that is logarithmic on both sides."""
+
+
+def plain(text: str) -> str:
+    """Text that is shown as it stands: plotly takes tags in any text for markup, links among them."""
+    return escape(on_one_line(text), quote=False)
 
 
 def single(values: Array) -> NDArray[np.float32]:
@@ -70,8 +77,8 @@ def trace(curve: Curve, panel: Panel, row: int, compact: bool = False) -> dict[s
         **_abscissae(curve, panel, compact),
         "y": five_digits(curve.y) if compact else single(curve.y),
         "yaxis": f"y{_suffix(row)}",
-        "name": curve.label,
-        "legendgroup": curve.label,
+        "name": plain(curve.label),
+        "legendgroup": plain(curve.label),
         "showlegend": bool(curve.label) and curve.listed,
     }
     if curve.line != "points":
@@ -105,7 +112,7 @@ def _marker(curve: Curve) -> dict[str, Any]:
 
 def x_axis(panel: Panel) -> dict[str, Any]:
     """With label, limits and, where it is logarithmic on both sides, its ticks."""
-    axis: dict[str, Any] = {"title": {"text": panel.x_label}, **_range(panel.x_limits)}
+    axis: dict[str, Any] = {"title": {"text": plain(panel.x_label)}, **_range(panel.x_limits)}
     if panel.x_linear_within is not None:
         names = [f"{tick:g}".replace("-", "−") for tick in TICKS]
         axis |= {"tickvals": symmetric_logarithm(TICKS, panel.x_linear_within), "ticktext": names, "zeroline": False}
@@ -115,7 +122,7 @@ def x_axis(panel: Panel) -> dict[str, Any]:
 def y_axis(panel: Panel) -> dict[str, Any]:
     """With label, limits and scale."""
     scale = {"type": "log", "exponentformat": "power"} if panel.logarithmic else {}
-    return {"title": {"text": panel.y_label}, **_range(panel.y_limits), **scale}
+    return {"title": {"text": plain(panel.y_label)}, **_range(panel.y_limits), **scale}
 
 
 def _range(limits: Limits) -> dict[str, Any]:
@@ -138,9 +145,9 @@ def _upright(x: float, panel: Panel) -> dict[str, Any]:
 def _notes(panel: Panel, row: int) -> list[dict[str, Any]]:
     """The panel's title above it, then its notes."""
     above = {"xref": "paper", "x": 0.0, "xanchor": "left", "y": 1.0, "yanchor": "bottom", "showarrow": False}
-    title = [{**above, "text": panel.title, "yref": f"y{_suffix(row)} domain"}] if panel.title else []
+    title = [{**above, "text": plain(panel.title), "yref": f"y{_suffix(row)} domain"}] if panel.title else []
     beside = {"showarrow": False, "xanchor": "right", "yanchor": "top", "yref": f"y{_suffix(row)}"}
-    return title + [{"x": note.x, "y": note.y, "text": note.text, **beside} for note in panel.notes]
+    return title + [{"x": note.x, "y": note.y, "text": plain(note.text), **beside} for note in panel.notes]
 
 
 def _suffix(row: int) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from train.figures.heat_map import HeatMap
 from train.figures.palette import BETTER_OR_WORSE
+from train.figures.screen import plain
 from train.shared.columns import share
 
 Array = NDArray[np.float64]
@@ -36,8 +37,8 @@ def _coloured(content: HeatMap, cost: Array, reach: float) -> dict[str, Any]:
     """Cells with a finite cost."""
     return {
         "type": "heatmap",
-        "x": content.controllers,
-        "y": content.scenarios,
+        "x": [plain(name) for name in content.controllers],
+        "y": [plain(name) for name in content.scenarios],
         "z": np.log10(cost),
         "text": _texts(cost, content.failed),
         "customdata": cost,
@@ -80,8 +81,8 @@ def _lost(content: HeatMap) -> dict[str, Any]:
     return {
         "type": "scatter",
         "mode": "text",
-        "x": [content.controllers[column] for _, column in places],
-        "y": [content.scenarios[row] for row, _ in places],
+        "x": [plain(content.controllers[column]) for _, column in places],
+        "y": [plain(content.scenarios[row]) for row, _ in places],
         "text": [f"✕ {share(each)}" for each in shares],
         "customdata": shares,
         "hovertemplate": "%{y}<br>%{x}<br>blade failed in %{customdata:.1%} of episodes<extra></extra>",

@@ -14,6 +14,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.shape import Skin, body, edges, end_triangles, magnification, patch, side_triangles
 from beamenv.patches.layout import ACTUATOR_WALL
 from train.figures.palette import NEUTRAL
+from train.figures.screen import plain
 from train.page.recording import RecordedEpisode, Recording
 
 Array = NDArray[np.float64]
@@ -147,7 +148,7 @@ def _layout(blade: BladeConfig, half: float, limit: float, name: str) -> dict[st
     below = {"orientation": "h", "thickness": 10, "len": 0.8, "y": -0.02, "yanchor": "top"}
     bar = {"title": {"text": "voltage, V", "side": "top"}, **below}
     return {
-        "title": {"text": name, "x": 0.0, "xanchor": "left", "font": {"size": 15}},
+        "title": {"text": plain(name), "x": 0.0, "xanchor": "left", "font": {"size": 15}},
         "margin": {"l": 0, "r": 0, "t": 40, "b": 0},
         "scene": {
             "xaxis": {"title": {"text": "lag"}, **across},

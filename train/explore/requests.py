@@ -1,0 +1,144 @@
+"""What the server answers: the page's own files, and one callback with values that its controls can have."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from io import BytesIO
+from ipaddress import ip_address
+from threading import BoundedSemaphore
+from typing import Any
+from urllib.parse import urlsplit
+
+from werkzeug.exceptions import HTTPException
+from werkzeug.wrappers import Request, Response
+
+from beamenv.configuration import Choice, checked, shown
+from train.explore.layout import CONTROLS, DIRECTIONS, RANGES
+
+CALLBACK = "/_dash-update-component"
+LARGEST_BODY = 2**16
+"""Bytes; the page's own have some 2000."""
+MOST_AT_ONCE = 8
+"""Redraws asked for and not yet answered; one page asks for one."""
+ANSWERED = "the page's own files and one callback are all that is answered"
+
+
+class Unanswered(Exception):  # noqa: N818 - an answer, not an error of ours
+    """What is not asked as the page asks, with the status and the sentence that answer it."""
+
+    def __init__(self, status: int, sentence: str) -> None:
+        super().__init__(sentence)
+        self.status = status
+
+
+class OnlyThePage:
+    """A WSGI application behind which another one gets nothing but what the page itself asks; the rest has a 4xx and a sentence.
+
+    Hosts are names of this computer, so that no other site's name may be made to lead here. Bodies of the callback are read,
+    checked and written anew: what the application gets of them are the values of the controls, within the controls' ranges.
+    """
+
+    def __init__(self, application: Any, output: str) -> None:
+        self.application, self.output = application, output
+        self.free = BoundedSemaphore(MOST_AT_ONCE)
+
+    def __call__(self, environ: dict[str, Any], start_response: Any) -> Iterable[bytes]:
+        """Answer one request."""
+        request = Request(environ)
+        try:
+            check_host(request)
+            if request.path != CALLBACK:
+                check_method(request, "GET", "HEAD")
+                answer: Iterable[bytes] = self.application(environ, start_response)
+                return answer
+            return self.redrawn(request, environ, start_response)
+        except Unanswered as error:
+            return told(str(error), error.status)(environ, start_response)
+
+    def redrawn(self, request: Request, environ: dict[str, Any], start_response: Any) -> Iterable[bytes]:
+        """The callback's answer."""
+        body = json.dumps(self.body(wanted(content(request), self.output))).encode()
+        if not self.free.acquire(blocking=False):
+            raise Unanswered(429, f"{MOST_AT_ONCE} redraws are being made: ask again.")
+        try:
+            asked = {"wsgi.input": BytesIO(body), "CONTENT_LENGTH": str(len(body)), "CONTENT_TYPE": "application/json"}
+            return Response.from_app(self.application, environ | asked, buffered=True)(environ, start_response)
+        finally:
+            self.free.release()
+
+    def body(self, values: list[Any]) -> dict[str, Any]:
+        """What the page would send."""
+        outputs = [dict(zip(("id", "property"), each.rsplit(".", 1), strict=True)) for each in self.output.strip(".").split("...")]
+        inputs = [{"id": "wanted", "property": "data", "value": values}]
+        return {"output": self.output, "outputs": outputs, "inputs": inputs, "changedPropIds": ["wanted.data"]}
+
+
+def told(sentence: str, status: int | None) -> Response:
+    """A sentence that no browser takes for a page."""
+    return Response(f"{sentence}\n", status, {"X-Content-Type-Options": "nosniff"}, mimetype="text/plain")
+
+
+def is_loopback(host: Any) -> bool:
+    """Whether an address, in digits, is this computer's own."""
+    try:
+        return isinstance(host, str) and ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def check_host(request: Request) -> None:
+    """``Unanswered`` unless it is asked under a name that this computer alone has, and from no other site's page."""
+    name = _name(request.environ.get("HTTP_HOST", ""))
+    if not (name == "localhost" or is_loopback(name)):
+        raise Unanswered(400, "the page is for this computer alone: ask for it as localhost or under a loopback address.")
+    origin = request.headers.get("Origin")
+    if origin is not None and origin.partition("://")[2] != request.environ["HTTP_HOST"]:
+        raise Unanswered(403, "the page is for itself alone: another site's may not ask.")
+
+
+def _name(host: str) -> str | None:
+    """Without the port."""
+    try:
+        return urlsplit(f"//{host}").hostname if not set(host) & set("/?#@\\") else None
+    except ValueError:
+        return None
+
+
+def check_method(request: Request, *allowed: str) -> None:
+    """``Unanswered`` for another one."""
+    if request.method not in allowed:
+        raise Unanswered(405, f"method is {shown(request.method)}, but must be {' or '.join(allowed)} here: {ANSWERED}.")
+
+
+def content(request: Request) -> Any:
+    """What the body of a callback's request says in JSON."""
+    check_method(request, "POST")
+    length = request.content_length
+    if length is None or length > LARGEST_BODY:
+        raise Unanswered(413, f"the body must say how long it is, and be at most {LARGEST_BODY} bytes.")
+    try:
+        return json.loads(request.get_data())
+    except (ValueError, RecursionError):
+        raise Unanswered(400, "the body must be JSON.") from None
+    except (OSError, HTTPException):  # too long a pause, or the connection's end
+        raise Unanswered(408, "the body must come whole, and without a long pause.") from None
+
+
+def wanted(asked: Any, output: str) -> list[Any]:
+    """The controls' values in a callback's body."""
+    match asked:
+        case {"output": where, "inputs": [{"id": "wanted", "property": "data", "value": list(values)}]}:
+            if where == output and len(values) == len(CONTROLS):
+                return controlled(dict(zip(CONTROLS, values, strict=True)))
+    raise Unanswered(400, f"the body must ask for the page's outputs with the values of {', '.join(CONTROLS)}.")
+
+
+def controlled(values: Mapping[str, Any]) -> list[Any]:
+    """Values as the controls can have them."""
+    try:
+        read = {name: checked(name, values[name], entry.kind) for name, entry in RANGES.items()}
+        read["load"] = checked("load", values["load"], Choice(DIRECTIONS))
+    except ValueError as error:
+        raise Unanswered(400, str(error)) from None
+    return [list(value) if isinstance(value, tuple) else value for value in read.values()]
