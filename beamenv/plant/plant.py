@@ -163,6 +163,13 @@ class SampledPlant(ReadOnly):
 
         return sampled_to_control(self)
 
+    @classmethod
+    def from_control(cls, system: control.StateSpace, like: SampledPlant, **changes: Any) -> SampledPlant:
+        """A sampled plant with the dynamics of a ``control.StateSpace``, and all else as ``like`` has it; see ``interchange``."""
+        from beamenv.plant.interchange import sampled_from_control
+
+        return sampled_from_control(system, like, **changes)
+
 
 _ROWS = ("natural_frequencies", "sensor_full_scale")
 _ONES = ("control_interval", "interval", "electronic_states")
