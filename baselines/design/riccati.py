@@ -185,6 +185,7 @@ def _solved(equation: SampledEquation) -> tuple[Array, float]:
     return improved(equation, doubled(equation))
 
 
+@np.errstate(all="ignore")
 def doubled(equation: SampledEquation) -> Array:
     """The stabilising solution by the structure-preserving doubling algorithm; ``LinAlgError`` where it does not converge.
 
@@ -208,6 +209,7 @@ def doubled(equation: SampledEquation) -> Array:
     raise LinAlgError("doubling the interval does not converge")
 
 
+@np.errstate(all="ignore")
 def improved(equation: Equation, P: Array) -> tuple[Array, float]:
     """The solution that Newton's steps lead to from P (n, n), none where it is good already, and its relative residual."""
     residual = relative_residual(equation, P)

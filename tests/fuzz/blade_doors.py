@@ -140,7 +140,7 @@ DOORS = [
     constructor(
         PolygonSection,
         {"corners": [[0.0, 0.0], [0.2, 0.0], [0.1, 0.1]], "edge_walls": ["a", "b", "c"], "thickness": 0.001},
-        ("corners",),
+        ("corners", "edge_walls"),
         corners=CORNERS,
     ),
     constructor(

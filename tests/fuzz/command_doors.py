@@ -1,5 +1,6 @@
 """Doors of the command line: every option of every command, in this process, where the work itself is left out or small."""
 
+import os
 import shutil
 import warnings
 from contextlib import contextmanager
@@ -84,7 +85,7 @@ COMMANDS = {
             "--speed": "20",
             "--blade": "blade.toml",
         },
-        ("--resume",),
+        ("--resume", "--overwrite"),
         ("train.learning.job.follow",),
     ),
     "benchmark": (
@@ -128,7 +129,10 @@ def work_left_out(names):
     with warnings.catch_warnings(), pytest.MonkeyPatch.context() as patch, torch.random.fork_rng():  # a training seeds it
         for name in names:
             patch.setattr(name, reached)
+        settings = dict(os.environ)
         yield
+        os.environ.clear()
+        os.environ.update(settings)
 
 
 def invoked(command):
