@@ -15,6 +15,7 @@ from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, configuration
 from beamenv.patches import PatchLayout
+from beamenv.plant.read_only import sealed
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
 from train.explore.loops import Damping, StepResponses, damping, step_responses
@@ -120,7 +121,7 @@ def built(beam: BeamConfig, patches: PatchLayout) -> Blade:
 @lru_cache(maxsize=16)
 def campbell(beam: RotatingBeam) -> Array:
     """Natural frequencies (speeds, modes), rad/s."""
-    return frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES)
+    return sealed(frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES))
 
 
 def mode_shapes(beam: RotatingBeam, coefficients: NDArray[Any], half_chord: float) -> tuple[Array, NDArray[np.complex128]]:

@@ -22,6 +22,7 @@ from baselines.placement.model.triangles import packed
 from beamenv.blade.config import BladeConfig
 from beamenv.patches import force_per_span
 from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
+from beamenv.plant.read_only import ReadOnly
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
 from beamenv.structure.modes import normal_modes
@@ -40,7 +41,7 @@ EXTRA_COEFFICIENTS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Contributions:
+class Contributions(ReadOnly):
     """A blade at one speed in the coordinates in which its bare stiffness is the identity, and what patches add to it.
 
     The coordinates are its N modes, each divided by its frequency: K = I + ΔK, M = diag(1/ω²) + ΔM.
