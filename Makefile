@@ -6,7 +6,19 @@ ARGS ?=
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: help compare benchmark reproduce speed test slow pages lint docs format install clean
+# Libraries of others, each installed into an environment of its own beside this package, and what that takes.
+CLIENTS := minari rllib sbx skrl tianshou torchrl zoo
+QUICK_CLIENTS := minari torchrl
+REQUIRES_minari := minari[create,hdf5]
+REQUIRES_rllib := ray[rllib]
+REQUIRES_sbx := sbx-rl
+REQUIRES_skrl := skrl
+REQUIRES_tianshou := tianshou
+REQUIRES_torchrl := torchrl
+REQUIRES_zoo := rl_zoo3
+APART := build/apart
+
+.PHONY: help compare benchmark reproduce speed test slow pages clients quick-clients lowest newest lint docs format install clean
 .DELETE_ON_ERROR:
 
 help:
@@ -16,6 +28,8 @@ help:
 	@echo "make reproduce  regenerate the thesis' tables and figures and judge its statements"
 	@echo "make benchmark  every controller in every scenario on the same episodes"
 	@echo "make speed      measure steps per second beside Gymnasium's CartPole"
+	@echo "make clients    run the libraries of others on the environment, each installed apart; make quick-clients: the quick ones"
+	@echo "make lowest     install the lowest versions that are declared apart and run the tests; make newest: the newest"
 	@echo "make lint       check style and types; make format puts the style right"
 	@echo "make docs       build the documentation into build/site, warnings being errors"
 
@@ -30,6 +44,35 @@ slow: $(INSTALLED)
 
 pages: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow tests/train/test_page_in_browser.py tests/train/test_explore_in_browser.py $(ARGS)
+
+clients: quick-clients $(CLIENTS:%=client-%)
+
+# Stable-Baselines3 and skrl are in .venv; the wheel is built, installed apart and used by scripts called train.py.
+quick-clients: $(INSTALLED) $(QUICK_CLIENTS:%=client-%)
+	$(BIN)/python -m pytest -m "slow or not slow" tests/clients tests/test_wings.py $(ARGS)
+
+# torch as in .venv; else whatever the library itself asks for.
+client-%: | $(BIN)/python
+	@mkdir -p $(APART)
+	@test -x $(APART)/$*/bin/python || $(BIN)/python -m venv $(APART)/$*
+	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
+	$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/torch.txt torch pytest . '$(REQUIRES_$*)'
+	$(APART)/$*/bin/python -m pytest --confcutdir=tests/clients -m "slow or not slow" tests/clients/test_$*.py $(ARGS)
+
+# Tools at the versions of .venv, what the package itself runs on at the lowest that pyproject.toml declares.
+lowest: $(INSTALLED)
+	@mkdir -p $(APART)
+	@test -x $(APART)/lowest/bin/python || $(BIN)/python -m venv $(APART)/lowest
+	$(BIN)/python .ci/bounds.py > $(APART)/lowest.txt
+	$(APART)/lowest/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/lowest.txt '.[dev]'
+	$(APART)/lowest/bin/python -m pytest -W default $(ARGS)
+
+newest: | $(BIN)/python
+	@mkdir -p $(APART)
+	@test -x $(APART)/newest/bin/python || $(BIN)/python -m venv $(APART)/newest
+	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
+	$(APART)/newest/bin/python -m pip install --quiet --disable-pip-version-check --upgrade -c $(APART)/torch.txt '.[dev]'
+	$(APART)/newest/bin/python -m pytest $(ARGS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

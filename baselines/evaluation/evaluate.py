@@ -10,12 +10,13 @@ import numpy as np
 from gymnasium.vector import VectorEnv
 
 from baselines.design.controller import Array, ControllerArgument, as_controller, name_of
+from baselines.design.objects import instance
 from baselines.evaluation.episodes import Episodes, Progress, checked_progress, checked_seeds, roll_out
 from baselines.evaluation.fit import check_fit, made
 from baselines.evaluation.loop import Environment
 from baselines.evaluation.metrics import EpisodeMetrics, cost_without_control, finite, judged, measure, settling_band
 from baselines.evaluation.statistics import Estimate, interval, paired_draws
-from beamenv.configuration import Number, Refused, checked
+from beamenv.configuration import Number, checked
 
 WIDEST_BATCH = 1024
 
@@ -153,8 +154,7 @@ def checked_uncontrolled(reference: Episodes) -> Array:
 def _check_reference(reference: Any, seeds: tuple[int, ...]) -> None:
     if reference is None:
         return
-    if not isinstance(reference, Episodes):
-        raise Refused("reference", reference, "None, or the reference of an evaluation of the same episodes")
+    instance("reference", reference, Episodes, "None, or the reference of an evaluation of the same episodes")
     if reference.seeds != seeds:
         raise ValueError(f"reference has seeds {_abridged(reference.seeds)}, but the evaluation has {_abridged(seeds)}")
 

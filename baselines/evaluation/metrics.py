@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.design.controller import Array
+from baselines.design.matrix import real_matrix
+from baselines.design.objects import instance
 from baselines.evaluation.episodes import Episodes
 
 SETTLING_BAND = 0.05
@@ -15,6 +17,9 @@ SETTLING_BAND = 0.05
 
 REST = 0.2
 """Share of an episode, its end, whose mean is taken for the position the tip settles to."""
+
+
+EPISODES = "Episodes, such as roll_out returns"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,6 +59,8 @@ def finite(value: float) -> float | None:
 
 def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     """Metrics of each blade; ``band`` (N,) in m as ``settling_band`` gives it."""
+    instance("episodes", episodes, Episodes, EPISODES)
+    band = real_matrix("band", band, episodes.failed.shape)
     distance = np.linalg.norm(episodes.tip_displacement, axis=-1)
     magnitude = np.abs(episodes.voltages)
     low, high = 0.999 * episodes.voltage_limits  # single precision and tanh come near a limit without touching it
@@ -78,6 +85,7 @@ def cost_without_control(uncontrolled: Episodes) -> Array:
 
     So J₀ stays a number, where J of a blade that fails under a controller is infinite. ``judged`` says how the two meet.
     """
+    instance("uncontrolled", uncontrolled, Episodes, EPISODES)
     recorded = ~np.isnan(uncontrolled.cost)
     last = np.take_along_axis(uncontrolled.cost, recorded.sum(axis=0)[None] - 1, axis=0)[0]
     spent = np.nansum(uncontrolled.cost, axis=0)
@@ -97,6 +105,7 @@ def settling_band(uncontrolled: Episodes) -> Array:
 
     A blade that fails has none: then of the greatest response up to its failure.
     """
+    instance("uncontrolled", uncontrolled, Episodes, EPISODES)
     greatest = _excursion(uncontrolled).max(axis=0)
     response = np.nanmax(np.linalg.norm(uncontrolled.load_response, axis=-1), axis=0)
     return SETTLING_BAND * np.where(np.isfinite(greatest), greatest, response)

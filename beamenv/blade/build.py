@@ -16,7 +16,7 @@ from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
 from beamenv.structure import RotatingBeam
-from beamenv.structure.beam import OUT_OF_SCALE
+from beamenv.structure.scale import OUT_OF_SCALE
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,12 @@ like it (``counterparts``); one without such a counterpart is not seen in pictur
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +25,10 @@ from scipy.optimize import linear_sum_assignment
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import Refused
+from beamenv.blade.presets import THESIS
+from beamenv.configuration import Refused, read
+from beamenv.configuration.files import of_file
+from beamenv.configuration.sentence import shown
 from beamenv.plant.electronics import static_residual
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant
@@ -115,8 +122,8 @@ class GivenBlade(Blade):
 def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int | None) -> GivenBlade:
     """The blade of a configuration that moves as the first modes of a model do.
 
-    Raises ``ValueError`` of one sentence, which names the ``source``, where they have not equally many patches or not the same
-    speed, and for more modes than the model has.
+    Raises ``ValueError`` of one sentence, which names the ``source``, where they have not equally many patches, not the same
+    speed or other values of the fields that the model's ``blade`` tells, and for more modes than the model has.
     """
     there = len(model.natural_frequencies)
     if modes is not None and modes > there:
@@ -131,11 +138,54 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
         )
     if model.speed is not None and model.speed != config.speed:
         raise Refused("blade.speed", config.speed, f"that of the plant {source!r}, {model.speed:g} rad/s")
+    _check_alike(config, model, source)
     if model.strain is not None and config.strain_limit == "total":
         raise Refused(
             "blade.strain_limit", config.strain_limit, f"'vibration', for the plant {source!r} has strains of vibration alone"
         )
     return GivenBlade(config, model.first(modes))
+
+
+def _check_alike(config: BladeConfig, model: ModalPlant, source: str) -> None:
+    """``ValueError`` that names the fields in which a configuration is not the blade that a model says it is of."""
+    if not model.blade:
+        return
+    table = json.loads(model.blade)
+    with of_file(source):
+        told = dict(_leaves(_told(read(THESIS, table)), table))
+    here = dict(_leaves(_told(config), table))
+    differ = [name for name, value in told.items() if not _alike(value, here[name])]
+    if differ:
+        are = ", ".join(f"blade.{name} is {shown(here[name])}" for name in differ)
+        must = ", ".join(shown(told[name]) for name in differ)
+        raise ValueError(f"{are}, but must be {must}: of such a blade is the plant {source!r}.")
+
+
+def _told(config: BladeConfig) -> dict[str, Any]:
+    """The fields of a configuration, with patches where they are, however that was said."""
+    positions, length = {}, config.beam.length
+    positions["actuators"] = config.patches.actuator_positions(length)
+    positions["sensors"] = config.patches.sensor_positions(length)
+    whole = asdict(config)
+    return {**whole, "patches": {**whole["patches"], **positions}}
+
+
+def _leaves(values: Mapping[str, Any], like: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    """The values of those fields that another table has, by their paths."""
+    for name, other in like.items():
+        if isinstance(other, Mapping) and isinstance(values[name], Mapping):
+            yield from _leaves(values[name], other, f"{path}{name}.")
+        else:
+            yield f"{path}{name}", values[name]
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Equal, numbers but for rounding."""
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return len(one) == len(other) and all(map(_alike, one, other))
+    if isinstance(one, (int, float)) and isinstance(other, (int, float)):
+        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
+    return bool(one == other)
 
 
 def counterparts(given: Array, given_frequencies: Array, own: Array, own_frequencies: Array) -> Array:

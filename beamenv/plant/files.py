@@ -1,7 +1,7 @@
 """Plant files: NumPy's ``.npz`` with an array for each field of a ``ModalPlant``, in its units; and those that ship, by name.
 
 A file needs ``natural_frequencies``, ``gyroscopic``, ``actuation``, ``charges``, ``line_load`` and ``tip``; it may have ``strain``,
-``damping_ratio``, ``speed`` and ``origin``.
+``damping_ratio``, ``speed``, ``blade`` and ``origin``.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ are the sensed currents, and the tip displacement in lag and flap (m). Signs of 
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -49,6 +50,8 @@ class ModalPlant(ReadOnly):
     """ζ (r,), or one number for all; None: the blade's configuration says."""
     speed: float | None = None
     """rad/s: the rotor speed at which the modes were found; None: any."""
+    blade: str = ""
+    """The blade that it is of: JSON of a table as in a blade's file, of fields that a configuration must have alike; "": any."""
     origin: str = ""
     """Where the numbers come from, in words."""
 
@@ -73,6 +76,7 @@ class ModalPlant(ReadOnly):
             _keep(self, "damping_ratio", _checked_damping(self.damping_ratio, r))
         if self.speed is not None:
             _keep(self, "speed", checked("plant.speed", self.speed, Number(ge=0.0, unit="rad/s")))
+        _keep(self, "blade", _checked_blade(self.blade))
         _keep(self, "origin", checked("plant.origin", self.origin, Text()))
         ReadOnly.__post_init__(self)
 
@@ -115,6 +119,17 @@ def _checked_frequencies(plant: ModalPlant) -> int:
         raise Refused("plant.natural_frequencies", omega.tolist(), "positive numbers (rad/s) that ascend")
     _keep(plant, "natural_frequencies", omega)
     return len(omega)
+
+
+def _checked_blade(given: Any) -> str:
+    text = checked("plant.blade", given, Text())
+    try:
+        table = json.loads(text) if text else {}
+    except ValueError:
+        table = None
+    if not isinstance(table, dict):
+        raise Refused("plant.blade", given, "empty or the text of a JSON object, fields of a blade")
+    return text
 
 
 def _checked_damping(given: Any, modes: int) -> Array:

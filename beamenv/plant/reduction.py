@@ -66,12 +66,15 @@ def truncate(beam: RotatingBeam, speed: float, modes: int, gyroscopic: bool = Tr
     return ModalModel(frequencies, shapes, coupling)
 
 
-STRAIN_STATIONS = (AT_CLAMP, 0.25, 0.5, 0.75)
-"""Of the span: where strains are watched."""
+STRAIN_STATIONS = (AT_CLAMP, 0.025, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+"""Of the span: where strains are watched, some of the places of ``face_strain``; close together towards the clamp, which puts the
+largest strains of balanced plies at a little distance from it. Of boxes of the thesis' proportions the largest strain of each of
+the first eleven modes is then watched within 6.5 %, mostly 3 %, and the steady state's, which `info` tells, within 0.2 %. Modes in
+which the walls of a shorter box bend may have twice the strain elsewhere."""
 
 
 def surface_strain(beam: RotatingBeam, speed: float) -> Array:
-    """(k, N): spanwise strain at the outer face of every wall point, at the root and at each quarter of the span."""
+    """(k, N): spanwise strain at the outer face of every wall point, at each of ``STRAIN_STATIONS``."""
     rows = beam.surface_strain(beam.length * np.array(STRAIN_STATIONS), speed)
     return rows.reshape(-1, rows.shape[-1])
 

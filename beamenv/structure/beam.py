@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cached_property
 from typing import Annotated
 
@@ -18,6 +16,7 @@ from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import Planform, SectionsAlong
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
+from beamenv.structure.scale import OUT_OF_SCALE, in_scale
 from beamenv.structure.section.section import THEORY, Metres, Section, SpanWalls
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
 from beamenv.structure.walls.contour import Inlay
@@ -38,9 +37,9 @@ CLAMP_PIECE = 5.0
 SHORTEST = 1e-9
 """Of the span: what lies closer together is in one place."""
 
-OUT_OF_SCALE = "one of its numbers is too large or too small beside the others."
-
 TERMS = Count(1, 30)
+
+SPEED = Number(ge=0.0, unit="rad/s")
 
 
 @configuration("beam", slots=False, eq=False)
@@ -114,7 +113,7 @@ class RotatingBeam:
     @cached_property
     def matrices(self) -> BeamMatrices:
         """M, K_e, K_Ω, G₁: assembled once, good at any speed; under the stresses of a linear steady state in the blade's model."""
-        with in_scale():
+        with in_scale("beam"):
             matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
@@ -130,16 +129,18 @@ class RotatingBeam:
         return [edge for inlay in self.inlays for edge in (inlay.start, inlay.start + inlay.length)]
 
     def at(self, speed: float) -> OperatingPoint:
-        """M, K, G and the steady state at a speed, rad/s; ``ValueError`` where there is none below the critical speed.
+        """M, K, G and the steady state at a speed, rad/s; ``ValueError`` for a negative one, and where there is none below the
+        critical speed.
 
         From the critical speed on, and in the thesis' model, K_e + Ω² K_Ω and Ω G₁.
         """
+        speed = checked("speed", speed, SPEED)
         if self.model == "thesis" or speed >= self.critical_speed:
             matrices = self.matrices
             return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
         known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_points", {})
         if speed not in known:
-            with in_scale():
+            with in_scale("beam"):
                 point = self.exact.at(speed)
             if len(known) > 1:  # one speed and rest are asked for in turn
                 del known[next(each for each in known if each != 0.0)]
@@ -203,7 +204,7 @@ class RotatingBeam:
         return Modes(frequencies, full, families, participation)
 
     def _selected(self, speed: float, count: int, motions: tuple[str, ...] | None) -> tuple[OperatingPoint, int]:
-        speed = checked("speed", speed, Number(ge=0.0, unit="rad/s"))
+        speed = checked("speed", speed, SPEED)
         columns = self.space.columns(motions)
         count = checked("count", count, Count(1, len(columns)))
         return self.at(speed) if motions is None else self.at(speed).restricted(columns), count
@@ -245,18 +246,6 @@ class RotatingBeam:
         stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
-
-
-@contextmanager
-def in_scale() -> Iterator[None]:
-    """``ValueError`` in one sentence for numbers of a beam that leave no digits or no finite ones to compute with."""
-    try:
-        with np.errstate(all="ignore"):
-            yield
-    except Refused:
-        raise
-    except (ValueError, OverflowError, np.linalg.LinAlgError):
-        raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}") from None
 
 
 def check_inlays(beam: RotatingBeam) -> None:

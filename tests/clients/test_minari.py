@@ -8,6 +8,8 @@ import beamenv
 
 minari = pytest.importorskip("minari")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 
 def test_a_data_set_goes_round(tmp_path, monkeypatch):
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))

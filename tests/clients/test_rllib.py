@@ -5,6 +5,8 @@ import pytest
 
 pytest.importorskip("ray.rllib")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 ENV_ID = "beamenv:beamenv/RotatingBeam-v0"
 
 

@@ -7,6 +7,8 @@ import beamenv
 
 sbx = pytest.importorskip("sbx")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 
 @pytest.mark.parametrize("algorithm", ["SAC", "PPO"])
 def test_it_trains_on_the_blade(algorithm):

@@ -7,6 +7,8 @@ import beamenv
 
 pytest.importorskip("skrl")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 
 @pytest.mark.parametrize("count", [None, 3])
 def test_its_wrapper_steps(count):

@@ -8,6 +8,8 @@ import beamenv
 
 stable_baselines3 = pytest.importorskip("stable_baselines3")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 
 @pytest.mark.parametrize("kind", ["DummyVecEnv", "SubprocVecEnv"])
 def test_its_vectorisations_step_and_learn(kind):

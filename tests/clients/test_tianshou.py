@@ -8,6 +8,8 @@ import beamenv  # noqa: F401 - registers
 
 pytest.importorskip("tianshou")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 
 def test_its_vectorisations_step_the_blade():
     from tianshou.env import DummyVectorEnv, SubprocVectorEnv

@@ -8,6 +8,8 @@ import beamenv
 
 torchrl_envs = pytest.importorskip("torchrl.envs")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 
 def test_a_single_blade_rolls_out():
     rollout = torchrl_envs.GymEnv("beamenv:beamenv/RotatingBeam-v0", duration=0.01).rollout(30)

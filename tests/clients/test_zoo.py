@@ -9,6 +9,8 @@ import pytest
 
 pytest.importorskip("rl_zoo3")
 
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+
 SETTINGS = Path(__file__).parents[2] / "train" / "learning" / "zoo" / "ppo.yml"
 
 

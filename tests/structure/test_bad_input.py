@@ -124,6 +124,14 @@ REFUSED = {
         lambda: blade(taper=6.0),
         r"beam.section.thickness is 0\.01, but must be below 0\.00846667 m at its narrow end",
     ),
+    "speed of an operating point": (
+        lambda: blade().at(-100.0),
+        r"speed is -100\.0, but must be zero or a positive number \(rad/s\)",
+    ),
+    "speed of an operating point as text": (
+        lambda: blade(model="thesis").at("fast"),
+        "speed is 'fast', but must be zero or a positive number",
+    ),
     "negative speed": (
         lambda: blade().natural_frequencies(-1.0),
         r"speed is -1\.0, but must be zero or a positive number \(rad/s\)",

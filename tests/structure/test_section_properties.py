@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection, RotatingBeam
 from beamenv.structure.section import central_solution, element_sums, elements
 from beamenv.structure.section.mesh import ring
 from beamenv.structure.section.solid_sections import SolidSections
@@ -235,3 +235,46 @@ def pretwisted_sections(rate):
     mesh = ring(THICK_BOX.vertices[None], THICK_BOX.walls, THICK_BOX.thickness)
     laminate = Laminate.equal_plies(ISOTROPIC.plies("top"), THICK_BOX.thickness)
     return SolidSections.build(mesh, [laminate], np.zeros((1, len(mesh.edges)), dtype=int), rate)
+
+
+def thin_walled(box):
+    """EA, EI in flap and in lag of a hollow rectangle, and GJ by Bredt and the walls' own torsion."""
+    w, d, t = box.width, box.depth, box.thickness
+    torsion = 2.0 * (w * d) ** 2 * t / (w + d) + 2.0 * (w + d) * t**3 / 3.0
+    return E * np.array([2.0 * (w + d) * t, *second_moments(box)]), G * torsion
+
+
+@pytest.mark.parametrize(("width", "depth"), [(0.254, 0.0508), (1.0, 0.12)])
+@pytest.mark.parametrize("share", [1e-3, 3e-4, 1e-4])
+def test_very_thin_walls_have_the_stiffness_of_thin_wall_theory(width, depth, share):
+    """EA and EI to eight digits; GJ within the corners' share, of the order of the thickness over the depth."""
+    box = BoxSection(width, depth, share * width)
+    direct, torsion = thin_walled(box)
+    stiffness = np.diagonal(box.properties(ISOTROPIC).classical_stiffness)
+    np.testing.assert_allclose(stiffness[:3], direct, rtol=1e-8)
+    assert stiffness[3] == pytest.approx(torsion, rel=1e-3)
+
+
+@pytest.mark.parametrize("thickness", [1e-4, 2.54e-5])
+def test_very_thin_composite_walls_pull_as_their_plies_do(thickness):
+    box = BoxSection(0.254, 0.0508, thickness)
+    pull = box.properties(Layup.uniform(GRAPHITE_EPOXY, [90])).classical_stiffness[0, 0]
+    assert pull == pytest.approx(GRAPHITE_EPOXY.E1 * 2.0 * (box.width + box.depth) * thickness, rel=1e-8)
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-8, 1e-12])
+def test_walls_too_thin_for_the_digits_there_are_refused(share):
+    with pytest.raises(ValueError, match="thickness is .*, but must be large enough beside the section, and plies near enough"):
+        BoxSection(1.0, 0.12, share).properties(ISOTROPIC)
+
+
+def test_thin_walls_whose_warping_under_pretwist_is_not_found_are_refused():
+    blade = RotatingBeam(section=BoxSection(0.254, 0.0508, 0.000254), layup=ISOTROPIC, length=2.023, pretwist_deg=30.0)
+    with pytest.raises(ValueError, match="thickness is 0.000254, but must be large enough beside the section for a pretwist of"):
+        blade.natural_frequencies()
+    assert replace(blade, pretwist_deg=0.0).natural_frequencies(count=1) > 0.0
+
+
+def test_a_section_of_numbers_out_of_scale_is_refused():
+    with pytest.raises(ValueError, match="section cannot be computed: one of its numbers is too large or too small"):
+        BoxSection(1e200, 1e199, 1e198).properties(ISOTROPIC)

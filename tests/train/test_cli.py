@@ -11,6 +11,7 @@ from beamenv.blade.build import build_beam
 from beamenv.blade.presets import blade_config
 from beamenv.structure.steady_deformation import steady_deformation
 from train.cli.app import app
+from train.shared.interruption import Interrupted
 
 COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")
 
@@ -116,6 +117,12 @@ def test_a_training_goes_on_where_it_stopped(tmp_path, monkeypatch):
     assert "holds a training already" in again.stderr
     assert run(*arguments, "--resume").exit_code == 0
     assert (home / "weights.npz").read_bytes() == weights
+    assert run(*arguments[:-1], "8").exit_code == 0
+    other = run(*arguments[:-1], "8", "--folder", str(home))
+    assert other.exit_code == 2
+    assert (home / "weights.npz").read_bytes() == weights
+    assert run(*arguments[:-1], "8", "--folder", str(home), "--overwrite").exit_code == 0
+    assert (home / "weights.npz").read_bytes() != weights
 
 
 def test_a_comparison_prints_json_alone(tmp_path):
@@ -164,3 +171,13 @@ def test_a_training_seed_of_what_has_none_is_refused_and_not_ignored():
     refused = CliRunner().invoke(app, ["evaluate", "lqg", "--seeds", "2", "--trained-seed", "3"])
     assert refused.exit_code == 2
     assert refused.stderr == "beamenv: trained_seed is 3, but must be left out, for 'lqg' is no agent that ships.\n"
+
+
+@pytest.mark.parametrize(("interruption", "status"), [(KeyboardInterrupt(), 130), (Interrupted(15), 143), (Interrupted(2), 130)])
+def test_an_interruption_gets_one_sentence_and_the_status_that_shells_know(interruption, status, monkeypatch):
+    def interrupted():
+        raise interruption
+
+    monkeypatch.setattr("train.cli.speed.measured", interrupted)
+    result = run("speed")
+    assert (result.exit_code, result.stdout, result.stderr) == (status, "", "beamenv: interrupted.\n")

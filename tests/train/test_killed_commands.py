@@ -13,6 +13,9 @@ import numpy as np
 import pytest
 
 from train.learning.checkpoint import NAME as CHECKPOINT
+from train.learning.job import Job, run
+from train.learning.recipe import load_recipe
+from train.learning.session import Budget
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 
@@ -106,13 +109,15 @@ def events(folder):
 def test_a_training_that_is_killed_or_told_to_end_goes_on_to_the_same_weights(tmp_path):
     arguments = train_of(GRADIENT, tmp_path / "brief.toml")
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    finished(*arguments(whole))
+    recipe = load_recipe(tmp_path / "brief.toml")
+    job = Job("mine", recipe, "nominal", 0, Budget(updates=recipe.updates), {"preset": "thesis"})
+    run(job, whole, lambda progress: None)
     generator = random.Random(0)
     for number in (signal.SIGKILL, signal.SIGTERM):
         earlier = events(broken)
         ended(number, generator.uniform(0.0, 0.3), *arguments(broken), ready=lambda earlier=earlier: events(broken) > earlier)
         assert_whole(broken)
-    finished(*arguments(broken))
+    run(job, broken, lambda progress: None, resume=True)
     assert weights(broken) == weights(whole)
     assert not [path for path in broken.iterdir() if path.name.startswith(".")]
 
@@ -127,7 +132,7 @@ def cells(folder):
 
 def commands(tmp_path):
     """By name: arguments for a folder, and what must be the same in the end."""
-    choice = ("--scenario", "nominal", "--scenario", "delay", "--controller", "lqr", "--controller", "ppo", "--seeds", "2")
+    choice = ("--scenario", "nominal", "--scenario", "delay", "--controller", "lqr", "--seeds", "2")
     return {
         "train-gradient": (train_of(GRADIENT, tmp_path / "gradient.toml"), weights),
         "train-ppo": (train_of(PPO, tmp_path / "ppo.toml"), weights),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
@@ -16,7 +15,7 @@ import beamenv
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.blade.presets import blade_config
-from beamenv.configuration import Count, FileName, Flag, Refused, Table, Text, Texts, checked, checked_table, shown
+from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.scenario import Scenario, scenario
 from train.benchmark.bench import Setting
@@ -27,7 +26,7 @@ from train.benchmark.runner import run
 from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
-from train.shared.files import check_folder
+from train.shared.files import as_path, check_folder
 from train.shared.held_out import SEEDS, held_out
 from train.shared.lock import alone_in
 from train.shared.versions import versions
@@ -77,7 +76,7 @@ def benchmark(
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
     scenarios = None if scenarios is None else checked("scenarios", scenarios, Texts())
-    folder, trained = None if folder is None else _path("folder", folder), _path("trained", trained)
+    folder, trained = None if folder is None else as_path("folder", folder), as_path("trained", trained)
     models = [Path(each) for each in checked("models", models, Texts())]
     if folder is not None:
         check_folder(folder)
@@ -100,10 +99,6 @@ def benchmark(
         if folder is not None:
             write_all(folder, table)
     return table
-
-
-def _path(name: str, value: Any) -> Path:
-    return Path(checked(name, os.fspath(value) if isinstance(value, os.PathLike) else value, Text()))
 
 
 def check_paths(queue: Sequence[Job]) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
+from baselines.design.objects import instance, optional_instance
 from beamenv.blade.files import to_dict
 from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
 from beamenv.plant.plant import Plant
@@ -28,7 +29,7 @@ from train.learning.job import Job, run
 from train.learning.recipe import Recipe
 from train.learning.session import Budget
 from train.learning.training import Progress
-from train.shared.files import read_json, write_json
+from train.shared.files import as_path, read_json, write_json
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
 from train.shared.interruption import ending_as_interrupted
 from train.shared.lock import alone_in
@@ -80,6 +81,9 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     are not trained again. ``ValueError`` if it holds another comparison, or another process is at work in it. An interruption ends
     all of it at once, as ``Interrupted`` where an agent is being trained: its checkpoint is kept, and no half-trained agent.
     """
+    instance("comparison", comparison, Comparison, "a Comparison")
+    optional_instance("listener", listener, Listener, "a Listener")
+    folder = as_path("folder", folder)
     with alone_in(folder), ending_as_interrupted():
         return _compare(comparison, folder, listener or Listener())
 

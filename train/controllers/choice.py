@@ -41,7 +41,7 @@ def _is_folder(name: str) -> bool:
 def _by_name(name: str, task: Task, scenario: str, seed: int | None) -> Controller:
     own = set() if name in discover() else {each.scenario for each in shipped() if each.agent == name}
     if own:
-        return load_shipped(name, scenario if scenario in own else "generalist", seed, task.design_plant)
+        return load_shipped(name, scenario if scenario in list(own) else "generalist", seed, task.design_plant)
     if seed is not None:
         raise Refused("trained_seed", seed, f"left out, for {name!r} is no agent that ships")
     return named(name).build_for(task)

@@ -17,6 +17,7 @@ from baselines.design.controller import name_of
 from baselines.design.predicting import observed
 from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant, normalised
+from train.shared.files import as_path
 
 Array = NDArray[np.floating[Any]]
 
@@ -34,6 +35,7 @@ UNTRUSTED = (
 
 def load_model(path: Path) -> Any:
     """The model in a file, of whichever algorithm takes it; ``ValueError`` if none does. Loading may run code in the file."""
+    path = as_path("model", path)
     if not (path.is_file() and is_zipfile(path)):
         raise ValueError(f"model {path.name!r} must be a .zip file saved by Stable-Baselines3, but is none, or is not there.")
     tried = []

@@ -10,6 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from baselines.design.instruments import checked_plant
 from beamenv.configuration import Choice, Refused, Text, checked
 from beamenv.configuration.files import of_file, parsed_arrays
 from beamenv.configuration.writing import write_whole
@@ -18,7 +19,7 @@ from beamenv.plant.plant import Plant, normalised
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
 from train.controllers.policy_parts import checked_settings, checked_weights, limits
-from train.shared.files import read_json, write_json
+from train.shared.files import as_path, read_json, write_json
 
 KINDS: Mapping[str, type[Policy]] = {kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, ResidualPolicy, LSTMPolicy)}
 
@@ -44,6 +45,7 @@ def save_policy(policy: Policy, folder: Path, about: Mapping[str, Any] | None = 
 
 def read_about(folder: Path) -> dict[str, Any]:
     """What ``agent.json`` says; ``ValueError`` if it is not there, or is no such file."""
+    folder = as_path("folder", folder)
     path = folder / "agent.json"
     if not path.is_file():
         runs = sorted(str(each.parent) for each in folder.glob("*/agent.json"))
@@ -67,9 +69,9 @@ def load_policy(folder: Path, plant: Plant | None = None) -> Policy:
     Raises ValueError of one sentence, with the file's name in it, if there is none, if files are damaged or hold what no policy can
     act by, and if it was trained on other plants than ``plant``.
     """
-    about = read_about(folder)
+    folder, about = as_path("folder", folder), read_about(folder)
     if plant is not None:
-        _check_plant(about, folder, plant)
+        _check_plant(about, folder, checked_plant(plant))
     path = folder / "weights.npz"
     with of_file(folder / "agent.json"):
         name, lowest, highest = checked("name", about["name"], Text()), *limits(about["lowest"], about["highest"])

@@ -6,11 +6,14 @@ import csv
 from collections.abc import Mapping
 from pathlib import Path
 
+from train.shared.files import as_path
+
 AGENT = "agent.json"
 
 
 def runs_in(folder: Path) -> Mapping[str, Path]:
     """The folders of all runs by their numbers, in their order; {"": folder} if the folder is that of one agent, or of none."""
+    folder = as_path("folder", folder)
     found = {path.parent.name: path.parent for path in folder.glob(f"*/{AGENT}") if path.parent.name.isdecimal()}
     if (folder / AGENT).exists() or not found:
         return {"": folder}

@@ -8,6 +8,7 @@ from pathlib import Path
 from beamenv.plant.plant import Plant
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy
+from train.shared.files import as_path
 
 FOLDER = Path(__file__).parent / "trained"
 """<agent>/<scenario or generalist>/<seed>/ with ``agent.json``, ``weights.npz`` and ``learning.csv``."""
@@ -25,7 +26,7 @@ class Shipped:
 
 def shipped(folder: Path = FOLDER) -> list[Shipped]:
     """All of them, by agent, scenario and seed."""
-    homes = [path.parent for path in folder.glob("*/*/*/agent.json")]
+    homes = [path.parent for path in as_path("folder", folder).glob("*/*/*/agent.json") if path.parent.name.isdecimal()]
     found = [Shipped(home.parent.parent.name, home.parent.name, int(home.name), home) for home in homes]
     return sorted(found, key=lambda each: (each.agent, each.scenario, each.seed))
 
@@ -33,7 +34,7 @@ def shipped(folder: Path = FOLDER) -> list[Shipped]:
 def find_shipped(agent: str, scenario: str, seed: int | None = None, folder: Path = FOLDER) -> Shipped:
     """That of an agent, a scenario and a training seed, the first if None; ``ValueError`` lists what there is."""
     every = shipped(folder)
-    if agent not in {each.agent for each in every}:
+    if not isinstance(agent, str) or agent not in {each.agent for each in every}:
         names = ", ".join(sorted({each.agent for each in every})) or "none at all"
         raise ValueError(f"agent = {agent!r} must be one of those that ship with the package: {names}.")
     own = [each for each in every if each.agent == agent and each.scenario == scenario]

@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import secrets
 import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from beamenv.configuration import Refused
 from beamenv.configuration.writing import write_whole
 
 SPACE = 16_000_000
@@ -79,6 +81,14 @@ def read_json(path: Path) -> Any:
         raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"file {str(path)!r} cannot be read: {error}.") from None
+
+
+def as_path(name: str, value: Any) -> Path:
+    """A path, or the text of one; ``ValueError`` names what is neither."""
+    text = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(text, str) or "\0" in text:
+        raise Refused(name, value, "a path")
+    return Path(text)
 
 
 def write_json(path: Path, content: Any) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
+from beamenv.configuration import Refused
 from beamenv.structure.section.element_sums import ElementSums
 from beamenv.structure.section.elements import ACROSS, RIGID
 
@@ -34,6 +35,18 @@ CYCLES = 8
 """Most extrapolations."""
 
 CONVERGED = 1e-6
+
+UNSETTLED = 1e-3
+"""Largest change of the beam strain in the last pass, relative to the largest, of a solution that is taken at all."""
+
+CORRECTIONS = 4
+"""Most of a solution; of a blade's sections one is made, of 10⁻¹⁰ of the solution."""
+
+EXACT = 1e-8
+"""Part of a solution that is not worth another correction."""
+
+DOUBT = 1e-3
+"""Largest part of a solution that its last correction may be: displacements are so uncertain then, stiffnesses by its square."""
 
 
 def equilibrium(pretwist: float) -> Array:
@@ -56,16 +69,18 @@ class Factorised:
     """(V, K, i, b + 6): between the inside, and the two ends of the element and the beam strain."""
     factors: tuple[tuple[Array, NDArray[np.int32]], ...]
     scale: Array
-    """(V,): unit of beam strain equations."""
+    """(V, 12 K + 6): units of displacements on lines and of beam strain, in which every equation has 1 on its diagonal."""
+    held: Array
+    """(V, 12 K, 6): averages of the lines' rigid motion, in their units, of which the squares are added to the energy."""
 
     @classmethod
     def of(cls, sums: ElementSums) -> Factorised:
-        """With whatever rigid motion leaves no energy held at zero on average."""
+        """With whatever rigid motion leaves no energy held at zero on average; ``ValueError`` where walls are too thin for that."""
         size = sums.size
         ends, inside = _ends(size), slice(PER_LINE, size - PER_LINE)
         stiffness = sums.warping
         full = np.concatenate([stiffness, sums.beam_strain], axis=-1)
-        inner = np.asarray(np.linalg.inv(stiffness[..., inside, inside]), dtype=np.float64)
+        inner = _inverse(sums, stiffness[..., inside, inside])
         columns = np.concatenate([ends, size + np.arange(RIGID)])
         coupling = full[..., inside, :][..., columns]
         bordered = np.zeros((*stiffness.shape[:2], len(columns), len(columns)))
@@ -73,30 +88,60 @@ class Factorised:
         bordered[..., len(ends) :, : len(ends)] = sums.beam_strain[..., ends, :].swapaxes(-1, -2)
         bordered[..., len(ends) :, len(ends) :] = sums.beam
         bordered -= coupling.swapaxes(-1, -2) @ inner @ coupling
-        scale = np.sqrt(np.trace(bordered.sum(axis=1)[..., len(ends) :, len(ends) :], axis1=-2, axis2=-1))
-        systems = (_assembled(each, sums.rigid_lines[v], scale[v]) for v, each in enumerate(bordered))
-        return cls(sums, inner, coupling, tuple(lu_factor(system, check_finite=False) for system in systems), scale)
+        systems = [_assembled(each) for each in bordered]
+        scale = np.stack([_unit(sums, system) for system in systems])
+        held = sums.rigid_lines * scale[:, :-RIGID, None]
+        held /= np.linalg.norm(held, axis=1, keepdims=True)
+        factors = tuple(_factors(*each) for each in zip(systems, scale, held, strict=True))
+        return cls(sums, inner, coupling, factors, scale, held)
 
     @property
     def first(self) -> Factorised:
         """That of the first section alone."""
-        return Factorised(self.sums.first, self.inner[:1], self.coupling[:1], self.factors[:1], self.scale[:1])
+        return Factorised(self.sums.first, self.inner[:1], self.coupling[:1], self.factors[:1], self.scale[:1], self.held[:1])
 
     def solve(self, loads: Array, resultants: Array) -> tuple[Array, Array]:
         """Warping (V, lines, 12, c) and beam strain (V, 6, c) under nodal loads of the elements (V, K, size, c), not yet added up
-        where they meet, and resultants (V, 6, c).
+        where they meet, and resultants (V, 6, c); ``ValueError`` where walls are so thin that too few digits are left.
+
+        What a solution leaves over is solved for in its turn, which tells by how much it was wrong.
         """
+        sums = self.sums
+        warping, strain = self._solve(loads, resultants, np.zeros((len(loads), RIGID, loads.shape[-1])))
+        for _ in range(CORRECTIONS):
+            here, whole, solved = sums.gather(warping), strain[:, None], self._in_units(warping, strain)
+            left = loads - sums.warping @ here - sums.beam_strain @ whole
+            missing = resultants - (sums.beam_strain.swapaxes(-1, -2) @ here + sums.beam @ whole).sum(axis=1)
+            correction, more = self._solve(left, missing, self.held.swapaxes(-1, -2) @ solved[:, :-RIGID])
+            wrong, size = (np.linalg.norm(each, axis=1) for each in (self._in_units(correction, more), solved))
+            warping, strain = warping + correction, strain + more
+            if np.all(wrong <= EXACT * size):
+                break
+        if not np.all(wrong <= DOUBT * size):
+            raise _too_thin(sums)
+        return warping, strain
+
+    def _in_units(self, warping: Array, strain: Array) -> Array:
+        """(V, 12 K + 6, c): displacements of the ends of elements and beam strain."""
+        order = self.sums.lines // self.inner.shape[1]
+        ends = warping[:, ::order].reshape(len(warping), -1, warping.shape[-1])
+        return np.asarray(np.concatenate([ends, strain], axis=1) / self.scale[..., None])
+
+    def _solve(self, loads: Array, resultants: Array, rigid: Array) -> tuple[Array, Array]:
+        """Once, and with the rigid motion (V, 6, c) taken back by which a first solution was held."""
         size = self.sums.size
         inside = slice(PER_LINE, size - PER_LINE)
         freed = self.inner @ loads[..., inside, :]
         passed = self.coupling.swapaxes(-1, -2) @ freed
         on_ends = loads[..., _ends(size), :] - passed[..., : 2 * PER_LINE, :]
         lines = on_ends[..., :PER_LINE, :] + np.roll(on_ends[..., PER_LINE:, :], 1, axis=1)
-        strain_loads = (resultants - passed[..., 2 * PER_LINE :, :].sum(axis=1)) * (1.0 / self.scale)[:, None, None]
+        strain_loads = resultants - passed[..., 2 * PER_LINE :, :].sum(axis=1)
         count, columns = lines.shape[1] * PER_LINE, loads.shape[-1]
-        right = np.concatenate([lines.reshape(len(lines), count, columns), strain_loads], axis=1)
-        solved = np.stack([lu_solve(factor, each, check_finite=False) for factor, each in zip(self.factors, right, strict=True)])
-        strain = solved[:, count:] / self.scale[:, None, None]
+        right = self.scale[..., None] * np.concatenate([lines.reshape(len(lines), count, columns), strain_loads], axis=1)
+        right[:, :count] -= self.held @ rigid
+        scaled = np.stack([lu_solve(factor, each, check_finite=False) for factor, each in zip(self.factors, right, strict=True)])
+        solved = self.scale[..., None] * scaled
+        strain = solved[:, count:]
         ends = solved[:, :count].reshape(len(lines), -1, PER_LINE, columns)
         around = np.concatenate([ends, np.roll(ends, -1, axis=1)], axis=2)
         known = np.concatenate([around, np.broadcast_to(strain[:, None], (*around.shape[:2], RIGID, columns))], axis=2)
@@ -109,7 +154,28 @@ def _ends(size: int) -> NDArray[np.intp]:
     return np.concatenate([np.arange(PER_LINE), np.arange(size - PER_LINE, size)])
 
 
-def _assembled(bordered: Array, rigid: Array, scale: float) -> Array:
+def _too_thin(sums: ElementSums) -> ValueError:
+    if not np.isfinite(sums.warping).all():
+        return ValueError("section cannot be computed: its numbers are not finite.")
+    allowed = "large enough beside the section, and plies near enough to one another in stiffness, to leave digits to compute with"
+    return Refused("thickness", sums.thickness, allowed)
+
+
+def _unit(sums: ElementSums, system: Array) -> Array:
+    """(…, n): 1/√ of the diagonals of systems (…, n, n)."""
+    diagonal = np.diagonal(system, axis1=-2, axis2=-1)
+    if not np.all(diagonal > 0.0):
+        raise _too_thin(sums)
+    return np.asarray(1.0 / np.sqrt(diagonal))
+
+
+def _inverse(sums: ElementSums, stiffness: Array) -> Array:
+    """Of symmetric matrices (…, n, n) whose rows differ in scale."""
+    unit = _unit(sums, stiffness)
+    return np.asarray(unit[..., None] * np.linalg.inv(unit[..., None] * stiffness * unit[..., None, :]) * unit[..., None, :])
+
+
+def _assembled(bordered: Array) -> Array:
     """One system of lines and beam strain from elements (K, 24 + 6, 24 + 6)."""
     count = len(bordered)
     lines = np.zeros((count, PER_LINE, count, PER_LINE))
@@ -122,13 +188,18 @@ def _assembled(bordered: Array, rigid: Array, scale: float) -> Array:
     size = count * PER_LINE
     whole = np.zeros((size + RIGID, size + RIGID))
     whole[:size, :size] = lines.reshape(size, size)
-    border = bordered[:, first, strain] + np.roll(bordered[:, last, strain], 1, axis=0)
-    whole[:size, size:] = border.reshape(size, RIGID) / scale
+    whole[:size, size:] = (bordered[:, first, strain] + np.roll(bordered[:, last, strain], 1, axis=0)).reshape(size, RIGID)
     whole[size:, :size] = whole[:size, size:].T
-    whole[size:, size:] = bordered[:, strain, strain].sum(axis=0) / scale**2
-    directions = rigid / np.linalg.norm(rigid, axis=0)
-    whole[:size, :size] += np.trace(whole[:size, :size]) / size * directions @ directions.T
+    whole[size:, size:] = bordered[:, strain, strain].sum(axis=0)
     return whole
+
+
+def _factors(system: Array, scale: Array, held: Array) -> tuple[Array, NDArray[np.int32]]:
+    """Of a system in its units, with rigid motion of its lines (12 K, 6) held."""
+    scaled = scale[:, None] * system * scale
+    scaled[: len(held), : len(held)] += held @ held.T
+    factors, pivots = lu_factor(scaled, check_finite=False)
+    return factors, pivots
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,7 +215,7 @@ class CentralSolution:
 
 
 def central_solution(system: Factorised, pretwist: float) -> CentralSolution:
-    """Saint-Venant's six solutions."""
+    """Saint-Venant's six solutions; ``ValueError`` where the walls are too thin for the digits there are, or for the pretwist."""
     sums = system.sums
     sections = len(sums.warping)
     T, one = equilibrium(pretwist), np.broadcast_to(np.eye(RIGID), (sections, RIGID, RIGID))
@@ -160,11 +231,14 @@ def central_solution(system: Factorised, pretwist: float) -> CentralSolution:
             resultants = one - (sums.derivative_strain.swapaxes(-1, -2) @ onward).sum(axis=1)
             before, (warping, strain) = strain, system.solve(loads, resultants)
             passes.append((warping, strain))
-            if converged := bool(np.abs(strain - before).max() <= CONVERGED * np.abs(strain).max()):
+            change = np.abs(strain - before).max() / np.abs(strain).max()
+            if converged := bool(change <= CONVERGED):
                 break
         if converged:
             break
         warping, strain = extrapolated(passes)
+    if not change <= UNSETTLED:
+        raise Refused("thickness", sums.thickness, f"large enough beside the section for a pretwist of {pretwist:.3g} rad/m")
     here = sums.gather(warping)
     compliance = sums.energy(here, here @ T, strain)
     inverse = np.linalg.inv(compliance)

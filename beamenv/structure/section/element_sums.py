@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,13 +50,18 @@ class ElementSums:
     """∫ ρ (shape × shape) dA (V, K, nodes, nodes), kg/m."""
     inertia: Array
     """∫ ρ (1, x, y, x², xy, y²) dA (V, 6)."""
-    nodes: Array
-    """(V, lines, 4, 2), m."""
+    middles: Array
+    """(V, lines, 2), m: where lines cross the mid-line."""
+    reaches: Array
+    """(V, lines, 2), m: from there to the outer face along the line."""
+    thickness: float
+    """m, of the walls."""
 
     @property
     def first(self) -> ElementSums:
         """That of the first section alone."""
-        return ElementSums(*(getattr(self, each.name)[:1] for each in fields(self)))
+        arrays = {each.name: getattr(self, each.name)[:1] for each in fields(self) if each.name != "thickness"}
+        return replace(self, **arrays)
 
     @property
     def size(self) -> int:
@@ -66,19 +71,26 @@ class ElementSums:
     @property
     def lines(self) -> int:
         """How many lines across the wall all elements have together."""
-        return self.nodes.shape[1]
+        return self.middles.shape[1]
+
+    @property
+    def rigid(self) -> Array:
+        """(V, lines, 12, 6): rigid motion of all lines."""
+        motion = np.zeros((*self.middles.shape[:2], ACROSS + 1, 3, RIGID))
+        motion[:, :, 0] = rigid_motion(self.middles[..., 0], self.middles[..., 1])
+        motion[:, :, 1, :, 3:] = rigid_motion(self.reaches[..., 0], self.reaches[..., 1])[..., 3:]
+        return motion.reshape(*self.middles.shape[:2], -1, RIGID)
 
     @property
     def rigid_lines(self) -> Array:
         """(V, 12 K, 6): rigid motion of the lines at which elements meet."""
         order = self.lines // self.warping.shape[1]
-        meeting = self.nodes[:, ::order]
-        return rigid_motion(meeting[..., 0], meeting[..., 1]).reshape(len(meeting), -1, RIGID)
+        return self.rigid[:, ::order].reshape(len(self.middles), -1, RIGID)
 
     @property
-    def rigid(self) -> Array:
-        """(V, lines, 12, 6): rigid motion of all lines."""
-        return rigid_motion(self.nodes[..., 0], self.nodes[..., 1]).reshape(*self.nodes.shape[:2], -1, RIGID)
+    def nodes(self) -> Array:
+        """(V, lines, 4, 2), m: Lobatto's nodes on the lines."""
+        return np.asarray(self.middles[:, :, None] + lobatto_nodes(ACROSS)[:, None] * self.reaches[:, :, None])
 
     def gather(self, lines: Array) -> Array:
         """(V, K, size, c): displacements of each element from those of the lines (V, lines, 12, c)."""
@@ -118,7 +130,8 @@ def element_sums(ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.in
             totals.add(ring, _Layer(members, first[members], low, high, ply), pretwist)
     shaped = {name: values[of_elements].reshape(sections, count, *values.shape[1:]) for name, values in vars(totals).items()}
     inertia = shaped.pop("inertia").sum(axis=1)
-    return ElementSums(**shaped, inertia=inertia, nodes=line_nodes(ring))
+    middles, reaches = lines_across(ring)
+    return ElementSums(**shaped, inertia=inertia, middles=middles, reaches=reaches, thickness=ring.thickness)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -221,11 +234,11 @@ def _summed(meaning: Array, integrals: Array) -> Array:
     return product.reshape(count, i, j, c, d).transpose(0, 1, 3, 2, 4).reshape(count, i * c, j * d)
 
 
-def line_nodes(ring: Ring) -> Array:
-    """(S, lines, 4, 2), m: the nodes on all lines across the wall, element after element."""
-    share = 0.5 * (1.0 + lobatto_nodes(ring.order)[:-1])[:, None, None]
-    depth = 0.5 * ring.thickness * lobatto_nodes(ACROSS)[:, None]
-    start = ring.points[:, :, None] + depth * ring.directions[:, :, None]
-    end = np.roll(start, -1, axis=1)
-    nodes = (1.0 - share) * start[:, :, None] + share * end[:, :, None]
-    return np.asarray(nodes.reshape(len(start), -1, ACROSS + 1, 2))
+def lines_across(ring: Ring) -> tuple[Array, Array]:
+    """(S, lines, 2) each, m: where all lines, element after element, cross the mid-line, and from there to the outer face."""
+    share = 0.5 * (1.0 + lobatto_nodes(ring.order)[:-1])[:, None]
+
+    def between(start: Array) -> Array:
+        return ((1.0 - share) * start[:, :, None] + share * np.roll(start, -1, axis=1)[:, :, None]).reshape(len(start), -1, 2)
+
+    return between(ring.points), between(0.5 * ring.thickness * ring.directions)

@@ -58,6 +58,21 @@ def lagrange(order: int, at: Array) -> tuple[Array, Array]:
     return there @ inverse, there @ slopes
 
 
+def through_wall(order: int, at: Array) -> tuple[Array, Array]:
+    """(len(at), order + 1): values and slopes of Legendre's polynomials, the shapes of displacements across the wall.
+
+    The first is what the wall does as a whole. Displacements of nodes across the wall in its place, whose differences strain it
+    through its thickness, would leave (t/L)⁴ of their energy to the bending of a wall of length L, and rounding soon hides that.
+    """
+    slopes = legendre.legval(at, legendre.legder(np.eye(order + 1))).T
+    return np.asarray(legendre.legvander(at, order), dtype=np.float64), np.asarray(slopes, dtype=np.float64)
+
+
+def coefficients_through_wall(values: Array) -> Array:
+    """(…, order + 1, k): coefficients of Legendre's polynomials from as many values at Lobatto's nodes across the wall."""
+    return np.asarray(inverse_vandermonde(values.shape[-2] - 1)[0] @ values)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Places:
     """Points of E elements, Q each, with what the N shapes of an element do there."""
@@ -115,7 +130,7 @@ def places(ring: Ring, members: NDArray[np.intp], along: Array, across: Array, w
     by_across = np.broadcast_to((1.0 - share) * d[:, None, None] + share * e[:, None, None], position.shape)
     area = by_along[..., 0] * by_across[..., 1] - by_along[..., 1] * by_across[..., 0]
     values, slopes = lagrange(ring.order, along)
-    through, steepness = lagrange(ACROSS, 2.0 * across / ring.thickness)
+    through, steepness = through_wall(ACROSS, 2.0 * across / ring.thickness)
     shape = (len(along), len(across), -1)
     value = (values[:, None, :, None] * through[None, :, None, :]).reshape(shape)
     s = (slopes[:, None, :, None] * through[None, :, None, :]).reshape(shape)

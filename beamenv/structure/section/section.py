@@ -14,6 +14,7 @@ from pydantic import BeforeValidator
 from beamenv.configuration import Choice, Number, Refused, checked, configuration
 from beamenv.configuration.kinds import plain
 from beamenv.structure.model import checked_flow
+from beamenv.structure.scale import in_scale
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.section.mesh import ring
 from beamenv.structure.section.properties import SectionProperties
@@ -110,14 +111,16 @@ class Section(ABC):
     def properties(self, layup: Layup) -> SectionProperties:
         """Stiffness with transverse shear, centres and inertia by solid finite elements, about the origin of the corners.
 
-        Raises ``ValueError`` for a lay-up of other walls and for a wall too short for its thickness.
+        Raises ``ValueError`` for a lay-up of other walls, for a wall too short for its thickness, and for one so thin (below some
+        10⁻⁵ of the section's size) that rounding would be seen.
         """
         layup.check_walls(self.walls)
         hosts = {wall: Laminate.equal_plies(layup.plies(wall), self.thickness) for wall in self.walls}
         elements = ring(self.vertices[None], self.walls, self.thickness)
         laminates = list(dict.fromkeys(hosts.values()))
         which = np.array([[laminates.index(hosts[edge.wall]) for edge in elements.edges]])
-        return SectionProperties.of(SolidSections.build(elements, laminates, which, pretwist=0.0))
+        with in_scale("section"):
+            return SectionProperties.of(SolidSections.build(elements, laminates, which, pretwist=0.0))
 
     def _wall_stiffness(self, layup: Layup, shear: str, flow: str) -> Array:
         walls = SpanWalls.build(self, layup, z=np.zeros(1), scale=np.ones(1), angle=np.zeros(1), shear=shear, shear_flow=flow)

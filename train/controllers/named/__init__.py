@@ -17,7 +17,7 @@ from types import MappingProxyType
 from baselines import Controller, Law
 from beamenv import Design
 from beamenv.configuration import Refused
-from beamenv.task import Task
+from beamenv.task import Task, checked_task
 
 KINDS = ("fixed", "scheduled", "predictive", "bound")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
@@ -42,6 +42,7 @@ class NamedController:
 
     def build_for(self, task: Task) -> Controller:
         """The controller for a task, in its units: from its design, unless it is told the truth."""
+        checked_task(task)
         law = self.build(task.true_design if self.told_the_truth else task.design)
         return law.in_physical_units() if task.physical_units and isinstance(law, Law) else law
 
@@ -61,6 +62,6 @@ def discover() -> Mapping[str, NamedController]:
 def named(name: str) -> NamedController:
     """A controller by its short name; ``ValueError`` lists the known ones."""
     known = discover()
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise Refused("controller", name, f"one of {', '.join(known)}, or the folder of a trained agent")
     return known[name]
