@@ -92,6 +92,11 @@ def test_another_package_of_that_name_is_left_alone(tmp_path):
     assert told.startswith("1 <function lqg")
 
 
+def test_the_wings_are_attributes_of_the_package(tmp_path):
+    code = "import beamenv; print(beamenv.baselines.lqg.__name__, beamenv.train.__name__)"
+    assert run([sys.executable, "-c", code], tmp_path, PYTHONPATH=str(ROOT)) == "lqg train\n"
+
+
 def test_a_module_of_a_wing_runs_by_its_long_name(tmp_path):
     code = "import runpy; print(sorted(runpy.run_module('beamenv.train.shared.threads')))"
     for folder in (tmp_path, ROOT):

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import numpy as np
 
 from baselines.design.controller import Array, Observes
-from baselines.design.matrix import real_matrix
+from baselines.design.matrix import keep_matrices
 from baselines.design.objects import instance
 from beamenv.configuration import Choice, Number, checked
 from beamenv.plant.plant import Plant, drive_limit
@@ -33,10 +33,7 @@ class Instruments(ReadOnly):
     def __post_init__(self) -> None:
         """Arrays of one's own, which nobody writes to; ``ValueError`` for scales and limits that no law could stand behind."""
         p, m = (np.size(each) for each in (self.measurement_scale, self.voltage_scale))
-        for name, shape in (("measurement_scale", (p,)), ("voltage_scale", (m,)), ("voltage_limits", (2, m))):
-            numbers = real_matrix(name, getattr(self, name), shape)
-            numbers.setflags(write=False)
-            object.__setattr__(self, name, numbers)
+        keep_matrices(self, {"measurement_scale": (p,), "voltage_scale": (m,), "voltage_limits": (2, m)})
         object.__setattr__(self, "interval", checked("interval", self.interval, Number(gt=0.0, unit="s")))
         checked("observes", self.observes, Choice(get_args(Observes)))
 
@@ -47,6 +44,11 @@ class Instruments(ReadOnly):
         scale = np.ones(len(plant.A)) if observes == "state" else plant.sensor_full_scale
         scale = np.append(scale, 1.0) if observes == "observation and speed" else scale
         return cls(scale, drive_limit(plant), plant.voltage_limits, plant.control_interval, observes)
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """How many measurements and how many voltages."""
+        return len(self.measurement_scale), len(self.voltage_scale)
 
     def in_physical_units(self) -> Instruments:
         """The same for an environment made with ``physical_units=True``, which gives amperes and takes volts."""

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from baselines.design.controller import Array, Observes
-from baselines.design.instruments import Instruments
+from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.predicting import observed, remembered
+from beamenv.configuration import Text, checked
 
 if TYPE_CHECKING:
+    import control
     from typing_extensions import Self
 
 
@@ -27,6 +29,11 @@ class Law(ABC):
     """What tables and figures call it."""
     instruments: Instruments
     """What it reads and drives; its matrices are in A and V whatever units they use."""
+
+    def __post_init__(self) -> None:
+        """``ValueError`` for a name that is no text and for instruments that are none."""
+        checked("name", self.name, Text())
+        checked_instruments(self.instruments)
 
     @property
     @abstractmethod
@@ -62,6 +69,11 @@ class Law(ABC):
     def in_physical_units(self) -> Self:
         """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         return replace(self, instruments=self.instruments.in_physical_units())
+
+    def to_control(self) -> control.StateSpace:
+        """A linear law as a ``control.StateSpace``; ValueError for any other."""
+        kind = f"{self.name} ({type(self).__name__})"
+        raise ValueError(f"law = {kind} is not linear, so it is no control.StateSpace: allowed is a LinearController")
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}: order {self.order}; {self.instruments.sizes})"

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from baselines.design.controller import Array, Observes, name_of
 from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.law import Law
-from baselines.design.matrix import real_matrix
+from baselines.design.matrix import keep_matrices, real_matrix, rows
 from baselines.design.verification import verified
 from beamenv.plant.plant import Plant
 
@@ -49,12 +49,9 @@ class LinearController(Law):
 
     def __post_init__(self) -> None:
         """Fuse the law into [ξ, observation] @ fused = [F ξ + G y, action]; ``ValueError`` for matrices that do not fit."""
-        checked_instruments(self.instruments)
-        s, p, m = _rows(self.transition), len(self.instruments.measurement_scale), len(self.instruments.voltage_scale)
-        for name, shape in zip(MATRICES, ((s, s), (s, p), (s, m), (m, s), (m, p)), strict=True):
-            matrix = real_matrix(name, getattr(self, name), shape)
-            matrix.setflags(write=False)  # it is fused below: written to, it would change nothing
-            object.__setattr__(self, name, matrix)
+        Law.__post_init__(self)
+        s, p, m = rows(self.transition), *self.instruments.counts
+        keep_matrices(self, dict(zip(MATRICES, ((s, s), (s, p), (s, m), (m, s), (m, p)), strict=True)))  # they are fused below
         scale, drive = self.instruments.measurement_scale, self.instruments.voltage_scale[:, None]
         memory = np.hstack([self.transition, self.measurement_input * scale])
         action = np.hstack([self.state_gain, self.measurement_gain * scale]) / drive
@@ -92,7 +89,7 @@ class LinearController(Law):
             raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given")
         behind = Instruments.of(plant) if instruments is None else checked_instruments(instruments)  # type: ignore[arg-type]
         matrices = _matrices(A, behind) if B is None and C is None and D is None else (A, B, C, D)
-        s, p, m = _rows(matrices[0]), len(behind.measurement_scale), len(behind.voltage_scale)
+        s, p, m = rows(matrices[0]), *behind.counts
         shapes = {"A": (s, s), "B": (s, p), "C": (m, s), "D": (m, p), "voltage_input": (s, m)}
         given = (*matrices, np.zeros((s, m)) if voltage_input is None else voltage_input)
         F, G, M, T, H = (real_matrix(name, each, shapes[name]) for name, each in zip(shapes, given, strict=True))
@@ -150,11 +147,6 @@ def linear(controller: object) -> LinearController:
         f"controller = {name_of(controller)} ({type(controller).__name__}) is not linear, so its loop has no poles, margins, "
         "frequency response or stationary cost: allowed is a LinearController"
     )
-
-
-def _rows(matrix: Any) -> int:
-    """So many rows ``A`` has, which decides the shapes of all."""
-    return len(matrix) if hasattr(matrix, "__len__") else 1
 
 
 def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any]:

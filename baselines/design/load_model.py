@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from baselines.design.objects import optional_instance
 from baselines.design.riccati import Array
+from beamenv.configuration import Refused
 from beamenv.plant.plant import SampledPlant
 
 
@@ -33,7 +33,6 @@ class LoadModel:
         )
 
 
-@runtime_checkable
 class Load(Protocol):
     """What the load is, apart from the clock it is sampled by."""
 
@@ -42,9 +41,12 @@ class Load(Protocol):
         ...
 
 
-def checked_load(name: str, load: Any) -> Load | None:
-    """The load or None; ``ValueError`` for what has no model."""
-    return optional_instance(name, load, Load, "a load that can be foreseen, such as PersistentLoad()")  # type: ignore[type-abstract]
+def checked_loads(name: str, load: Any) -> tuple[Load, ...]:
+    """The loads, of one or of a list of them, none for None; ``ValueError`` for what has no model."""
+    loads = () if load is None else tuple(load) if isinstance(load, (list, tuple)) else (load,)
+    if all(callable(getattr(each, "model", None)) and not isinstance(each, type) for each in loads):
+        return loads
+    raise Refused(name, load, "None, a load that can be foreseen, such as PersistentLoad(), or a list of them")
 
 
 def with_load(held: SampledPlant, load: LoadModel) -> SampledPlant:

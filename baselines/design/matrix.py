@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,19 @@ def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     if numbers.shape != shape or not np.isfinite(numbers).all():
         raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}")
     return numbers
+
+
+def keep_matrices(holder: object, shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Make the named fields of a frozen dataclass arrays of its own that nobody writes to; ``ValueError`` as ``real_matrix``."""
+    for name, shape in shapes.items():
+        matrix = real_matrix(name, getattr(holder, name), shape)
+        matrix.setflags(write=False)
+        object.__setattr__(holder, name, matrix)
+
+
+def rows(matrix: Any) -> int:
+    """So many rows a first matrix has, which decides the shapes of all: of what is none, one."""
+    return len(matrix) if hasattr(matrix, "__len__") else 1
 
 
 def one_or_each(name: str, value: Any, count: int, of: str) -> Array:

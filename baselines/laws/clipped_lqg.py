@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from baselines.design.controller import Array
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
+from baselines.design.matrix import keep_matrices, rows
 from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
 from baselines.design.verification import verified
 from baselines.design.weights import weighted
@@ -41,6 +42,13 @@ class ClippedLQG(Law):
     """L (s, p), per A."""
     full_scale: Array
     """(p,), A: the largest current that a reading can show."""
+
+    def __post_init__(self) -> None:
+        """``ValueError`` for matrices that do not fit."""
+        Law.__post_init__(self)
+        s, p, m = rows(self.transition), *self.instruments.counts
+        shapes = {"transition": (s, s), "voltage_input": (s, m), "output": (p, s), "feedback_gain": (m, s), "kalman_gain": (s, p)}
+        keep_matrices(self, {**shapes, "full_scale": (p,)})
 
     @property
     def order(self) -> int:

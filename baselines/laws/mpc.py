@@ -12,6 +12,8 @@ from baselines.design.box_qp import BoxQP
 from baselines.design.controller import Array
 from baselines.design.instruments import Instruments, checked_plant
 from baselines.design.law import Law
+from baselines.design.matrix import keep_matrices, rows
+from baselines.design.objects import instance
 from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
 from baselines.design.verification import verified
 from baselines.design.weights import weighted
@@ -48,6 +50,15 @@ class PredictiveController(Law):
     """(m × moves, s): the program's linear term from x̂."""
     sensor_full_scale: Array
     """(p,), A: where readings clip."""
+
+    def __post_init__(self) -> None:
+        """``ValueError`` for matrices that do not fit, or a program that is none."""
+        Law.__post_init__(self)
+        s, p, m = rows(self.transition), *self.instruments.counts
+        planned, moves = rows(self.unconstrained_plan), rows(self.program_gradient)
+        keep_matrices(self, {"transition": (s, s), "voltage_input": (s, m), "output": (p, s), "filter_gain": (s, p)})
+        keep_matrices(self, {"unconstrained_plan": (planned, s), "program_gradient": (moves, s), "sensor_full_scale": (p,)})
+        instance("program", self.program, BoxQP, "a BoxQP of the moves")
 
     @property
     def solver_failures(self) -> int:

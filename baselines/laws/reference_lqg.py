@@ -7,10 +7,12 @@ and then reduced: what is left out is memory of the law, in the closed loop, not
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from baselines.analysis.stationary import stationary_cost
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
-from baselines.design.load_model import Load, checked_load
+from baselines.design.load_model import Load, checked_loads
 from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design, sampled_with_loads
 from baselines.laws.reduction import reduced, truncations
@@ -26,16 +28,21 @@ ALLOWANCE = 0.005
 
 
 def full_order_lqg(
-    plant: Plant, rate_weight: float = RATE_WEIGHT, *, load: Load | None = None, name: str = "LQG", verify: bool = True
+    plant: Plant,
+    rate_weight: float = RATE_WEIGHT,
+    *,
+    load: Load | Sequence[Load] | None = None,
+    name: str = "LQG",
+    verify: bool = True,
 ) -> LinearController:
     """The sampled optimum for the plant's cost with ``rate_weight`` (u − u₋)ᵀ diag(R) (u − u₋) of each interval on top.
 
-    ``load`` adds the states of a load that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``.
+    ``load`` adds the states of a load that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``, or of several.
     ``verified`` on ``plant`` unless ``verify=False``. Raises ``ValueError`` for a weight that is negative, for what is no load, and
     as ``lqg`` does.
     """
-    load = checked_load("load", load)
-    held, regulated, filtered = sampled_design(checked_plant(plant), load, rate_weight=rate_weight)
+    loads = checked_loads("load", load)
+    held, regulated, filtered = sampled_design(checked_plant(plant), *loads, rate_weight=rate_weight)
     law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
     return verified(law, plant, regulated, filtered, instead="another rate_weight", verify=verify)
 
@@ -45,7 +52,7 @@ def reference_lqg(
     rate_weight: float = RATE_WEIGHT,
     order: int | None = None,
     *,
-    load: Load | None = None,
+    load: Load | Sequence[Load] | None = None,
     name: str = "LQG",
     verify: bool = True,
 ) -> LinearController:
@@ -56,7 +63,7 @@ def reference_lqg(
     ``verify=False``. Only what is stable can be reduced: raises ``ValueError`` as its parts do.
     """
     whole = full_order_lqg(plant, rate_weight, load=load, name=name)
-    loaded = sampled_with_loads(plant, load)
+    loaded = sampled_with_loads(plant, *checked_loads("load", load))
     if order is not None:
         return reduced(loaded, whole, order, verify=verify)
     return verified(_least(loaded, whole), plant, verify=verify)

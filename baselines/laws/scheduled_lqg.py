@@ -13,13 +13,14 @@ from scipy.linalg import block_diag
 from baselines.design.controller import Array
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
-from baselines.design.linear import LinearController
+from baselines.design.linear import LinearController, linear
+from baselines.design.matrix import keep_matrices
 from baselines.design.objects import instance
 from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
 from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import Flag, checked
+from beamenv.configuration import Flag, Refused, checked
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 
@@ -41,6 +42,16 @@ class ScheduledLQG(Law):
     """(k,), rad/s, ascending."""
     laws: tuple[LinearController, ...]
     """One for each speed."""
+
+    def __post_init__(self) -> None:
+        """``ValueError`` for speeds that do not ascend, or laws that are not one for each, linear and of one order."""
+        Law.__post_init__(self)
+        laws = instance("laws", self.laws, tuple, "a tuple of LinearController, one for each speed")
+        keep_matrices(self, {"speeds": (len(laws),)})
+        if np.any(np.diff(self.speeds) <= 0.0):
+            raise Refused("speeds", self.speeds.tolist(), "numbers in rad/s, each greater than the one before")
+        if len({linear(law).order for law in laws}) != 1:
+            raise Refused("laws", self.laws, "one or more LinearController of one order")
 
     @property
     def order(self) -> int:

@@ -67,5 +67,32 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
     return replace(like, **{**parts, **own, **found, **changes})
 
 
+def sampled_from_control(system: control.StateSpace, like: Plant, **changes: Any) -> Plant:
+    """The sampled plant whose system ``sampled_to_control`` would give: dynamics from ``system``, the rest from ``like``.
+
+    ``system`` has the clock, inputs and outputs of ``like.to_control()`` and its states, to which the cost of an interval belongs;
+    if it has another number of them, ``changes`` must give the ``cost`` (n+m+2, n+m+2). Raises ``ValueError`` for another clock,
+    other numbers of inputs, outputs or states, and for a feedthrough that is not from voltages to currents.
+    """
+    (_, m), p, k = like.B.shape, len(like.C), like.disturbance_input.shape[1]
+    clock = getattr(system, "dt", None)
+    if clock is not True and not (clock and np.isclose(clock, like.interval, rtol=1e-6)):
+        raise ValueError(f"system has dt = {clock!r}, but must be sampled as like is, every {like.interval:g} s.")
+    A, B, C, D = (np.array(part, dtype=np.float64) for part in (system.A, system.B, system.C, system.D))
+    if D.shape != (p, m + k):
+        raise ValueError(
+            f"system has {D.shape[1]} inputs and {len(D)} outputs, but must have {m + k}, voltages and loads, and {p}."
+        )
+    if np.any(D[:, m:]):
+        raise ValueError("system has a feedthrough from line loads, but must have none.")
+    cost = np.asarray(changes.pop("cost", like.cost), dtype=np.float64)
+    if cost.shape != (len(A) + m + k,) * 2:
+        raise ValueError(
+            f"cost has shape {cost.shape}, but must have {len(A) + m + k} rows and columns: states, voltages and loads."
+        )
+    parts = {"A": A, "B": B[:, :m], "C": C, "D": D[:, :m], "disturbance_input": B[:, m:], "cost": cost}
+    return replace(like, **{**parts, **changes})
+
+
 def _numbered(name: str, count: int) -> list[str]:
     return [f"{name}{k}" for k in range(count)]

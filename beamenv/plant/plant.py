@@ -148,6 +148,13 @@ class SampledPlant(ReadOnly):
 
         return sampled_to_control(self)
 
+    @classmethod
+    def from_control(cls, system: control.StateSpace, like: SampledPlant, **changes: Any) -> SampledPlant:
+        """A sampled plant with the dynamics of a ``control.StateSpace``, and all else as ``like`` has it; see ``interchange``."""
+        from beamenv.plant.interchange import sampled_from_control
+
+        return sampled_from_control(system, like, **changes)
+
 
 def _counts(B: Array, C: Array) -> str:
     return f"{B.shape[0]} states, {B.shape[1]} voltages, {len(C)} sensors"

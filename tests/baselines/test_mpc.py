@@ -1,5 +1,7 @@
 """Model-predictive control: LQG while no limit is in sight, else the optimum within the limits, found by other means."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import gymnasium
 import numpy as np
 import pytest
@@ -175,4 +177,14 @@ def test_under_deep_saturation_it_costs_less_than_lqg_clipped(load):
     planned = evaluate(law, envs, range(8), reference=clipped.reference)
     assert clipped.saturation.value > 0.3
     assert planned.cost.value < clipped.cost.value
+    assert law.solver_failures == 0
+
+
+def test_one_law_in_eight_threads_drives_each_blade_as_if_alone(small_plant):
+    law = mpc(small_plant())
+    memories = states(8 * 64, 6, size=0.5).reshape(8, 64, 6)
+    alone = [decide(law, memory) for memory in memories]
+    with ThreadPoolExecutor(8) as threads:
+        for _ in range(5):
+            np.testing.assert_array_equal(list(threads.map(lambda memory: decide(law, memory), memories)), alone)
     assert law.solver_failures == 0

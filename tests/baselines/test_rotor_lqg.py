@@ -1,9 +1,11 @@
 """LQG with rotor harmonics: the internal model principle."""
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
-from baselines import PersistentLoad, lqg, stationary_cost
+import beamenv
+from baselines import PersistentLoad, evaluate, full_order_lqg, lqg, stationary_cost
 from baselines.analysis.frequency_response import cost_response
 from baselines.design.load_model import with_load
 from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
@@ -81,3 +83,37 @@ def test_impossible_harmonics_are_refused_by_name(small_plant):
         RotorHarmonics(SPEED, orders=(1.5,))
     with pytest.raises(ValueError, match="order 80 at 100 rad/s.*below 6283.19 rad/s"):
         rotor_lqg(small_plant(), RotorHarmonics(SPEED, orders=(80,)))
+
+
+@pytest.fixture(name="under_rotor_loads", scope="module")
+def _under_rotor_loads():
+    """J / J₀ of the reference with some loads in its state, in the scenario "rotor"."""
+    envs, seeds = gym.make_vec(beamenv.ENV_ID, num_envs=48, scenario="rotor"), range(48)
+    plant = envs.unwrapped.design.full_plant
+    uncontrolled = evaluate(full_order_lqg(plant), envs, seeds=seeds).reference
+
+    def relative_cost(*loads):
+        return evaluate(full_order_lqg(plant, load=loads), envs, seeds=seeds, reference=uncontrolled).relative_cost.value
+
+    return relative_cost
+
+
+@pytest.mark.slow
+def test_a_lasting_load_beside_the_harmonics_lowers_the_cost(under_rotor_loads):
+    assert under_rotor_loads(RotorHarmonics(200.0), PersistentLoad()) < under_rotor_loads(RotorHarmonics(200.0)) - 0.01
+
+
+@pytest.mark.slow
+def test_true_turbulence_pays_in_full_only_beside_harmonics_of_true_size(under_rotor_loads):
+    turbulence, large = PersistentLoad(magnitude=5.0, duration=0.02), RotorHarmonics(200.0, magnitude=3.5, duration=2.0)
+    both = under_rotor_loads(large, turbulence)
+    assert both < under_rotor_loads(RotorHarmonics(200.0), turbulence) - 0.005
+    assert both < under_rotor_loads(RotorHarmonics(200.0, magnitude=3.5)) - 0.03
+
+
+def test_several_loads_are_all_in_the_state(small_plant):
+    plant = small_plant()
+    law = full_order_lqg(plant, load=[RotorHarmonics(SPEED), PersistentLoad()])
+    assert law.order == 6 + 16 + 2 + 2  # blade, four harmonics, lasting load, voltages before
+    with pytest.raises(ValueError, match="^load is .*, but must be None, a load that can be foreseen"):
+        full_order_lqg(plant, load=[RotorHarmonics(SPEED), None])

@@ -1,15 +1,16 @@
 """Plants as python-control has systems: its own simulations are those of the plant, and what comes back is the plant."""
 
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 
 import numpy as np
 import pytest
+from scipy.io import loadmat, savemat
 from scipy.linalg import expm
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.plant.fingerprint import fingerprint
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant, SampledPlant, sample
 from beamenv.plant.poles import damping_ratios, poles_of_sampled
 
 control = pytest.importorskip("control")
@@ -99,3 +100,34 @@ def test_damping_ratios_are_of_one_of_each_pair_and_of_every_second_real_pole():
     np.testing.assert_allclose(damping_ratios(pairs), [1.0, 0.6, 1.0 / np.sqrt(101.0)])
     sampled = poles_of_sampled(expm(np.array([[0.0, 10.0], [-10.0, -4.0]]) * 1e-2), 1e-2)
     np.testing.assert_allclose(damping_ratios(sampled), [0.2])
+
+
+def test_a_sampled_plant_comes_back_as_it_was(plant):
+    held = sample(plant)
+    back = SampledPlant.from_control(held.to_control(), like=held)
+    for each in fields(SampledPlant):
+        np.testing.assert_array_equal(getattr(back, each.name), getattr(held, each.name), err_msg=each.name)
+
+
+def test_a_system_that_is_no_such_sampled_plant_is_refused(plant):
+    held = sample(plant)
+    with pytest.raises(ValueError, match=r"^system has dt = 0, but must be sampled as like is, every 0.0005 s"):
+        SampledPlant.from_control(plant.to_control(), like=held)
+    with pytest.raises(ValueError, match="^system has dt = 0.001, but must be sampled as like is"):
+        SampledPlant.from_control(sample(plant, 1e-3).to_control(), like=held)
+    with pytest.raises(ValueError, match="^system has dt = None"):
+        SampledPlant.from_control(None, like=held)
+    with pytest.raises(ValueError, match="^system has 6 inputs and 3 outputs"):
+        SampledPlant.from_control(held.to_control()[:3, :], like=held)
+    other = sample(build_plant(blade_config("thesis", {"modes": 3}))).to_control()
+    with pytest.raises(ValueError, match=r"^cost has shape \(28, 28\), but must have 12 rows"):
+        SampledPlant.from_control(other, like=held)
+
+
+def test_a_mat_file_holds_a_plant_by_its_fields(plant, tmp_path):
+    file = tmp_path / "blade.mat"
+    savemat(file, {"plant": asdict(plant)})
+    read = loadmat(file, simplify_cells=True)["plant"]
+    assert set(read) == {each.name for each in fields(Plant)}
+    np.testing.assert_array_equal(read["A"], plant.A)
+    assert read["control_interval"] == plant.control_interval

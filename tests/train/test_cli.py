@@ -143,6 +143,7 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("evaluate", "pid"), "pid"),
         (("evaluate", "lqg", "--speed", "-3"), "-3"),
         (("evaluate", "lqg", "--scenario", "storm"), "storm"),
+        (("evaluate", "none", "--seeds", "2", "--scenario", "quiet"), "moves nothing"),
         (("train", "dreamer"), "dreamer"),
         (("train", "ppo", "--minutes", "0"), "seconds"),
         (("train", "ppo", "--updates", "0"), "updates"),

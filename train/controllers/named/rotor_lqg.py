@@ -1,11 +1,12 @@
-"""The reference LQG with a model of the loads at one to four per revolution."""
+"""The reference LQG with a model of the loads at one to four per revolution, and of one that lasts."""
 
-from baselines import Controller, RotorHarmonics, reference_lqg
+from baselines import Controller, PersistentLoad, RotorHarmonics, reference_lqg
 from beamenv import Design
 
 KIND = "fixed"
 
 
 def build(design: Design) -> Controller:
-    """Tuned to the speed of the design."""
-    return reference_lqg(design.full_plant, load=RotorHarmonics(design.config.speed), name="LQG with rotor harmonics")
+    """Tuned to the speed of the design; the lasting load also takes up what is slow in turbulence."""
+    loads = (RotorHarmonics(design.config.speed), PersistentLoad())
+    return reference_lqg(design.full_plant, load=loads, name="LQG with rotor harmonics")

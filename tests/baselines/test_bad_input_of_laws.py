@@ -1,0 +1,138 @@
+"""Every law and every analysis answers what it cannot be built from in one sentence."""
+
+import inspect
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import baselines
+import beamenv
+from baselines import ClippedLQG, Instruments, PredictiveController, ScheduledLQG, clipped_lqg, lqg, mpc, no_control
+from baselines.laws.scheduled_lqg import scheduled_lqg
+from beamenv import blade_config
+from beamenv.simulation.plants.speed_family import speed_family
+
+ENV = gym.make(beamenv.ENV_ID, blade={"modes": 3})
+CONFIG = blade_config("thesis", {"modes": 3})
+WRONG = {"None": None, "an environment": ENV, "a configuration": CONFIG, "text": "x", "{}": {}, "a class": object}
+DOORS = (
+    "clipped_lqg",
+    "closed_loop_poles",
+    "full_order_lqg",
+    "h_infinity",
+    "h_infinity_norm",
+    "lqg",
+    "lqr",
+    "mpc",
+    "no_control",
+    "positive_position_feedback",
+    "reference_lqg",
+    "rotor_lqg",
+    "scheduled_lqg",
+    "scheduled_lqg_for",
+    "stability_margins",
+    "stationary_cost",
+    "velocity_feedback",
+)
+
+
+@pytest.fixture(name="right", scope="module")
+def _right(small_plant):
+    plant = small_plant()
+    family = speed_family(CONFIG, [190.0, 200.0])
+    harmonics = baselines.RotorHarmonics(200.0)
+    return {"plant": plant, "config": CONFIG, "family": family, "harmonics": harmonics, "controller": lqg(plant)}
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_what_is_of_the_wrong_kind_is_refused_in_one_sentence_that_names_it(door, right):
+    function = getattr(baselines, door)
+    parameters = inspect.signature(function).parameters
+    needed = {name: right[name] for name, each in parameters.items() if each.default is each.empty}
+    if door == "scheduled_lqg_for":
+        needed["speeds"] = [190.0, 200.0]  # which is quicker than the nine by default
+    for name, parameter in parameters.items():
+        for what, value in WRONG.items():
+            taken = (value is None and parameter.default is None) or (name, what) in (
+                ("name", "text"),
+                ("config", "a configuration"),
+            )
+            if taken:
+                continue
+            with pytest.raises(ValueError, match=f"^{name}") as told:
+                function(**{**needed, name: value})
+            assert "\n" not in str(told.value)
+
+
+def test_a_law_tuned_to_no_harmonics_is_not_plain_lqg_under_another_name(right):
+    with pytest.raises(ValueError, match="^harmonics is None, but must be a RotorHarmonics"):
+        baselines.rotor_lqg(right["plant"], None)
+
+
+@pytest.mark.parametrize("question", [baselines.stationary_cost, baselines.closed_loop_poles, baselines.h_infinity_norm])
+@pytest.mark.parametrize("build", [clipped_lqg, mpc])
+def test_what_is_said_of_linear_loops_is_not_said_of_others(right, question, build):
+    with pytest.raises(ValueError, match=r"^controller = .* is not linear"):
+        question(right["plant"], build(right["plant"]))
+
+
+def test_laws_that_are_not_linear_have_no_state_space(right):
+    for law in (clipped_lqg(right["plant"]), mpc(right["plant"]), scheduled_lqg(right["family"])):
+        with pytest.raises(ValueError, match=r"^law = .* is not linear, so it is no control.StateSpace"):
+            law.to_control()
+
+
+def test_a_blade_at_rest_has_no_speeds_to_be_scheduled_with():
+    with pytest.raises(ValueError, match="^speeds is None, but must be given for a blade at rest"):
+        baselines.scheduled_lqg_for(blade_config("thesis", {"modes": 3, "speed": 0.0}))
+    law = baselines.scheduled_lqg_for(blade_config("thesis", {"modes": 3, "speed": 0.0}), [0.0, 20.0])
+    assert np.isfinite(law.predict(np.zeros(5))[0]).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"name": None}, "name is None, but must be a string"),
+        ({"instruments": None}, "instruments is None, but must be an Instruments"),
+        ({"feedback_gain": np.ones((2, 5))}, r"feedback_gain has shape \(2, 5\), but must hold finite numbers in shape \(2, 6\)"),
+        ({"transition": "A"}, "transition = 'A' must be a matrix of real numbers"),
+        ({"full_scale": [np.nan, 1.0]}, r"full_scale has shape \(2,\), but must hold finite numbers"),
+    ],
+)
+def test_parts_of_a_clipped_lqg_that_do_not_fit_are_told(right, changes, words):
+    law = clipped_lqg(right["plant"])
+    parts = {name: getattr(law, name) for name in inspect.signature(ClippedLQG).parameters}
+    assert ClippedLQG(**parts).order == 6
+    with pytest.raises(ValueError, match=f"^{words}"):
+        ClippedLQG(**{**parts, **changes})
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"program": None}, "program is None, but must be a BoxQP"),
+        ({"filter_gain": np.ones((6, 3))}, r"filter_gain has shape \(6, 3\)"),
+    ],
+)
+def test_parts_of_a_predictive_law_that_do_not_fit_are_told(right, changes, words):
+    law = mpc(right["plant"])
+    parts = {name: getattr(law, name) for name in inspect.signature(PredictiveController).parameters}
+    with pytest.raises(ValueError, match=f"^{words}"):
+        PredictiveController(**{**parts, **changes})
+
+
+@pytest.mark.parametrize(
+    ("speeds", "laws", "words"),
+    [
+        ([2.0, 1.0], 2, r"speeds is \[2.0, 1.0\], but must be numbers in rad/s"),
+        ([1.0], 2, r"speeds has shape \(1,\)"),
+        ([], 0, "laws is"),
+        ([1.0, 2.0], None, "laws is None, but must be"),
+    ],
+)
+def test_parts_of_a_scheduled_law_that_do_not_fit_are_told(right, speeds, laws, words):
+    plant = right["plant"]
+    each = None if laws is None else (no_control(plant),) * laws
+    with pytest.raises(ValueError, match=f"^{words}"):
+        ScheduledLQG("mine", Instruments.of(plant, "observation and speed"), np.array(speeds), each)
