@@ -69,11 +69,10 @@ def place_sides(
     from beamenv.configuration import Count, checked, checked_object, checked_table
 
     checked_object("config", config, BladeConfig)
-    counts = checked_table("counts", counts, SIDES)
-    for side, count in counts.items():
-        checked(f"counts.{side}", count, Count())
+    for name, count in checked_table("counts", counts, SIDES).items():
+        checked(f"counts.{name}", count, Count())
     config, sides = with_positions(config, counts), []
-    for side in ("actuators", "sensors"):
+    for side in SIDES:
         if side not in counts:
             continue
         problem = PlacementProblem.of(config, side)
