@@ -14,8 +14,8 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, configuration
+from beamenv.configuration.read_only import sealed
 from beamenv.patches import PatchLayout
-from beamenv.plant.read_only import sealed
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
 from train.explore.loops import Damping, StepResponses, damping, step_responses

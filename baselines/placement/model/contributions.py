@@ -20,9 +20,9 @@ from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
 from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
-from beamenv.plant.read_only import ReadOnly
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
 from beamenv.structure.modes import normal_modes

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.plant.read_only import sealed
+from beamenv.configuration.read_only import sealed
 
 Array = NDArray[np.float64]
 
