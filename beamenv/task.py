@@ -18,10 +18,12 @@ from beamenv.blade.clamp import clamp_note
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
-from beamenv.blade.presets import blade_config
-from beamenv.configuration import Flag, Number, Refused, checked, checked_table, read
+from beamenv.blade.presets import PRESETS, blade_config
+from beamenv.configuration import Choice, Flag, Number, Refused, checked, checked_table, read
+from beamenv.configuration.numbers import UNBOUNDED
 from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
+from beamenv.scenarios.sampling import check_frequencies, largest_speed
 from beamenv.scenarios.scenario import Scenario, with_load
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.simulation.motion import Motion
@@ -133,7 +135,7 @@ def resolve_task(
     """
     config = blade_config(preset, blade, speed)
     interval = config.control_interval
-    duration = checked("duration", duration, Number(gt=interval / 2, unit="s"))
+    duration = checked("duration", duration, Number(gt=interval / 2, le=UNBOUNDED * interval, unit="s"))
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
     truth, modes = chosen.plants.truth, chosen.plants.modes
@@ -144,6 +146,7 @@ def resolve_task(
     true = Blade(config) if truth is None else given_blade(config, load_plant(truth), truth, modes)
     true = _alive(_BLADES, true)
     _check_failures(chosen, true.plant)
+    _check_loads(chosen, true)
     task = Task(
         blade=true,
         design_blade=true if designed == config else _alive(_BLADES, _same_electronics(designed, true)),
@@ -175,6 +178,12 @@ def _check_failures(chosen: Scenario, plant: Plant) -> None:
             raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
 
 
+def _check_loads(chosen: Scenario, true: Blade, path: str = "scenario") -> None:
+    """``ValueError`` for loads that cannot be shown at the blade's control interval."""
+    interval, lowest = true.config.control_interval, float(true.plant.natural_frequencies[0])
+    check_frequencies(chosen, interval, lowest, largest_speed(chosen, true.config.speed), path)
+
+
 def _driven(config: BladeConfig, chosen: Scenario) -> BladeConfig:
     """The blade with the drive that a scenario gives it."""
     limits = chosen.drive.voltage_limits
@@ -189,8 +198,8 @@ def _with(config: BladeConfig, **modes: int | None) -> BladeConfig:
 
 def _design_config(preset: str, speed: float | None, design: BladeConfig | Mapping[str, Any] | str) -> BladeConfig:
     """A name is a preset; a dictionary changes ``preset`` at ``speed``, not the true blade's own changes to it."""
-    if isinstance(design, str):
-        return blade_config(design, None, speed)
+    if not isinstance(design, (BladeConfig, Mapping)):
+        return blade_config(checked("design", design, Choice(PRESETS, BladeConfig)), None, speed)
     return read(blade_config(preset, None, speed), design, "design")
 
 
@@ -258,7 +267,10 @@ def _numbers(name: str, value: Any) -> Array:
 def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> tuple[Scenario, Array | None]:
     """Scenario and initial states ((n,) or (rows, n), or None) of one reset, as its options say."""
     options = {} if options is None else checked_table("options", options, ("load", "initial_state"))
-    chosen = with_load(task.scenario, options["load"]) if "load" in options else task.scenario
+    chosen = task.scenario
+    if "load" in options:
+        chosen = with_load(chosen, options["load"])
+        _check_loads(chosen, task.blade, "options.load")
     return chosen, _initial_state(task, options["initial_state"], rows) if "initial_state" in options else None
 
 

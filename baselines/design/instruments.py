@@ -11,8 +11,8 @@ from baselines.design.controller import Array, Observes
 from baselines.design.matrix import keep_matrices
 from baselines.design.objects import instance
 from beamenv.configuration import Choice, Number, checked
+from beamenv.configuration.read_only import ReadOnly
 from beamenv.plant.plant import Plant, drive_limit
-from beamenv.plant.read_only import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
-from beamenv.configuration import Count, Refused, checked
+from beamenv.configuration import Count, Instance, Refused, checked
+from beamenv.configuration.read_only import sealed_property
 from beamenv.patches import PatchResponse, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
@@ -30,43 +30,46 @@ class Blade:
 
     config: BladeConfig
 
+    def __post_init__(self) -> None:
+        checked("config", self.config, Instance(BladeConfig))
+
     @property
     def as_beam(self) -> Blade:
         """The blade that the configuration describes: this one, unless it moves as a plant file says."""
         return self
 
-    @cached_property
+    @sealed_property
     def beam(self) -> RotatingBeam:
         """The blade with its patches' passive effect."""
         return build_beam(self.config)
 
-    @cached_property
+    @sealed_property
     def modal(self) -> ModalModel:
         """The modes of its design plant."""
         if _is_thesis(self.config) or self.config.modes > self.beam.space.size:
             return truncate(self.beam, self.config.speed, self.config.modes, self.config.gyroscopic)
         return self._every_mode.first(self.config.modes)
 
-    @cached_property
+    @sealed_property
     def _every_mode(self) -> ModalModel:
         return truncate(self.beam, self.config.speed, self.beam.space.size, self.config.gyroscopic)
 
-    @cached_property
+    @sealed_property
     def at_rest(self) -> PatchResponse | None:
         """What voltages on its patches do to it at rest; None in the thesis' model."""
         return None if _is_thesis(self.config) else local_response(self.beam, self.config.patches)
 
-    @cached_property
+    @sealed_property
     def full(self) -> FullModel:
         """What acts on it and what is seen of it."""
         return full_model(self.beam, self.config.patches, self.config.speed, self.at_rest)
 
-    @cached_property
+    @sealed_property
     def plant(self) -> Plant:
         """Its reduced plant, that controllers are designed for: ``modes`` modes, voltages and currents as they are."""
         return self._reduced(self.modal, self.config.sensor_full_scale)
 
-    @cached_property
+    @sealed_property
     def true_modal(self) -> ModalModel:
         """The modes of its true plant."""
         config, size = self.config, self.beam.space.size
@@ -79,7 +82,7 @@ class Blade:
         below = int(np.count_nonzero(every.natural_frequencies <= np.pi / config.control_interval))
         return every.first(max(below, config.modes))
 
-    @cached_property
+    @sealed_property
     def truth(self) -> Plant:
         """Its true plant, that moves: all modes up to the Nyquist frequency, the others' static share, and the electronics.
 
@@ -106,7 +109,7 @@ class Blade:
             filter_cutoff=None if cutoff is None else cutoff * rate,
         )
 
-    @cached_property
+    @sealed_property
     def _static(self) -> Array:
         """K⁻¹F (N, m): the coefficients of the trial functions under each volt, at its speed."""
         return np.asarray(np.linalg.solve(self.beam.at(self.config.speed).stiffness, self.full.forces))
@@ -174,7 +177,7 @@ class Blade:
 
     def displacement_operator(self, stations: Sequence[float] | Array) -> Array:
         """(3, k, n): lag, flap (m) and twist (rad) at k stations (m from the root) per unit of each state of the true plant."""
-        rows = self.beam.displacements(np.asarray(stations, dtype=float))
+        rows = self.beam.displacements(stations)
         lag_flap_twist, truth = np.stack([rows["u"], rows["v"], rows["phi"]]), self.truth
         displaced = lag_flap_twist @ (self.true_modal.mode_shapes / self.true_modal.natural_frequencies)
         still = np.zeros((*displaced.shape[:-1], len(truth.A) - displaced.shape[-1]))

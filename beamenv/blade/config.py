@@ -10,9 +10,11 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
-from beamenv.configuration import Choice, Count, Flag, Number, Positive, Range, Refused, Whole, configuration
+from beamenv.configuration import Choice, Count, Flag, Instance, Number, Positive, Refused, Whole, checked, configuration
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
+from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
+from beamenv.plant.limits import VOLTAGES
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
@@ -81,8 +83,8 @@ class BeamConfig:
     """A name or a lamina; in a dictionary or file also a table of a lamina's fields, which completes from the material before."""
     ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
     """Degrees from the contour tangent, inner to outer face, for ("all", angles) or wall by wall; a list or a mapping will do."""
-    pretwist_deg: Annotated[float, Number(unit="degrees")] = 30.0
-    presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
+    pretwist_deg: Annotated[float, DEGREES] = 30.0
+    presetting_deg: Annotated[float, DEGREES] = 0.0
     taper: Positive = 1.0
     shear: Annotated[str, THEORY] = "higher_order"
     shear_flow: Annotated[str | None, FLOW] = None
@@ -94,6 +96,8 @@ class BeamConfig:
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
+        if layout is not None:
+            checked("layout", layout, Instance(PatchLayout))
         return RotatingBeam(
             section=BoxSection(self.width, self.depth, self.thickness),
             layup=self.layup(),
@@ -107,7 +111,7 @@ class BeamConfig:
             shear_flow=self.shear_flow,
             steady_state=self.steady_state,
             terms=self.terms,
-            inlays=layout.inlays(self.length) if layout else (),
+            inlays=layout.inlays(self.length) if layout is not None else (),
         )
 
     def layup(self) -> Layup:
@@ -135,19 +139,19 @@ class BladeConfig:
     gyroscopic: Annotated[bool, Flag()] = True
     damping_ratio: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.01
     """Of every mode."""
-    effort_weight: Positive = 0.5
+    effort_weight: Annotated[float, Number(ge=1e-9, le=1e9)] = 0.5
     """ρ in R = ρ FᵀK⁻¹F: with ½, uᵀRu is the energy (J) that the actuators store in the blade at rest."""
     strain_limit: Annotated[str, STRAIN_LIMIT] = "vibration"
     """Which strain fails the blade where it exceeds what its patches are rated for: that of "vibration" alone, or the "total", with
     the steady state's."""
-    white_load: Annotated[float, Number(ge=0.0, unit="N/m")] = 3.0
+    white_load: Annotated[float, Number(ge=0.0, le=1e6, unit="N/m")] = 3.0
     """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""
-    sensor_noise_fraction: Annotated[float, Number(ge=0.0)] = 0.02
+    sensor_noise_fraction: Annotated[float, Number(ge=0.0, le=100.0)] = 0.02
     """Standard deviation of one sample over the sensors' full scale."""
-    sensor_full_scale: Annotated[float | None, Number(gt=0.0, unit="A")] = None
+    sensor_full_scale: Annotated[float | None, Number(ge=1e-15, le=1e6, unit="A")] = None
     """A: the range of the data acquisition, and with it its noise, where patches move but the instrument stays; None fits it to
     the blade's largest current after a sudden reference load."""
-    voltage_limits: Annotated[tuple[float, float], Range(encloses=0.0, unit="V")] = (-1500.0, 1500.0)
+    voltage_limits: Annotated[tuple[float, float], VOLTAGES] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
     electronics: ElectronicsConfig = field(default_factory=ElectronicsConfig)
     truth_modes: Annotated[int | None, Count()] = None

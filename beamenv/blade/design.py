@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Instance, checked
 from beamenv.plant.plant import Plant
 
 
@@ -16,6 +17,10 @@ class Design:
     plant: Plant
     """Of the design's ``modes`` modes, without electronics."""
     config: BladeConfig
+
+    def __post_init__(self) -> None:
+        checked("design.plant", self.plant, Instance(Plant))
+        checked("design.config", self.config, Instance(BladeConfig))
 
     @property
     def full_plant(self) -> Plant:

@@ -16,11 +16,11 @@ class ElectronicsConfig:
     whole default interval. A stronger amplifier, 50 mA say, reaches 2.5 times as far.
     """
 
-    amplifier_bandwidth: Annotated[float | None, Number(gt=0.0, unit="Hz")] = 7.5e3
+    amplifier_bandwidth: Annotated[float | None, Number(ge=1e-3, le=1e9, unit="Hz")] = 7.5e3
     """Hz: −3 dB of its one pole; typical of small amplifiers of ±2 kV and 20 mA for small signals."""
     filter_order: Annotated[int, Count(1, 8)] = 2
     """Of the anti-aliasing filters, Butterworth's: of low order, as is typical of control. The sharp digital ones of instruments
     for vibration (delta-sigma converters such as NI's 9234) come many samples late."""
-    filter_cutoff: Annotated[float | None, Number(gt=0.0, le=100.0)] = 0.4
+    filter_cutoff: Annotated[float | None, Number(ge=1e-4, le=100.0)] = 0.4
     """−3 dB frequency over the sampling rate: 800 Hz at 2 kHz. A mode of 435 Hz passes with 0.96 of its size, 48° late;
     so mild a filter lets 0.54 pass at the Nyquist frequency, 1000 Hz, and 0.41 at 1200 Hz, which sampling folds to 800 Hz."""

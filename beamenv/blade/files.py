@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
-from beamenv.configuration import read
+from beamenv.configuration import Refused, read
 from beamenv.configuration.files import of_file, read_table
 
 
 def to_dict(config: Any) -> dict[str, Any]:
     """A configuration as plain dictionaries, lists, numbers and strings: what JSON can hold."""
+    if not is_dataclass(config) or isinstance(config, type):
+        raise Refused("config", config, "a configuration, such as a BladeConfig")
     plain: dict[str, Any] = json.loads(json.dumps(asdict(config)))
     return plain
 

@@ -16,7 +16,6 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -28,11 +27,11 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Refused, read
 from beamenv.configuration.files import of_file
+from beamenv.configuration.read_only import sealed, sealed_property
 from beamenv.configuration.sentence import shown
 from beamenv.plant.electronics import static_residual
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant
-from beamenv.plant.read_only import sealed
 from beamenv.plant.reduction import FullModel, ModalModel, reduced_plant
 
 Array = NDArray[np.float64]
@@ -50,20 +49,20 @@ class GivenBlade(Blade):
 
     given: ModalPlant
 
-    @cached_property
+    @sealed_property
     def as_beam(self) -> Blade:
         """The blade that the configuration describes."""
         beam = Blade(self.config)
         vars(beam).update(beam=self.beam, modal=self.modal, full=self.full)
         return beam
 
-    @cached_property
+    @sealed_property
     def true_modal(self) -> ModalModel:
         """The modes of the file; the shapes, by the beam's trial functions, are those of their counterparts."""
         gyroscopic = self.given.gyroscopic if self.config.gyroscopic else np.zeros_like(self.given.gyroscopic)
         return ModalModel(self.given.natural_frequencies, self._shapes(), gyroscopic)
 
-    @cached_property
+    @sealed_property
     def truth(self) -> Plant:
         """The plant that moves."""
         config, model, omega = self.config, self.given, self.given.natural_frequencies

@@ -14,8 +14,8 @@ The rules, the same for every argument, dictionary and file:
 - What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
 """
 
-from beamenv.configuration.kinds import Choice, FileName, Flag, NameOrFile, Table, Text, Texts
-from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Positive, Range, Real, Share, Whole
+from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
+from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
 from beamenv.configuration.sentence import Refused, shown
 
@@ -24,11 +24,13 @@ __all__ = [
     "Count",
     "FileName",
     "Flag",
+    "Instance",
     "NameOrFile",
     "Natural",
     "Number",
     "Numbers",
     "Patches",
+    "Points",
     "Positive",
     "Range",
     "Real",

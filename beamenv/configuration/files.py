@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -25,29 +26,44 @@ SCHEMA = "$schema"
 """What an editor reads of a JSON file, and nobody else."""
 
 
-def read_table(path: str | Path) -> dict[str, Any]:
+def read_table(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The table in a .toml or .json file.
 
     Raises ``ValueError`` of one sentence for a name that ends otherwise, for a file that cannot be read, with the position of
     what is wrong in it, and for one that holds no table.
     """
-    path = Path(path)
-    if path.suffix not in ENDINGS:
-        raise Refused("path", str(path), f"a file that ends in {' or '.join(ENDINGS)}")
+    path = checked_path("path", path, ENDINGS)
     try:
-        return parsed_table(path.read_text(encoding="utf-8"), str(path))
-    except OSError as error:
-        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+        text = content_of(path).decode("utf-8")
     except UnicodeDecodeError as error:
         raise ValueError(f"file {str(path)!r} cannot be read: {error}.") from None
+    return parsed_table(text, str(path))
+
+
+def checked_path(name: str, value: Any, endings: Sequence[str], allowed: str | None = None) -> Path:
+    """A path with one of some endings; ``ValueError`` for another, and for what is no path."""
+    text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
+    if not isinstance(text, str) or "\0" in text or Path(text).suffix not in endings:
+        raise Refused(name, text, allowed or f"a file that ends in {' or '.join(endings)}")
+    return Path(text)
+
+
+def content_of(path: Path) -> bytes:
+    """What is in a file; ``ValueError`` names one that cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+    except MemoryError:
+        raise ValueError(f"file {str(path)!r} cannot be read: it is larger than the memory.") from None
 
 
 def parsed_table(text: str, source: str) -> dict[str, Any]:
     """The table in a text, JSON where the name of its source ends so and TOML otherwise; ``ValueError`` names the source."""
     try:
         content = json.loads(text) if source.endswith(".json") else tomllib.loads(text)
-    except (json.JSONDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        raise ValueError(f"file {source!r} cannot be read: {error}.") from None
+    except (ValueError, RecursionError) as error:  # of syntax, and of integers of too many digits
+        raise ValueError(f"file {source!r} cannot be read: {' '.join(str(error).split()).rstrip('.')}.") from None
     if not isinstance(content, dict):
         raise Refused(f"file {source!r}", content, "a table of fields")
     return {name: value for name, value in content.items() if name != SCHEMA}
@@ -64,7 +80,7 @@ def parsed_arrays(content: bytes, source: str) -> dict[str, Any]:
 
 
 @contextmanager
-def of_file(path: str | Path) -> Iterator[None]:
+def of_file(path: str | os.PathLike[str]) -> Iterator[None]:
     """Name the file in what is said of its content."""
     try:
         yield

@@ -164,6 +164,26 @@ class Choice(Kind):
 
 
 @dataclass(frozen=True, slots=True)
+class Instance(Kind):
+    """An object of a class."""
+
+    of: type[Any]
+
+    @property
+    def allowed(self) -> str:
+        """Its name."""
+        return an(self.of.__name__)
+
+    def core(self) -> CoreSchema:
+        """The object itself."""
+        return core_schema.is_instance_schema(self.of)
+
+    def json(self) -> JsonSchema:
+        """Nothing that a file can hold."""
+        return {"not": {}}
+
+
+@dataclass(frozen=True, slots=True)
 class NameOrFile(Kind):
     """One of several names, or the path of a file with a certain ending; kept as a string."""
 

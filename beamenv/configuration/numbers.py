@@ -13,6 +13,9 @@ from beamenv.configuration.kinds import JsonSchema, Kind, plain, whole, wholes
 UNBOUNDED = 10**9
 """A count beyond this is a mistake."""
 
+TURNED = 3.6e4
+"""Degrees, either way: a hundred turns; beyond, an angle is a mistake, and at last has no digits of a turn left."""
+
 
 @dataclass(frozen=True, slots=True)
 class Number(Kind):
@@ -43,6 +46,9 @@ class Number(Kind):
         return {"type": "number", **{name: bound for name, bound in bounds.items() if bound is not None}}
 
 
+DEGREES = Number(ge=-TURNED, le=TURNED, unit="degrees")
+
+
 @dataclass(frozen=True, slots=True)
 class Count(Kind):
     """A whole number within bounds."""
@@ -53,7 +59,7 @@ class Count(Kind):
     @property
     def allowed(self) -> str:
         """Say, a whole number from 1 to 30."""
-        return f"a whole number{_span(self.ge, self.le)}"
+        return f"a whole number{_span(self.ge, self.le)}" + (f" and not above {UNBOUNDED}" if self.le == UNBOUNDED else "")
 
     def core(self) -> CoreSchema:
         """An integer."""
@@ -65,7 +71,7 @@ class Count(Kind):
 
     def json(self) -> JsonSchema:
         """An integer."""
-        return {"type": "integer", "minimum": self.ge, **({} if self.le == UNBOUNDED else {"maximum": self.le})}
+        return {"type": "integer", "minimum": self.ge, "maximum": self.le}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,15 +82,21 @@ class Range(Kind):
     le: float = math.inf
     encloses: float | None = None
     """A number strictly between the two."""
+    apart: float = 0.0
+    """Least difference of the two."""
     whole: bool = False
     unit: str = ""
+    falls: bool = False
+    """Whether the second may be the smaller one: a course from the first to the second."""
 
     @property
     def allowed(self) -> str:
         """Say, a number or a range [low, high] from 0 to 1."""
-        kind = "a whole number or a range [low, high] of whole numbers" if self.whole else "a number or a range [low, high]"
+        ends = "two numbers [first, last]" if self.falls else "a range [low, high]"
+        kind = f"a whole number or {ends} of whole numbers" if self.whole else f"a number or {ends}"
         if self.encloses is not None:
-            kind = f"a range [low, high] that encloses {self.encloses:g}"
+            wide = f" and is at least {self.apart:g} wide" if self.apart else ""
+            kind = f"a range [low, high] that encloses {self.encloses:g}{wide}"
         return _with_unit(kind + _span(self.ge, self.le), self.unit)
 
     def core(self) -> CoreSchema:
@@ -99,7 +111,7 @@ class Range(Kind):
         pair = {"type": "array", "items": end, "minItems": 2, "maxItems": 2}
         if self.encloses is None:
             return {"anyOf": [end, pair]}
-        ends = [{"type": "number", "exclusiveMaximum": self.encloses}, {"type": "number", "exclusiveMinimum": self.encloses}]
+        ends = [{**end, "exclusiveMaximum": self.encloses}, {**end, "exclusiveMinimum": self.encloses}]
         return {"type": "array", "prefixItems": ends, "minItems": 2, "maxItems": 2}
 
     def _both(self, value: Any) -> Any:
@@ -109,7 +121,11 @@ class Range(Kind):
 
     def _rising(self, ends: tuple[Any, Any]) -> tuple[Any, Any]:
         low, high = ends
-        if low > high or not (self.encloses is None or low < self.encloses < high):
+        if (
+            (low > high and not self.falls)
+            or (self.apart and high - low < self.apart)
+            or not (self.encloses is None or low < self.encloses < high)
+        ):
             raise ValueError
         return ends
 
@@ -128,7 +144,8 @@ class Numbers(Kind):
     def allowed(self) -> str:
         """Say, a list of one or more finite numbers."""
         count = {0: "", 1: " one or more"}.get(self.least, f" {'' if self.least == self.most else 'at least '}{self.least}")
-        return f"a list of{count} {self.of}, each {self.each.allowed}"
+        most = "" if self.most in (None, self.least) else f", at most {self.most}"
+        return f"a list of{count} {self.of}{most}, each {self.each.allowed}"
 
     def core(self) -> CoreSchema:
         """A tuple of floats, or of integers."""
@@ -142,6 +159,31 @@ class Numbers(Kind):
         """An array."""
         most = {} if self.most is None else {"maxItems": self.most}
         return {"type": "array", "items": self.each.json(), "minItems": self.least, **most}
+
+
+@dataclass(frozen=True, slots=True)
+class Points(Kind):
+    """A sequence of points of a plane, or an array (K, 2)."""
+
+    least: int = 0
+    most: int | None = None
+    unit: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """Say, a list of at least 3 points [x, y] (m)."""
+        return _with_unit(f"a list of {self.least} to {self.most} points [x, y]", self.unit)
+
+    def core(self) -> CoreSchema:
+        """A tuple of pairs."""
+        point = core_schema.tuple_schema([Number().inner()] * 2, strict=True)
+        points = core_schema.tuple_variable_schema(point, min_length=self.least, max_length=self.most, strict=True)
+        return core_schema.no_info_before_validator_function(plain, points)
+
+    def json(self) -> JsonSchema:
+        """An array of arrays."""
+        point = {"type": "array", "items": Number().json(), "minItems": 2, "maxItems": 2}
+        return {"type": "array", "items": point, "minItems": self.least, **({} if self.most is None else {"maxItems": self.most})}
 
 
 @dataclass(frozen=True, slots=True)

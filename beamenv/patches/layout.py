@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamenv.configuration import Choice, Flag, Number, Patches, Refused, configuration
+from beamenv.configuration import Choice, Flag, Number, Patches, Refused, checked, configuration
 from beamenv.patches.material import PATCH_MATERIALS, PatchMaterial
 from beamenv.structure.walls.contour import Inlay
 
@@ -39,11 +39,11 @@ class PatchLayout:
 
     def actuator_positions(self, beam_length: float) -> tuple[float, ...]:
         """Root-side edges in m; ``ValueError`` if patches overlap or leave 0 … 0.7 L."""
-        return spaced("actuators", self.actuators, self.length, beam_length)
+        return spaced("actuators", self.actuators, self.length, _span(beam_length))
 
     def sensor_positions(self, beam_length: float) -> tuple[float, ...]:
         """Root-side edges in m; ``ValueError`` if patches overlap or leave 0 … 0.7 L."""
-        return spaced("sensors", self.sensors, self.length, beam_length)
+        return spaced("sensors", self.sensors, self.length, _span(beam_length))
 
     def inlays(self, beam_length: float) -> tuple[Inlay, ...]:
         """The patches as foreign material in the walls; none when they are not passive."""
@@ -51,6 +51,11 @@ class PatchLayout:
             return ()
         walls = ((ACTUATOR_WALL, self.actuator_positions(beam_length)), (SENSOR_WALL, self.sensor_positions(beam_length)))
         return tuple(self.patch.inlay(wall, start, self.length, self.width) for wall, starts in walls for start in starts)
+
+
+def _span(beam_length: float) -> float:
+    span: float = checked("beam_length", beam_length, Number(gt=0.0, unit="m"))
+    return span
 
 
 def spaced(name: str, patches: int | tuple[float, ...], length: float, beam_length: float) -> tuple[float, ...]:
@@ -71,4 +76,4 @@ def spaced(name: str, patches: int | tuple[float, ...], length: float, beam_leng
         raise Refused(f"blade.patches.{name}", patches, allowed)
     if len(positions) > 1 and np.diff(np.sort(positions)).min() < length - tolerance:
         raise Refused(f"blade.patches.{name}", patches, apart)
-    return positions
+    return tuple(min(max(position, 0.0), last) for position in positions)  # what rounding has moved out of bounds lies on them

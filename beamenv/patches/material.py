@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Annotated
 
 import numpy as np
@@ -84,4 +86,4 @@ PZT = PatchMaterial(
 )
 """Monolithic sheet poled through its thickness: d31 in both directions (thesis Table 5.1)."""
 
-PATCH_MATERIALS = {"MFC": MFC, "PZT": PZT}
+PATCH_MATERIALS: Mapping[str, PatchMaterial] = MappingProxyType({"MFC": MFC, "PZT": PZT})

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration import Instance, checked
+from beamenv.configuration.read_only import Sealed
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL, PatchLayout
 from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
@@ -92,10 +94,16 @@ def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
     return Stations.between(breakpoints[apart], few if beam.model == "blade" else beam.space.terms + EXTRA_STATIONS)
 
 
+def _check_parts(beam: RotatingBeam, layout: PatchLayout) -> None:
+    checked("beam", beam, Instance(RotatingBeam))
+    checked("layout", layout, Instance(PatchLayout))
+
+
 def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
     """F: generalised force per volt, (N, actuators), or (N, 1) when ganged; ``beam`` carries the inlays of passive patches and
     vibrates about its steady state at ``speed`` rad/s.
     """
+    _check_parts(beam, layout)
     starts = layout.actuator_positions(beam.length)
     forces = patch_forces(beam, layout.patch, ACTUATOR_WALL, starts, layout.length, layout.width, speed)
     return forces.sum(axis=1, keepdims=True) if layout.ganged else forces
@@ -103,13 +111,14 @@ def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Ar
 
 def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
     """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
+    _check_parts(beam, layout)
     starts = layout.sensor_positions(beam.length)
     forces = patch_forces(beam, layout.patch, SENSOR_WALL, starts, layout.length, layout.width, speed)
     return layout.patch.charge_per_reaction * forces.T
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PatchResponse:
+class PatchResponse(Sealed):
     """What voltages on the patches do to the blade at rest."""
 
     energy: Array

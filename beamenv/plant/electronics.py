@@ -20,8 +20,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import sealed
 from beamenv.plant.plant import Plant, drive_limit
-from beamenv.plant.read_only import sealed
 
 Array = NDArray[np.float64]
 

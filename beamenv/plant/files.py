@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from beamenv.configuration import Refused
-from beamenv.configuration.files import of_file, parsed_arrays
+from beamenv.configuration import Instance, checked
+from beamenv.configuration.files import checked_path, content_of, of_file, parsed_arrays
 from beamenv.configuration.sentence import unknown_field
 from beamenv.configuration.writing import write_whole
 from beamenv.plant import named
@@ -33,20 +33,23 @@ def load_plant(source: str | Path) -> ModalPlant:
     Raises ``ValueError`` of one sentence, with the file's name in it, for a name that is none, a file that cannot be read, a key
     that is missing or unknown, and whatever ``ModalPlant`` refuses.
     """
-    if not isinstance(source, (str, Path)):
-        raise Refused("plant", source, f"one of {', '.join(NAMES)}, or the path of a {ENDING} file")
-    return _shipped(source) if isinstance(source, str) and source in NAMES else _read(Path(source))
+    if isinstance(source, str) and source in NAMES:
+        return _shipped(source)
+    path = checked_path("plant", source, (ENDING,), f"one of {', '.join(NAMES)}, or the path of a {ENDING} file")
+    return _of_bytes(content_of(path), str(path))
 
 
 def save_plant(plant: ModalPlant, path: str | Path) -> None:
-    """Write a plant to a file, whole or not at all; ``ValueError`` for a name that does not end in ``.npz``."""
-    path = Path(path)
-    if path.suffix != ENDING:
-        raise Refused("path", str(path), f"a file that ends in {ENDING}")
+    """Write a plant to a file, whole or not at all; ``ValueError`` for another ending, and where it cannot be written."""
+    checked("plant", plant, Instance(ModalPlant))
+    path = checked_path("path", path, (ENDING,))
     content = {name: value for name in _FIELDS if (value := getattr(plant, name)) is not None and not _is_empty(value)}
     file = io.BytesIO()
     np.savez_compressed(file, **content)
-    write_whole(path, file.getvalue())
+    try:
+        write_whole(path, file.getvalue())
+    except OSError as error:
+        raise ValueError(f"file {str(path)!r} cannot be written: {error.strerror or error}.") from None
 
 
 def _is_empty(value: Any) -> bool:
@@ -56,16 +59,6 @@ def _is_empty(value: Any) -> bool:
 @lru_cache
 def _shipped(name: str) -> ModalPlant:
     return _of_bytes(files(named).joinpath(f"{name}{ENDING}").read_bytes(), name)
-
-
-def _read(path: Path) -> ModalPlant:
-    if path.suffix != ENDING:
-        raise Refused("plant", str(path), f"one of {', '.join(NAMES)}, or the path of a {ENDING} file")
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
-    return _of_bytes(content, str(path))
 
 
 def _of_bytes(content: bytes, name: str) -> ModalPlant:

@@ -8,6 +8,7 @@ from hashlib import sha256
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration import Instance, checked
 from beamenv.plant.plant import Plant
 
 Array = NDArray[np.float64]
@@ -20,6 +21,7 @@ def fingerprint(plant: Plant) -> str:
     frequency, on the real axis, where none is close to a pole. They do not depend on the signs of mode shapes, and all numbers
     are rounded to a millionth of the largest in their matrix, so that machines whose last digits differ agree.
     """
+    checked("plant", plant, Instance(Plant))
     digest = sha256()
     for matrix in _met(plant):
         largest = float(np.abs(matrix).max(initial=0.0))

@@ -18,12 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Count, Number, Refused, Text, checked
-from beamenv.plant.read_only import ReadOnly
+from beamenv.configuration.arrays import checked_array
+from beamenv.configuration.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
 SKEW_WITHIN = 1e-9
 """Largest |G + Gᵀ| over the largest |G| or the first frequency: what is left of a skew matrix that a program has rounded."""
+
+SLOWEST, FASTEST = 1e-3, 1e9
+"""rad/s: natural frequencies beyond are a mistake of units."""
 
 _DAMPING = Number(ge=0.0, lt=1.0)
 
@@ -115,8 +119,8 @@ def _keep(plant: ModalPlant, name: str, value: Any) -> None:
 def _checked_frequencies(plant: ModalPlant) -> int:
     """How many there are."""
     omega = _matrix("natural_frequencies", plant.natural_frequencies, (None,), "one for each mode")
-    if np.any(omega <= 0.0) or np.any(np.diff(omega) < 0.0):
-        raise Refused("plant.natural_frequencies", omega.tolist(), "positive numbers (rad/s) that ascend")
+    if np.any(omega < SLOWEST) or np.any(omega > FASTEST) or np.any(np.diff(omega) < 0.0):
+        raise Refused("plant.natural_frequencies", omega.tolist(), f"numbers from {SLOWEST:g} to {FASTEST:g} (rad/s) that ascend")
     _keep(plant, "natural_frequencies", omega)
     return len(omega)
 
@@ -133,10 +137,9 @@ def _checked_blade(given: Any) -> str:
 
 
 def _checked_damping(given: Any, modes: int) -> Array:
-    ratios = np.asarray(given)
-    if ratios.ndim == 0:
-        return np.full(modes, checked("plant.damping_ratio", ratios.item(), _DAMPING))
-    ratios = _matrix("damping_ratio", ratios, (modes,), "one for each mode, or be one number")
+    if not isinstance(given, (list, tuple)) and np.ndim(given) == 0:
+        return np.full(modes, checked("plant.damping_ratio", given, _DAMPING))
+    ratios = _matrix("damping_ratio", given, (modes,), "one for each mode, or be one number")
     if np.any((ratios < 0.0) | (ratios >= 1.0)):
         raise Refused("plant.damping_ratio", ratios.tolist(), f"each {_DAMPING.allowed}")
     return ratios
@@ -144,19 +147,4 @@ def _checked_damping(given: Any, modes: int) -> Array:
 
 def _matrix(name: str, given: Any, shape: tuple[int | None, ...], what: str) -> Array:
     """The numbers as float64, of the shape (None: one or more); ``ValueError`` for any others."""
-    try:
-        values = np.asarray(given)
-    except ValueError:  # rows of different lengths
-        values = np.asarray(None)
-    if values.dtype.kind not in "fiu":
-        raise Refused(f"plant.{name}", given, "an array of real numbers")
-    fits = values.ndim == len(shape) and all(
-        has > 0 and has == (want or has) for has, want in zip(values.shape, shape, strict=True)
-    )
-    if not fits:
-        wanted = ", ".join("any" if want is None else str(want) for want in shape)
-        raise ValueError(f"plant.{name} has shape {values.shape}, but must have shape ({wanted}): {what}.")
-    if not np.isfinite(values).all():
-        wrong = np.argwhere(~np.isfinite(values))[0].tolist()
-        raise ValueError(f"plant.{name}{wrong} is {values[tuple(wrong)]}, but every number must be finite.")
-    return np.asarray(values, dtype=np.float64)
+    return checked_array(f"plant.{name}", given, shape, what)

@@ -12,16 +12,17 @@ with u the actuator voltages (V), d the uniform line loads in lag and flap (N/m)
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, checked
+from beamenv.configuration import Count, Instance, Number, checked
+from beamenv.configuration.arrays import shaped_array
+from beamenv.configuration.read_only import ReadOnly, sealed
 from beamenv.plant.hold import hold_all_with_cost, hold_with_cost
 from beamenv.plant.poles import poles_of_sampled
-from beamenv.plant.read_only import ReadOnly, sealed
 
 if TYPE_CHECKING:
     import control
@@ -32,6 +33,8 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Plant(ReadOnly):
     """Reduced-order blade with patches: n = 2r states, m voltages, p sensors, d = 2 line loads.
+
+    ``ValueError`` of one sentence for a part that is no array of real numbers with as many dimensions.
 
     The cost it is judged by is J = ∫ (xᵀ Q x + uᵀ R u) dt (thesis Eqs. 5.7–5.9, corrected).
     """
@@ -68,6 +71,13 @@ class Plant(ReadOnly):
     """s: sensors are sampled, voltages and loads are held over this interval."""
     electronic_states: int = 0
     """How many of the n states, the last, are those of filters and amplifiers."""
+
+    def __post_init__(self) -> None:
+        _check_parts(self)
+        _check_clock(self, "control_interval")
+        n, electronic = len(self.A), self.electronic_states
+        object.__setattr__(self, "electronic_states", checked("plant.electronic_states", electronic, Count(0, n)))
+        ReadOnly.__post_init__(self)
 
     def __repr__(self) -> str:
         return f"Plant({self.sizes})"
@@ -120,6 +130,11 @@ class SampledPlant(ReadOnly):
     interval: float
     """s."""
 
+    def __post_init__(self) -> None:
+        _check_parts(self)
+        _check_clock(self, "interval")
+        ReadOnly.__post_init__(self)
+
     def __repr__(self) -> str:
         magnitudes = np.abs(poles_of_sampled(self.A, self.interval))
         return f"SampledPlant({_counts(self.B, self.C)}; {_range(magnitudes[0], magnitudes[-1])}; {1e3 * self.interval:.4g} ms)"
@@ -156,6 +171,24 @@ class SampledPlant(ReadOnly):
         return sampled_from_control(system, like, **changes)
 
 
+_ROWS = ("natural_frequencies", "sensor_full_scale")
+_ONES = ("control_interval", "interval", "electronic_states")
+
+
+def _check_parts(plant: Any) -> None:
+    """Each part as an array; ``ValueError`` for one that is none of real numbers, or of another number of dimensions."""
+    for name in (each.name for each in fields(plant) if each.name not in _ONES):
+        given = getattr(plant, name)
+        wanted = 1 if name in _ROWS else 2
+        there = shaped_array(f"plant.{name}", given, (None,) * wanted, "a row" if wanted == 1 else "rows and columns")
+        if there is not given:
+            object.__setattr__(plant, name, there)
+
+
+def _check_clock(plant: Any, name: str) -> None:
+    object.__setattr__(plant, name, checked(f"plant.{name}", getattr(plant, name), Number(gt=0.0, unit="s")))
+
+
 def _counts(B: Array, C: Array) -> str:
     return f"{B.shape[0]} states, {B.shape[1]} voltages, {len(C)} sensors"
 
@@ -170,7 +203,7 @@ def sample(plant: Plant, interval: float | None = None) -> SampledPlant:
     ``interval`` in s defaults to the plant's own control interval. Raises ValueError for one that is not positive and finite, and
     where what is unstable in the plant, or no number, leaves no finite state at its end.
     """
-    interval = _checked_interval(plant, interval)
+    interval = _checked_interval(checked("plant", plant, Instance(Plant)), interval)
     with np.errstate(over="ignore", invalid="ignore"):  # said below
         return _sampled(plant, hold_with_cost(*_problem(plant), interval), interval)
 

@@ -76,9 +76,9 @@ def _load_cases(chosen: Scenario, interval: float, lowest_frequency: Any, unifor
     magnitude[case == CASES.index("none")] = 0.0
     direction = np.radians(_within(chosen.direction_deg, uniforms[:, 2]))
     load = magnitude[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
-    onset = np.rint(_within(chosen.onset, uniforms[:, 3]) / interval).astype(np.int64)
-    lasting = np.maximum(np.rint(_within(chosen.duration, uniforms[:, 4]) / interval), 1).astype(np.int64)
-    rate = _within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval
+    onset = _intervals(_within(chosen.onset, uniforms[:, 3]), interval)
+    lasting = np.maximum(_intervals(_within(chosen.duration, uniforms[:, 4]), interval), 1)
+    rate = np.minimum(_within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval, np.pi)
     return LoadCases(
         case=case,
         amplitude=np.where(is_release[:, None], 0.0, load),
@@ -98,6 +98,12 @@ def _choose(chosen: Scenario, uniform: NDArray[np.float64]) -> NDArray[np.int64]
     thresholds = np.cumsum(chosen.shares)
     thresholds[thresholds > 1.0 - 1e-9] = 1.0  # shares such as ten times 0.1 must leave nothing to "none"
     return np.searchsorted(thresholds, uniform, side="right").astype(np.int64)
+
+
+def _intervals(time: NDArray[np.float64], interval: float) -> NDArray[np.int64]:
+    """Whole control intervals in a time (s), no more than may be added up: what sets in later never does."""
+    with np.errstate(over="ignore"):
+        return np.minimum(np.rint(time / interval), float(NEVER // 4)).astype(np.int64)
 
 
 def _within(limits: Pair, uniform: NDArray[np.float64]) -> NDArray[np.float64]:

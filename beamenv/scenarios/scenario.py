@@ -5,23 +5,28 @@ Those with a name are files in ``scenarios/named``: a TOML file put there is a s
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, field, replace
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any
 
 from beamenv.configuration import Choice, Flag, Range, Refused, Share, checked, checked_table, configuration, read
 from beamenv.configuration.files import ENDINGS, of_file, parsed_table, read_table
+from beamenv.configuration.numbers import TURNED
 from beamenv.plant.named import ENDING
 from beamenv.scenarios import named
 from beamenv.scenarios.load_cases import CASES
 from beamenv.scenarios.named import NAMES
-from beamenv.scenarios.tables import Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
+from beamenv.scenarios.tables import STRONGEST, Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
 
-Loads = Annotated[Pair, Range(0.0, unit="N/m")]
+Loads = Annotated[Pair, Range(0.0, STRONGEST, unit="N/m")]
 Seconds = Annotated[Pair, Range(0.0, unit="s")]
-Degrees = Annotated[Pair, Range(unit="degrees")]
+Degrees = Annotated[Pair, Range(-TURNED, TURNED, unit="degrees")]
+
+USUAL_RATIO: Pair = (0.5, 2.0)
 
 PRESET = "preset"
 """The key under which a dictionary or file names the scenario that it departs from."""
@@ -54,8 +59,9 @@ class Scenario:
     """s: a controller cannot count on t = 0, and at least 90 % of a 0.5 s episode is left to damp what follows."""
     duration: Seconds = (0.005, 0.05)
     """s, of a pulse: from a knock much shorter than the first two modes' periods, 35 and 28 ms, to a push longer than both."""
-    frequency_ratio: Annotated[Pair, Range(0.0)] = (0.5, 2.0)
-    """Frequency of a harmonic load over the plant's first natural frequency: below, in and above resonance."""
+    frequency_ratio: Annotated[Pair, Range(0.0)] = USUAL_RATIO
+    """Frequency of a harmonic load over the plant's first natural frequency: below, in and above resonance. Loads are held
+    over each control interval: none may oscillate faster than the Nyquist frequency (``beamenv.scenarios.sampling``)."""
     phase_deg: Degrees = (0.0, 360.0)
     """Degrees, of a harmonic load."""
     white_load: Annotated[bool, Flag()] = True
@@ -96,17 +102,18 @@ def _with_lists(value: Any) -> Any:
 
 
 _ALONE = dict.fromkeys(CASES[:-1], 0.0)
-SCENARIOS: dict[str, Scenario] = {
+_SCENARIOS: dict[str, Scenario] = {
     "default": Scenario(),
     **{case: Scenario(**{**_ALONE, case: 1.0}) for case in CASES[:-1]},  # type: ignore[arg-type]
     "white": Scenario(**_ALONE),  # type: ignore[arg-type]
     "quiet": Scenario(**_ALONE, white_load=False, sensor_noise=False),  # type: ignore[arg-type]
 }
+SCENARIOS: Mapping[str, Scenario] = MappingProxyType(_SCENARIOS)
 """Named scenarios: all four load cases in turn; each one alone; white load and sensor noise only (what an LQG is
 designed for); nothing at all; and the benchmark's, a file each."""
 
 
-def scenario(given: Scenario | Mapping[str, Any] | str | Path | None = None) -> Scenario:
+def scenario(given: Scenario | Mapping[str, Any] | str | os.PathLike[str] | None = None) -> Scenario:
     """The scenario meant by a name in ``SCENARIOS``, a TOML or JSON file, a dictionary of fields or itself; None: "default".
 
     A dictionary or file may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
@@ -114,16 +121,17 @@ def scenario(given: Scenario | Mapping[str, Any] | str | Path | None = None) -> 
     """
     if given is None:
         return SCENARIOS["default"]
-    if isinstance(given, Path) or (isinstance(given, str) and given.endswith(ENDINGS)):
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(ENDINGS)):
         return load_scenario(given)
     if isinstance(given, (str, Scenario)):
         return _named(given) if isinstance(given, str) else given
     if not isinstance(given, Mapping):
         raise Refused("scenario", given, "a name, a .toml or .json file, a dictionary of fields or a Scenario")
-    return read(_named(given.get(PRESET, "default")), {name: value for name, value in given.items() if name != PRESET})
+    base = _named(given[PRESET], f"scenario.{PRESET}") if PRESET in given else SCENARIOS["default"]
+    return read(base, {name: value for name, value in given.items() if name != PRESET})
 
 
-def load_scenario(path: str | Path) -> Scenario:
+def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     """The scenario in a TOML or JSON file; ``ValueError`` names the file and what is wrong in it."""
     content = read_table(path)
     with of_file(path):
@@ -146,14 +154,15 @@ def scenario_schema() -> dict[str, Any]:
     return json_schema(Scenario, {PRESET: {"enum": list(SCENARIOS), "description": "The scenario this one departs from."}})
 
 
-def _named(name: Any) -> Scenario:
+def _named(name: Any, path: str = "scenario") -> Scenario:
     if not isinstance(name, str) or name not in SCENARIOS:
-        raise Refused("scenario", name, f"one of {', '.join(SCENARIOS)}, a .toml or .json file, or a dictionary of fields")
+        others = ", a .toml or .json file, or a dictionary of fields" if path == "scenario" else ""
+        raise Refused(path, name, f"one of {', '.join(SCENARIOS)}{others}")
     return SCENARIOS[name]
 
 
 for _name in NAMES:
-    SCENARIOS[_name] = scenario(parsed_table(files(named).joinpath(f"{_name}.toml").read_text(encoding="utf-8"), f"{_name}.toml"))
+    _SCENARIOS[_name] = scenario(parsed_table(files(named).joinpath(f"{_name}.toml").read_text(encoding="utf-8"), f"{_name}.toml"))
 
 
 LOAD_OPTIONS = ("case", "magnitude", "direction_deg", "onset", "duration", "frequency_ratio", "phase_deg")

@@ -7,15 +7,24 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from beamenv.configuration import Count, NameOrFile, Natural, Number, Numbers, Range, Refused, Share, Whole, configuration
+from beamenv.configuration import Count, NameOrFile, Natural, Number, Numbers, Range, Refused, Share, configuration
+from beamenv.plant.limits import VOLTAGES
 from beamenv.plant.named import ENDING, NAMES
 
 Pair = tuple[float, float]
 
 SAME: Pair = (1.0, 1.0)
 
+STRONGEST = 1e6
+"""N/m: a line load beyond this is a mistake."""
+
+MOST_PLANTS = 4096
+"""In a bank: some hundred megabytes, and a minute to build."""
+
+MOST_HARMONICS = 100
+
 Ratio = Annotated[Pair, Range(0.01, 10.0)]
-Load = Number(ge=0.0, unit="N/m")
+Load = Number(ge=0.0, le=STRONGEST, unit="N/m")
 
 
 @configuration("scenario.plants")
@@ -39,9 +48,10 @@ class PlantVariation:
     plant file has."""
     design_modes: Annotated[int | None, Count()] = None
     """Modes of the plant that controllers are designed for; None: the configured number, 11 unless said otherwise."""
-    spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s")] = None
-    """rad/s: Ω(t) runs from the first to the second over the episode (``spin_up`` of the simulation); nothing else varies then."""
-    bank: Whole = 128
+    spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s", falls=True)] = None
+    """rad/s: Ω(t) runs up or down from the first to the second over the episode (``spin_up`` of the simulation); nothing else
+    varies then."""
+    bank: Annotated[int, Count(1, MOST_PLANTS)] = 128
     """Plants in the bank: a Latin hypercube of what varies."""
     seed: Natural = 0
     """Of the bank. Agents train on a bank of another seed than the one they are judged on."""
@@ -63,7 +73,7 @@ class PlantVariation:
 class Drive:
     """The amplifiers and actuators."""
 
-    voltage_limits: Annotated[Pair | None, Range(encloses=0.0, unit="V")] = None
+    voltage_limits: Annotated[Pair | None, VOLTAGES] = None
     """V; None: the blade's own."""
     hysteresis: Annotated[float, Number(ge=0.0, le=0.5)] = 0.0
     """Width of the free-strain loop over its stroke, both at full drive (``beamenv.simulation.signals.hysteresis``)."""
@@ -97,11 +107,11 @@ class Failures:
 class Rotor:
     """Loads that come with the revolution of the rotor, and turbulence."""
 
-    harmonics: Annotated[tuple[float, ...], Numbers(Load, of="amplitudes")] = ()
+    harmonics: Annotated[tuple[float, ...], Numbers(Load, most=MOST_HARMONICS, of="amplitudes")] = ()
     """N/m: mean amplitude of the line load at 1, 2, … per revolution. Each is drawn between half and one and a half of it, with
     a phase and a direction of its own."""
     turbulence: Annotated[float, Load] = 0.0
     """σ, N/m, in lag and in flap each."""
-    turbulence_time: Annotated[float, Number(gt=0.0, unit="s")] = 0.02
+    turbulence_time: Annotated[float, Number(ge=1e-6, le=1e6, unit="s")] = 0.02
     """τ, s. The spectrum is Dryden's longitudinal one, S(ω) = 2σ²τ/(1 + (ωτ)²), two-sided with ∫S dω/2π = σ²; held and
     sampled exactly."""

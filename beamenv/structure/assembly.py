@@ -8,11 +8,11 @@ with M, K_e, K_Ω symmetric and G₁ skew (thesis §2.2 and §3.2 in quadratic f
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import ReadOnly
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.trial_functions import Stations, TrialSpace
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BeamMatrices:
+class BeamMatrices(ReadOnly):
     """M, K_e, K_Ω and G₁, each (N, N), with K = K_e + Ω² K_Ω and G = Ω G₁."""
 
     mass: Array
@@ -29,15 +29,6 @@ class BeamMatrices:
     """Centrifugal stiffening less spin softening, per (rad/s)²."""
     gyroscopic: Array
     """Per rad/s."""
-
-    def __post_init__(self) -> None:
-        """Nobody writes to what many share."""
-        for each in (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic):
-            each.setflags(write=False)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Made anew: NumPy forgets on the way that an array was read-only."""
-        return BeamMatrices, (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic)
 
     @property
     def regular(self) -> bool:

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed
 from beamenv.structure.assembly import generalised_displacements
-from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
+from beamenv.structure.beam import RotatingBeam
 from beamenv.structure.trial_functions import Stations
 from beamenv.structure.walls.wall_kinematics import DS, DTY, DU, DU1
 
@@ -24,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BaseLoads:
+class BaseLoads(Sealed):
     """Generalised forces (N,) of the trial functions."""
 
     centrifugal: Array
@@ -40,7 +41,7 @@ def base_loads(beam: RotatingBeam, speed: float = 0.0) -> BaseLoads:
     if beam.model == "blade":
         return BaseLoads(*beam.exact.base_forces(beam.at(speed)))
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length)]
-    stations = Stations.between(beam.breakpoints(edges), beam.space.terms + EXTRA_STATIONS)
+    stations = Stations.between(beam.breakpoints(edges), beam.stations_per_span)
     inertia = beam.walls_at(stations.z).inertia()
     rows = generalised_displacements(beam.space.evaluate(stations.z))
     arm = (beam.hub_radius + stations.z)[:, None]

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import InstanceOf
 
-from beamenv.configuration import Count, Number, Positive, Refused, checked, configuration
+from beamenv.configuration import Count, Flag, Number, Positive, Refused, checked, configuration
+from beamenv.configuration.arrays import real_numbers
+from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
@@ -38,6 +40,7 @@ SHORTEST = 1e-9
 """Of the span: what lies closer together is in one place."""
 
 TERMS = Count(1, 30)
+SPEED = Number(ge=0.0, unit="rad/s")
 
 SPEED = Number(ge=0.0, unit="rad/s")
 
@@ -60,9 +63,9 @@ class RotatingBeam:
     """m."""
     hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.0
     """R₀, m."""
-    pretwist_deg: Annotated[float, Number(unit="degrees")] = 0.0
+    pretwist_deg: Annotated[float, DEGREES] = 0.0
     """Linear pretwist between root and tip."""
-    presetting_deg: Annotated[float, Number(unit="degrees")] = 0.0
+    presetting_deg: Annotated[float, DEGREES] = 0.0
     """Angle of the root section's chord from the plane of rotation."""
     taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
@@ -94,6 +97,7 @@ class RotatingBeam:
             terms=terms_of(self.model, self.terms),
             rigid=self.shear == "rigid",
             warping=self.model == "blade",
+            plane=not self.layup.walls and self.section.stays_plane,
             clamp_reach=CLAMP_REACH * self.section.perimeter,
         )
 
@@ -104,7 +108,7 @@ class RotatingBeam:
         beside_clamp = CLAMP_PIECE * self.space.clamp_reach
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.space.terms + EXTRA_STATIONS),
+            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.stations_per_span),
             sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
@@ -120,9 +124,15 @@ class RotatingBeam:
         return matrices
 
     def _wall_matrices(self) -> BeamMatrices:
-        stations = Stations.between(self.breakpoints(self._edges), self.space.terms + EXTRA_STATIONS)
+        stations = Stations.between(self.breakpoints(self._edges), self.stations_per_span)
         walls = self.walls_at(stations.z)
         return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
+
+    @property
+    def stations_per_span(self) -> int:
+        """Gauss stations on a piece as long as the span: for the trial functions, and for pretwist beyond a quarter of a turn."""
+        turned = abs(np.radians(self.pretwist_deg)) - 0.5 * np.pi
+        return self.space.terms + EXTRA_STATIONS + max(0, int(np.ceil(turned)))
 
     @property
     def _edges(self) -> list[float]:
@@ -182,7 +192,7 @@ class RotatingBeam:
         ``motions`` keeps only some of lag, flap, extension, twist, each with its section rotation.
         """
         point, count = self._selected(speed, count, motions)
-        if gyroscopic and np.any(point.gyroscopic):
+        if checked("gyroscopic", gyroscopic, Flag()) and np.any(point.gyroscopic):
             return whirling_frequencies(point.mass, point.gyroscopic, point.stiffness)[:count]
         return normal_modes(point.mass, point.stiffness, count)[0]
 
@@ -190,7 +200,7 @@ class RotatingBeam:
         """Frequencies, mode shapes and families of the first ``count`` modes at a speed in rad/s below the critical one."""
         point, count = self._selected(speed, count, motions)
         shapes: Array | NDArray[np.complex128]
-        if gyroscopic and speed:
+        if checked("gyroscopic", gyroscopic, Flag()) and speed:
             if speed >= self.critical_speed:
                 raise Refused("speed", speed, f"below the critical speed, {self.critical_speed:.6g} rad/s")
             frequencies, shapes = whirling_modes(point.mass, point.gyroscopic, point.stiffness, count)
@@ -216,13 +226,21 @@ class RotatingBeam:
         full[self.space.columns(motions)] = shapes
         return full
 
-    def displacements(self, z: Array) -> dict[str, Array]:
+    def checked_stations(self, z: Any) -> Array:
+        """Z (stations,) in m; ``ValueError`` for what is not on the blade."""
+        stations = np.atleast_1d(real_numbers("z", z))
+        if stations.ndim != 1 or not np.all((stations >= -SHORTEST * self.length) & (stations <= (1.0 + SHORTEST) * self.length)):
+            raise Refused("z", z, f"distances from the clamp, from 0 to {self.length:g} m, in one row")
+        return stations
+
+    def displacements(self, z: ArrayLike) -> dict[str, Array]:
         """Rows (stations, N) that give u, v, s, theta_x, theta_y, phi at z (m) from the coefficient vector."""
-        rows = self.space.evaluate(np.atleast_1d(np.asarray(z, dtype=float)))
+        rows = self.space.evaluate(self.checked_stations(z))
         return {name: rows[name, 0] for name in ("u", "v", "s", "theta_x", "theta_y", "phi")}
 
     def surface_strain(self, z: Array, speed: float = 0.0) -> Array:
         """Rows (stations, points, N): spanwise strain at points of the outer face, at z (m), of vibration at a speed in rad/s."""
+        z = self.checked_stations(z)
         if self.model == "blade":
             face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
             return np.asarray(face @ self.exact.section_strains(z, self.at(speed)))
@@ -236,6 +254,7 @@ class RotatingBeam:
         """(stations, points): spanwise strain at the points of ``surface_strain`` as the blade turns and nothing vibrates; zero in
         the thesis' model, which leaves it out.
         """
+        z = self.checked_stations(z)
         if self.model == "thesis":
             return np.zeros(self.surface_strain(z).shape[:2])
         face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, solve_triangular
 
+from beamenv.configuration.read_only import Sealed
+
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Modes:
+class Modes(Sealed):
     """Modes in ascending order of frequency."""
 
     natural_frequencies: Array

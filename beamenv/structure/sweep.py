@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.configuration import Count, Refused, checked
+from beamenv.configuration import Count, Flag, Instance, Refused, checked
+from beamenv.configuration.arrays import real_numbers
 from beamenv.structure.assembly import BeamMatrices
 from beamenv.structure.beam import RotatingBeam
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
@@ -40,11 +41,16 @@ def frequency_sweep(
     ``speeds`` (S,) in rad/s; ``motions`` as in ``RotatingBeam.natural_frequencies``, whose results these are. Modes that have lost
     their stiffness are reported at zero. Raises ``ValueError`` for a speed that is negative or not finite, or for too high a count.
     """
-    omega = np.atleast_1d(np.asarray(speeds, dtype=float))
+    omega = np.atleast_1d(real_numbers("speeds", speeds))
     if omega.ndim != 1 or not np.all(np.isfinite(omega) & (omega >= 0.0)):
         raise Refused("speeds", speeds, "zero or positive numbers of rad/s in one row")
+    gyroscopic = checked("gyroscopic", gyroscopic, Flag())
     if isinstance(beams, RotatingBeam):
         return _sweep(beams, omega, count, motions, gyroscopic)
+    if not isinstance(beams, (list, tuple)) or not beams:
+        raise Refused("beams", beams, "a RotatingBeam or a list of one or more")
+    for beam in beams:
+        checked("beams", beam, Instance(RotatingBeam))
     return np.stack([_sweep(beam, omega, count, motions, gyroscopic) for beam in beams])
 
 

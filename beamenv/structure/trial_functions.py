@@ -9,6 +9,9 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from beamenv.configuration import Refused, Texts, checked
+from beamenv.configuration.read_only import Sealed, sealed
+
 Array = NDArray[np.float64]
 
 FIELDS = ("u", "v", "s", "theta_x", "theta_y", "phi")
@@ -33,13 +36,16 @@ class TrialSpace:
     rigid: bool
     warping: bool = False
     """Whether sections warp at will and shear, so that no slope need vanish at the clamp."""
+    plane: bool = False
+    """Whether sections stay plane in torsion, so that the clamp holds no warping back."""
     clamp_reach: float = 1.0
     """m: distance from the clamp over which sections come to warp at will."""
 
     def root_order(self, field: str) -> int:
         """The power of z with which a field leaves the clamp."""
         bends = field in ("u", "v") and self.rigid
-        return ROOT_ORDER[field] if bends or not self.warping else 1
+        free = self.warping or (field == "phi" and self.plane)
+        return ROOT_ORDER[field] if bends or not free else 1
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -53,8 +59,8 @@ class TrialSpace:
 
     def columns(self, motions: tuple[str, ...] | None) -> NDArray[np.intp]:
         """Indices of the coefficients that belong to ``motions`` (None: all)."""
-        if motions is not None and not (motions and all(motion in MOTIONS for motion in motions)):
-            raise ValueError(f"motions = {motions!r} must be a tuple of one or more of {', '.join(MOTIONS)}.")
+        if motions is not None and not set(checked("motions", motions, Texts()) or ("none",)) <= set(MOTIONS):
+            raise Refused("motions", motions, f"a list of one or more of {', '.join(MOTIONS)}")
         wanted = FIELDS if motions is None else [name for motion in motions for name in MOTIONS[motion]]
         blocks = [np.arange(self.terms) + self.terms * k for k, name in enumerate(self.fields) if name in wanted]
         return np.concatenate(blocks)
@@ -126,7 +132,7 @@ LEAST = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stations:
+class Stations(Sealed):
     """Gauss stations along the span: ``per_piece`` on each piece between breakpoints, where the blade may change abruptly."""
 
     z: Array
@@ -166,7 +172,7 @@ def remaining_integrals(points: int) -> Array:
     values = legendre.legvander(nodes, points)
     degree = np.arange(1, points)
     tail = np.column_stack([1.0 - nodes, (values[:, degree - 1] - values[:, degree + 1]) / (2 * degree + 1)])
-    return np.asarray(tail @ (degree_norms(points)[:, None] * values[:, :points].T * weights))
+    return sealed(np.asarray(tail @ (degree_norms(points)[:, None] * values[:, :points].T * weights)))
 
 
 def degree_norms(points: int) -> Array:

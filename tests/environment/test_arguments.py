@@ -15,7 +15,7 @@ STATES = len(resolve_task().plant.A)
 
 WRONG = [
     ({"preset": "wing"}, "preset is 'wing', but must be one of thesis"),
-    ({"speed": 1e5}, "speed = 100000.0 rad/s must be at least 0 and below the critical speed"),
+    ({"speed": 1e5}, "speed is 100000.0, but must be at least 0 and below the critical speed"),
     ({"blade": {"beam": {"thickness": -0.01}}}, "thickness"),
     ({"blade": {"beam": {"colour": "red"}}}, "colour"),
     ({"blade": {"strain_limit": "static"}}, "blade.strain_limit is 'static', but must be one of vibration, total"),
@@ -23,7 +23,7 @@ WRONG = [
     ({"blade": {"patches": {"sensors": (2.0,)}}}, "sensors"),
     ({"design": "wing"}, "'wing'"),
     ({"scenario": "storm"}, "scenario is 'storm', but must be one of default"),
-    ({"duration": 0.0}, "duration is 0.0, but must be a number above 0.00025 .s."),
+    ({"duration": 0.0}, "duration is 0.0, but must be a number above 0.00025 and at most 500000 .s."),
     ({"duration": -1.0}, "duration is -1.0"),
     ({"duration": float("nan")}, "duration is nan"),
     ({"duration": "long"}, "duration is 'long'"),

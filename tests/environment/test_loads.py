@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamenv import RotatingBeamEnv
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
@@ -185,12 +186,12 @@ def test_a_fixed_magnitude_leaves_the_other_draws_as_they_were():
     [
         ("storm", "scenario is 'storm', but must be one of default, step"),
         (3, "scenario is 3, but must be a name, .* a dictionary of fields or a Scenario"),
-        ({"preset": "storm"}, "scenario is 'storm'"),
+        ({"preset": "storm"}, "scenario.preset is 'storm'"),
         ({"gust": 1.0}, "scenario has no field 'gust'"),
         ({"step": 1.5}, "scenario.step is 1.5, but must be a number from 0 to 1"),
         ({"step": 0.9}, "shares is .*, but must be .* that do not add up to more than 1"),
         ({"magnitude": (3.0, 1.0)}, r"scenario.magnitude is \(3.0, 1.0\), but must be a number or a range"),
-        ({"magnitude": -1.0}, "number or a range .* not below 0"),
+        ({"magnitude": -1.0}, "number or a range .* from 0 to 1e[+]06"),
         ({"magnitude": "much"}, "scenario.magnitude is 'much'"),
         ({"onset": [0.0, float("inf")]}, "scenario.onset is"),
         ({"direction_deg": [1.0, 2.0, 3.0]}, "scenario.direction_deg is"),
@@ -200,3 +201,48 @@ def test_a_fixed_magnitude_leaves_the_other_draws_as_they_were():
 def test_a_bad_scenario_gets_one_clear_sentence(given_scenario, sentence):
     with pytest.raises(ValueError, match=sentence):
         scenario(given_scenario)
+
+
+@pytest.mark.parametrize("onset", [1e10, 1e20, 1e300])
+def test_a_load_that_sets_in_later_than_any_episode_never_acts(onset):
+    cases = one(case="step", onset=onset)
+    assert not cases.at(0).any()
+    assert not cases.at(10**9).any()
+    lasting = one(case="pulse", onset=0.0, duration=onset)
+    assert (np.linalg.norm(lasting.at(10**9), axis=1) > 1.0).all()
+
+
+NYQUIST = np.pi / PLANT.control_interval / PLANT.natural_frequencies[0]
+
+
+def test_a_harmonic_load_up_to_the_nyquist_frequency_acts_as_asked():
+    env = RotatingBeamEnv()
+    env.reset(seed=0, options={"load": {"case": "harmonic", "frequency_ratio": 0.999 * NYQUIST}})
+    cases = one(case="harmonic", frequency_ratio=0.999 * NYQUIST)
+    assert cases.rate == pytest.approx(0.999 * np.pi)
+
+
+@pytest.mark.parametrize("ratio", [1.001 * NYQUIST, 100.0, 1e20, [0.5, 40.0]])
+def test_a_harmonic_load_beyond_the_nyquist_frequency_is_refused(ratio):
+    with pytest.raises(ValueError, match=r"^scenario.frequency_ratio is .*, but must be at most 33[.]6.*, the Nyquist frequency"):
+        RotatingBeamEnv(scenario={"preset": "harmonic", "frequency_ratio": ratio})
+    with pytest.raises(ValueError, match=r"^options.load.frequency_ratio is .*, but must be at most 33[.]6"):
+        RotatingBeamEnv().reset(seed=0, options={"load": {"case": "harmonic", "frequency_ratio": ratio}})
+
+
+def test_the_default_range_is_drawn_at_the_nyquist_frequency_where_it_lies_beyond():
+    env = RotatingBeamEnv(scenario="harmonic", blade={"control_interval": 0.1})
+    env.reset(seed=0)
+    plant = build_plant(blade_config(overrides={"control_interval": 0.1}))
+    assert draw_load_cases(SCENARIOS["harmonic"], plant, np.random.default_rng(0), 5).rate == pytest.approx(np.pi)
+
+
+def test_a_harmonic_of_the_rotor_beyond_the_nyquist_frequency_is_refused():
+    """At 200 rad/s the 31st is at 6200, the 32nd at 6400 rad/s; the clock shows up to 6283."""
+    RotatingBeamEnv(scenario={"rotor": {"harmonics": [1.0] * 31}})
+    with pytest.raises(
+        ValueError, match="^scenario.rotor.harmonics is .*, but must be amplitudes of the first 31 at most, at 200 rad/s"
+    ):
+        RotatingBeamEnv(scenario={"rotor": {"harmonics": [1.0] * 32}})
+    with pytest.raises(ValueError, match="amplitudes of the first 20 at most, at 300 rad/s"):
+        RotatingBeamEnv(scenario={"preset": "spin-up", "rotor": {"harmonics": [1.0] * 31}})

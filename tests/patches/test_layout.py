@@ -22,6 +22,15 @@ def test_a_single_patch_sits_at_the_root():
     assert PatchLayout(actuators=1).actuator_positions(SPAN) == (0.0,)
 
 
+@pytest.mark.parametrize("edge", [-1e-12, 1.4 - 0.085 + 1e-12])
+def test_a_position_that_rounding_has_moved_out_of_bounds_lies_on_them(edge):
+    layout = PatchLayout(actuators=[edge, 0.5])
+    starts = layout.actuator_positions(SPAN)
+    assert starts == (min(max(edge, 0.0), 1.4 - 0.085), 0.5)
+    assert RotatingBeam(BLADE.section, BLADE.layup, SPAN, inlays=layout.inlays(SPAN)).inlays[0].start == starts[0]
+    assert actuation(BLADE, layout).shape == (96, 2)
+
+
 def test_given_positions_are_kept_in_their_order():
     assert PatchLayout(actuators=[0.9, 0.1]).actuator_positions(SPAN) == (0.9, 0.1)
 
@@ -86,7 +95,7 @@ REFUSED = {
         r"width = 0\.3 m must be positive and at most the top wall's 0\.254 m",
     ),
     "off the blade": (lambda: patch_force(BLADE, MFC, "top", 1.95, 0.1, 0.05), "must lie on the blade, 0 to 2.0 m"),
-    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall = 'nose' must name one straight wall"),
+    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall is 'nose', but must be one straight wall"),
 }
 
 

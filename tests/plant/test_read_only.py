@@ -3,17 +3,22 @@
 import copy
 import pickle
 import re
+from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
-from beamenv import RotatingBeamEnv
-from beamenv.blade.build import build_beam, build_plant
+from beamenv import PRESETS, SCENARIOS, BoxSection, Layup, RotatingBeamEnv, load_plant
+from beamenv.blade.build import Blade, build_beam, build_plant
+from beamenv.blade.config import MATERIALS
 from beamenv.blade.presets import blade_config
+from beamenv.patches.material import PATCH_MATERIALS
 from beamenv.plant.plant import sample
 from beamenv.plant.reduction import truncate
 from beamenv.simulation.kernel import Operators
+from beamenv.simulation.plants.speed_family import speed_family
+from beamenv.structure import GRAPHITE_EPOXY
 from beamenv.task import resolve_task
 
 CONFIG = blade_config()
@@ -76,3 +81,54 @@ def test_a_plant_tells_its_first_and_last_frequency_its_clock_and_its_limits():
     plant = replace(build_plant(CONFIG), voltage_limits=np.array([[-500.0] * 4, [1500.0] * 4]))
     first, last = plant.natural_frequencies[[0, -1]]
     assert repr(plant) == f"Plant(22 states, 4 voltages, 4 sensors; {first:.4g} … {last:.4g} rad/s; 0.5 ms; -500 … 1500 V)"
+
+
+def kept_arrays(root, path, seen):
+    """Every array that can be reached from an object, with the way to it."""
+    if id(root) in seen or root is None or isinstance(root, (str, bytes, int, float, type)) or callable(root):
+        return
+    seen[id(root)] = root
+    if isinstance(root, np.ndarray):
+        yield path, root
+    elif isinstance(root, Mapping):
+        for key, value in root.items():
+            yield from kept_arrays(value, f"{path}[{key!r}]", seen)
+    elif isinstance(root, (list, tuple)):
+        for value in root:
+            yield from kept_arrays(value, f"{path}[]", seen)
+    else:
+        slots = [name for cls in type(root).__mro__ for name in getattr(cls, "__slots__", ())]
+        for name in dict.fromkeys([*getattr(root, "__dict__", {}), *slots]):
+            yield from kept_arrays(getattr(root, name, None), f"{path}.{name}", seen)
+
+
+def used_blade(model):
+    blade = Blade(blade_config(overrides={"model": model, "modes": 5, "truth_modes": 8}))
+    blade.plant, blade.truth, blade.full, blade.at_rest, blade.beam.modes(10.0)  # noqa: B018 - so that they are there
+    blade.displacement_operator([1.0]), blade.beam.surface_strain([1.0], 200.0), blade.beam.steady_strain([1.0], 10.0)
+    return blade
+
+
+LAYUP = Layup.uniform(GRAPHITE_EPOXY, [30] * 6)
+REACHED = {
+    "a blade": lambda: used_blade("blade"),
+    "a blade of the thesis": lambda: used_blade("thesis"),
+    "a task": lambda: (task := resolve_task(scenario="failure", duration=0.01), task.bank),
+    "a task of a solid": lambda: (task := resolve_task(scenario="solid", duration=0.01), task.bank),
+    "a design": lambda: (design := RotatingBeamEnv().design, design.full_plant),
+    "a section": lambda: BoxSection(0.254, 0.0508, 0.01016).properties(LAYUP),
+    "presets, scenarios, materials": lambda: (PRESETS, SCENARIOS, MATERIALS, PATCH_MATERIALS, load_plant("solid-blade")),
+    "speeds": lambda: speed_family(CONFIG, [190.0, 200.0]),
+}
+
+
+@pytest.mark.parametrize("kind", REACHED)
+def test_no_array_that_a_user_can_reach_and_others_share_can_be_written_to(kind):
+    writable = [path for path, values in kept_arrays(REACHED[kind](), kind, {}) if values.flags.writeable and values.size]
+    assert writable == []
+
+
+@pytest.mark.parametrize("shared", [PRESETS, SCENARIOS, MATERIALS, PATCH_MATERIALS])
+def test_what_names_mean_cannot_be_changed(shared):
+    with pytest.raises(TypeError):
+        shared["mine"] = next(iter(shared.values()))

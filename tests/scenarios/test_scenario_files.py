@@ -121,9 +121,9 @@ WRONG = [
     ),
     ({"plants": {"modes": 0}}, "scenario.plants.modes is 0, but must be .*a whole number not below 1"),
     ({"plants": {"design_modes": 2.5}}, "scenario.plants.design_modes is 2.5, but must be None or a whole number"),
-    ({"plants": {"bank": 0}}, "scenario.plants.bank is 0, but must be .*a whole number not below 1"),
+    ({"plants": {"bank": 0}}, "scenario.plants.bank is 0, but must be a whole number from 1 to 4096"),
     ({"plants": {"seed": -1}}, "scenario.plants.seed is -1, but must be a whole number not below 0"),
-    ({"plants": {"spin_up": [300.0, 100.0]}}, "scenario.plants.spin_up"),
+    ({"plants": {"spin_up": [300.0, -100.0]}}, "scenario.plants.spin_up"),
     (
         {"plants": {"spin_up": [1.0, 2.0], "speed_ratio": [0.9, 1.1]}},
         "scenario.plants.spin_up is .1.0, 2.0., but must be None where other plants are drawn",
@@ -141,9 +141,9 @@ WRONG = [
     ({"failures": {"biased_share": 1.1}}, "scenario.failures.biased_share is 1.1, but must be a number from 0 to 1"),
     ({"failures": {"bias": [0.1, 2.0]}}, "scenario.failures.bias"),
     ({"rotor": {"harmonics": 6.0}}, "scenario.rotor.harmonics is 6.0, but must be a list of amplitudes"),
-    ({"rotor": {"harmonics": [-1.0]}}, r"scenario.rotor.harmonics is \[-1.0\], but must be .*, each zero or a positive"),
-    ({"rotor": {"turbulence": float("inf")}}, "scenario.rotor.turbulence is inf, but must be zero or a positive number"),
-    ({"rotor": {"turbulence_time": 0.0}}, "scenario.rotor.turbulence_time is 0.0, but must be a positive number"),
+    ({"rotor": {"harmonics": [-1.0]}}, r"scenario.rotor.harmonics is \[-1.0\], but must be .*, each a number from 0 to 1e"),
+    ({"rotor": {"turbulence": float("inf")}}, "scenario.rotor.turbulence is inf, but must be a number from 0 to 1e"),
+    ({"rotor": {"turbulence_time": 0.0}}, "scenario.rotor.turbulence_time is 0.0, but must be a number from 1e-06"),
 ]
 
 
@@ -159,7 +159,7 @@ def test_what_a_scenario_cannot_hold_is_named_in_one_sentence(given, sentence):
     [
         ("[plants]\nwind = 1.0\n", "file '.*broken.toml': scenario.plants has no field 'wind'"),
         ("step = \n", "file '.*broken.toml' cannot be read: .*line 1, column 8"),
-        ('preset = "storm"\n', "scenario is 'storm', but must be one of default"),
+        ('preset = "storm"\n', "scenario.preset is 'storm', but must be one of default"),
         (b"\xff\xfe", "file '.*broken.toml' cannot be read: .*position 0"),
         (None, "file '.*broken.toml' cannot be read: .*No such file"),
     ],

@@ -13,6 +13,8 @@ from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
 from beamenv.simulation.plants.run_up import Cycloid
 from beamenv.simulation.plants.run_ups import run_up_of
+from beamenv.simulation.plants.spin_up import _worked_out
+from beamenv.task import resolve_task
 
 CONFIG = blade_config(overrides={"truth_modes": 11})
 """With few modes, which are integrated quickly."""
@@ -135,6 +137,47 @@ def test_sensors_and_tachometer_follow_the_speed(episode):
         shown.append(float(env.rotor_speed))
     middles = CONFIG.control_interval * (np.arange(1000) + 0.5)
     np.testing.assert_allclose(shown, COURSE.speed(middles), rtol=1e-12)
+
+
+@pytest.mark.parametrize("speeds", [(100.0, 300.0), (300.0, 100.0)])
+def test_a_plant_that_is_told_from_few_is_the_plant_of_its_interval(speeds):
+    """Of 400 in 0.2 s, up and down: everything that a step needs, within 1e-9 of the largest number."""
+    task = resolve_task(blade=CONFIG, scenario={"preset": "spin-up", "plants": {"spin_up": speeds}}, duration=0.2)
+    course = Cycloid(*speeds, 0.2)
+    one = _worked_out(task.blade, task.design_blade, run_up_of(task.blade, course), CONFIG.control_interval * np.array([137.5]))
+    axes = task.bank.axes[137]
+    assert task.bank.speeds[137] == pytest.approx(float(course.speed(137.5 * CONFIG.control_interval)), rel=1e-12)
+    for name in ("readout", "tip"):
+        expected = axes @ getattr(one, name)[0]
+        np.testing.assert_allclose(getattr(task.bank, name)[137], expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
+    n, told = len(axes), task.bank.operators.costs
+    moved = axes @ one.operators.fused[0, :n, :n] @ task.bank.axes[138].T
+    np.testing.assert_allclose(task.bank.operators.fused[137, :n, :told], moved[:, :told], rtol=0.0, atol=1e-9)
+
+
+def test_a_run_down_is_the_whole_equation_too():
+    """From 300 to 100 rad/s in 0.2 s, without control: the tip within 0.5 % of its largest displacement."""
+    course = Cycloid(300.0, 100.0, 0.2)
+    run_down = run_up_of(Blade(CONFIG), course)
+    env = RotatingBeamEnv(blade=CONFIG, scenario=QUIET | {"plants": {"spin_up": [300.0, 100.0]}}, duration=0.2)
+    env.reset(seed=0)
+    assert float(env.rotor_speed) == pytest.approx(300.0, rel=1e-4)
+    shown = np.array([env.step(np.zeros(4))[4]["tip_displacement"] for _ in range(400)])
+    times, r = CONFIG.control_interval * np.arange(401), len(run_down.damping)
+    terms = [run_down.base_load(times)[..., None], -run_down.restoring(times), -run_down.rate_matrix(times)]
+    smooth = CubicSpline(times, np.concatenate(terms, axis=-1))
+    found = solve_ivp(
+        lambda time, state: np.concatenate([state[r:], smooth(time) @ np.concatenate([[1.0], state])]),
+        (0.0, times[-1]), np.zeros(2 * r), "DOP853", t_eval=times, rtol=1e-7, atol=1e-11,
+    ).y[:r].T  # fmt: skip
+    displaced = chebyshev.chebval(2.0 * times / 0.2 - 1.0, run_down.equilibrium()[0]).T
+    tip = np.einsum("in,knj,kj->ki", Blade(CONFIG).full.tip, run_down.shapes(times), found - displaced)[1:]
+    assert (np.abs(shown - tip).max(axis=0) < 5e-3 * np.abs(tip).max(axis=0)).all()
+
+
+def test_a_run_up_beyond_what_the_blade_bears_is_told():
+    with pytest.raises(ValueError, match=r"^(scenario.plants.spin_up|speed) is .*, but must be .*[.]$"):
+        RotatingBeamEnv(blade=CONFIG, scenario={"preset": "spin-up", "plants": {"spin_up": [0, 1700]}})
 
 
 def test_a_rotor_that_keeps_its_speed_is_the_nominal_plant():

@@ -47,13 +47,36 @@ REFUSED = {
     "thickness missing": (lambda: box(thickness=None), "section.thickness is None, but must be a positive"),
     "wall too thick": (lambda: box(thickness=0.06), r"section.thickness is 0\.06, but must be below 0\.0508 m"),
     "infinite width": (lambda: BoxSection(math.inf, 0.05, 0.01), "section.width is inf, but must be a positive"),
-    "two corners": (triangle(((0.0, 0.0), (0.1, 0.0)), ("a", "b")), "section.corners is .*, but must be at least three"),
-    "names for other edges": (triangle(walls=("a", "b")), "section.corners is .* one wall name for each edge"),
+    "two corners": (
+        triangle(((0.0, 0.0), (0.1, 0.0)), ("a", "b")),
+        "section.corners is .*, but must be a list of 3 to 1000 points",
+    ),
+    "names for other edges": (
+        triangle(walls=("a", "b")),
+        "section.edge_walls is .*, but must be one wall name for each of the 3 edges",
+    ),
     "clockwise": (triangle(((0.0, 0.0), (0.0, 0.1), (0.1, 0.0))), "section.corners is .* counter-clockwise"),
     "the same corner twice": (triangle(((0.0, 0.0), (0.1, 0.0), (0.1, 0.0))), "section.corners is .*, but must be distinct"),
     "corner not a number": (
         triangle(((0.0, 0.0), (0.1, 0.0), (NAN, 0.1))),
-        "section.corners.2.0 is nan, but must be a finite number",
+        r"section.corners is .*nan.*, but must be a list of 3 to 1000 points \[x, y\] \(m\)",
+    ),
+    "a mid-line that crosses itself": (
+        lambda: PolygonSection(((0.0, 0.0), (0.2, 0.2), (0.4, 0.0), (0.4, 0.2), (0.2, 0.0), (0.0, 0.3)), tuple("abcdef"), 0.001),
+        "section.corners is .*, but must be those of a mid-line that neither crosses nor touches itself",
+    ),
+    "a mid-line that goes back on itself": (
+        lambda: PolygonSection(((0.0, 0.0), (0.1, 0.0), (0.2, 0.0), (0.1, 0.0), (0.0, 0.1)), tuple("abcde"), 0.001),
+        "section.corners is .*, but must be those of a mid-line that neither crosses nor touches itself",
+    ),
+    "a corner on another edge": (
+        lambda: PolygonSection(((0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.1, 0.0), (0.0, 0.1)), tuple("abcde"), 0.001),
+        "section.corners is .*, but must be those of a mid-line that neither crosses nor touches itself",
+    ),
+    "walls as one string": (triangle(walls="abc"), "section.edge_walls is 'abc', but must be a list of strings"),
+    "a hundred thousand plies": (
+        lambda: Layup.uniform(GRAPHITE_EPOXY, [30] * 100_000),
+        "angles_deg is .*, but must be a list of one or more ply angles, at most 1000, each",
     ),
     "polygon too thick": (triangle(thickness=0.1), r"section.thickness is 0\.1, but must be below 0\.0585786 m"),
     "unknown theory": (
@@ -95,7 +118,7 @@ REFUSED = {
     ),
     "ply angle not a number": (
         lambda: Layup.uniform(GRAPHITE_EPOXY, [0, NAN]),
-        r"angles_deg is \[0, nan\], but must be .*, each a finite number \(degrees\)",
+        r"angles_deg is \[0, nan\], but must be .*, each a number from -36000 to 36000 \(degrees\)",
     ),
     "ply of no material": (lambda: Layup.uniform("steel", [0]), "ply.material is 'steel', but must be a Lamina"),
     "negative modulus": (lambda: lamina(E2=-1.0), r"lamina.E2 is -1\.0, but must be a positive number \(Pa\)"),
@@ -117,7 +140,7 @@ REFUSED = {
     "negative hub": (lambda: blade(hub_radius=-0.1), r"beam.hub_radius is -0\.1, but must be zero or a positive number \(m\)"),
     "pretwist not a number": (
         lambda: blade(pretwist_deg=NAN),
-        r"beam.pretwist_deg is nan, but must be a finite number \(degrees\)",
+        r"beam.pretwist_deg is nan, but must be a number from -36000 to 36000 \(degrees\)",
     ),
     "negative taper": (lambda: blade(taper=-1.0), r"beam.taper is -1\.0, but must be a positive"),
     "tip of wall only": (
@@ -149,10 +172,10 @@ REFUSED = {
     ),
     "unknown motion": (
         lambda: blade().modes(motions=("lead",)),
-        r"motions = \('lead',\) must be a tuple of one or more of lag, flap",
+        r"motions is \('lead',\), but must be a list of one or more of lag, flap",
     ),
-    "motion not in a tuple": (lambda: blade().natural_frequencies(motions="lag"), "motions = 'lag' must be a tuple"),
-    "no motion": (lambda: blade().natural_frequencies(motions=()), r"motions = \(\) must be a tuple of one or more"),
+    "motion not in a tuple": (lambda: blade().natural_frequencies(motions="lag"), "motions is 'lag', but must be a list of"),
+    "no motion": (lambda: blade().natural_frequencies(motions=()), r"motions is \(\), but must be a list of one or more"),
     "overlapping inlays": (overlapping_inlays, r"inlays at 0\.25 and 0\.3 m on the top wall must be 0\.1 m apart"),
     "inlay past the tip": (blade_with(start=1.95), r"inlay from 1\.95 to 2\.05 m must lie on the blade, 0 to 2\.0 m"),
     "inlay before the root": (blade_with(start=-0.1), r"inlay from -0\.1 to 0\.0 m must lie on the blade"),
@@ -160,7 +183,7 @@ REFUSED = {
     "inlay as thick as its wall": (blade_with(thickness=0.01), r"inlay thickness = 0\.01 m must be .* below the wall's 0\.01 m"),
     "inlay on no wall": (
         blade_with(wall="nose"),
-        "wall = 'nose' must name one straight wall of the section: right, top, left, bottom",
+        "wall is 'nose', but must be one straight wall of the section: right, top, left, bottom",
     ),
     "inlay nowhere": (blade_with(start=NAN), "inlay.start is nan, but must be a finite number"),
 }

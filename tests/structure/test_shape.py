@@ -88,7 +88,7 @@ def test_a_patch_lies_in_the_middle_of_its_wall_s_outer_face():
 
 
 def test_a_patch_on_a_wall_that_is_not_one_straight_edge_is_refused():
-    with pytest.raises(ValueError, match="wall = 'top' must name one straight wall"):
+    with pytest.raises(ValueError, match="wall is 'top', but must be one straight wall"):
         patch(bladed(TUBE), "top", 0.01, np.zeros(1))
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import ReadOnly, read_only, sealed
 from beamenv.plant.plant import Plant, normalised
-from beamenv.plant.read_only import ReadOnly, read_only, sealed
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
 from beamenv.simulation.plants.cost_axes import cost_axes, in_axes
@@ -136,7 +136,7 @@ class Bank(ReadOnly):
         views, starts = [bank.to_design for bank in banks], [bank.start for bank in banks]
         fused = [bank.operators.fused.reshape(len(bank), *bank.operators.fused.shape[-2:]) for bank in banks]
         weights = [bank.operators.weights.reshape(len(bank), -1) for bank in banks]
-        whole = {name: sealed(np.concatenate([getattr(bank, name) for bank in banks])) for name in _BY_PLANT}
+        whole = {name: sealed(np.concatenate([getattr(bank, name) for bank in banks])) for name in BY_PLANT}
         return cls(
             plant=first.plant,
             others=tuple(bank.plant for bank in banks[1:]),
@@ -148,5 +148,6 @@ class Bank(ReadOnly):
         )
 
 
-_BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")
+BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")
+"""Its arrays that have a row for each plant, the operators' aside."""
 _ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale")

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import sealed
 from beamenv.plant.plant import Plant
-from beamenv.plant.read_only import sealed
 from beamenv.simulation.kernel import Operators
 
 Array = NDArray[np.float64]

@@ -12,6 +12,7 @@ from scipy.linalg import block_diag
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Number, Numbers, checked
+from beamenv.configuration.read_only import Sealed
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.coordinates import between
 
@@ -25,7 +26,7 @@ _SPARE = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SpeedFamily:
+class SpeedFamily(Sealed):
     """Plants of one blade at k speeds, behind the same instruments, and the coordinates that they have in common."""
 
     speeds: Array

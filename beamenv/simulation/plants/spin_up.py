@@ -12,32 +12,79 @@ excites.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import fields, replace
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
+from beamenv.configuration import Refused
+from beamenv.configuration.memory import check_room
+from beamenv.configuration.read_only import sealed
 from beamenv.plant.plant import Plant
-from beamenv.plant.read_only import sealed
-from beamenv.simulation.plants.bank import Bank
+from beamenv.simulation.plants.bank import BY_PLANT, Bank
 from beamenv.simulation.plants.coordinates import coordinates, widened
 from beamenv.simulation.plants.run_up import RunUp
+from beamenv.structure.geometrically_exact.sections_along import between
 
 Array = NDArray[np.float64]
 
 
+SHORT_COURSE = 48
+"""Plants of a run-up that are all worked out; of more, as many as the others can be told from."""
+
+AGREED = 1e-10
+"""Largest difference, over the largest number, between a plant that is told from others and the same worked out."""
+
+AT_ONCE = 256
+"""Plants whose coordinates are turned together: as many more than the bank's own as are held in memory at a time."""
+
+
 def spin_up_bank(blade: Blade, design: Blade, run_up: RunUp, steps: int) -> Bank:
-    """One plant for each of ``steps`` control intervals."""
-    reference, interval = blade.truth, blade.config.control_interval
-    edges: Array = interval * np.arange(steps + 1, dtype=np.float64)
-    middles: Array = edges[:-1] + 0.5 * interval
-    roots, mid_roots = _root(run_up.stiffness(edges)), _root(run_up.stiffness(middles))  # K = U Uᵀ, x = [Uᵀη; η̇]
-    inverses = _inverses(blade)
-    plants = [plant_at(blade, run_up, time, mid_roots[k], inverses) for k, time in enumerate(middles.tolist())]
+    """One plant for each of ``steps`` control intervals.
+
+    What a step needs is a smooth function of time. It is worked out for few intervals, at Chebyshev points of the episode: as many
+    as it takes for the polynomial through them to give others within ``AGREED``.
+    """
+    check_room("duration", steps, _bytes_each(blade, design), "control intervals of a run-up")
+    times: Array = blade.config.control_interval * (np.arange(steps, dtype=np.float64) + 0.5)
+    told = _told_from_few(lambda at: _worked_out(blade, design, run_up, at), times)
+    whole: Bank | None = None
+    for first in range(0, steps, AT_ONCE):
+        rows = times[first : first + AT_ONCE + 1]  # the axes of the one after are those that the last leads to
+        part = told(rows)
+        if whole is None:
+            root = _root(run_up.stiffness(np.zeros(1)))[0]
+            part = replace(part, start=_initial_state(run_up, root, len(blade.truth.A))[None])
+        part = replace(part, speeds=run_up.course.speed(rows), runs=True).in_cost_axes()
+        whole = _room_for(part, steps) if whole is None else whole
+        _put(whole, part, first, min(AT_ONCE, steps - first))
+    assert whole is not None
+    for values in _parts(whole).values():
+        sealed(values)
+    return replace(whole)
+
+
+def _bytes_each(blade: Blade, design: Blade) -> int:
+    """Of one plant of a run-up."""
+    n, (k, m) = len(blade.truth.A), (len(blade.truth.strain), blade.truth.B.shape[1])
+    return 8 * n * (3 * n + k + 2 * m + len(design.plant.A))
+
+
+def _worked_out(blade: Blade, design: Blade, run_up: RunUp, middles: Array) -> Bank:
+    """The bank of intervals around times (K,), s, from the energy coordinates at the beginning of each to those at its end."""
+    reference, half = blade.truth, 0.5 * blade.config.control_interval
+    try:
+        before, mid, after = (_root(run_up.stiffness(middles + shift)) for shift in (-half, 0.0, half))  # K = U Uᵀ, x = [Uᵀη; η̇]
+    except np.linalg.LinAlgError:
+        course = [run_up.course.first, run_up.course.last]
+        raise Refused("scenario.plants.spin_up", course, "speeds between which the blade keeps its stiffness (rad/s)") from None
+    inverses, n = _inverses(blade), len(reference.A)
+    plants = [plant_at(blade, run_up, time, mid[k], inverses) for k, time in enumerate(middles.tolist())]
     bank = Bank.gather(reference, plants, run_up.course.speed(middles), None)
-    n = len(reference.A)
-    incoming, outgoing = _changes(roots[:-1], mid_roots, n), _changes(mid_roots, roots[1:], n)
+    incoming, outgoing = _changes(before, mid, n), _changes(mid, after, n)
     back = incoming.swapaxes(1, 2)
     return replace(
         bank,
@@ -46,10 +93,67 @@ def spin_up_bank(blade: Blade, design: Blade, run_up: RunUp, steps: int) -> Bank
         tip=sealed(back @ bank.tip),
         strain=sealed(bank.strain @ incoming),
         release=np.asarray(np.linalg.solve(incoming, bank.release.swapaxes(1, 2)), dtype=np.float64).swapaxes(1, 2),
-        start=_initial_state(run_up, roots[0], n)[None],
-        runs=True,
-        to_design=_views(blade, design, run_up.shapes(edges[:-1]), roots[:-1], n),
-    ).in_cost_axes()
+        to_design=_views(blade, design, run_up.shapes(middles - half), before, n),
+    )
+
+
+def _told_from_few(worked_out: Callable[[Array], Bank], times: Array) -> Callable[[Array], Bank]:
+    """What gives the bank at any of the ascending times as ``worked_out`` does."""
+    middle, half, nodes = 0.5 * (times[-1] + times[0]), 0.5 * (times[-1] - times[0]), SHORT_COURSE
+    while nodes < len(times):
+        places = chebyshev.chebpts1(nodes)
+        few = worked_out(middle + half * places)
+
+        def told(at: Array, places: Array = places, few: Bank = few) -> Bank:
+            return _mixed(few, between(places, (at - middle) / half))
+
+        shown = times[[1, len(times) // 3, -2]]  # where a polynomial is worst, and where it is good
+        if _differ(worked_out(shown), told(shown)) <= AGREED:
+            return told
+        nodes *= 2
+    return worked_out
+
+
+def _mixed(few: Bank, weights: Array) -> Bank:
+    """(K) plants that are sums of few, with weights (K, n)."""
+
+    def sums(values: Array) -> Array:
+        return sealed((weights @ values.reshape(len(values), -1)).reshape(len(weights), *values.shape[1:]))
+
+    return replace(
+        few,
+        operators=replace(few.operators, fused=sums(few.operators.fused), weights=sums(few.operators.weights)),
+        to_design=None if few.to_design is None else sums(few.to_design),
+        **{name: sums(getattr(few, name)) for name in BY_PLANT},  # type: ignore[arg-type]
+    )
+
+
+def _parts(bank: Bank) -> dict[str, Array]:
+    """Its arrays that have a row for each plant."""
+    view = {} if bank.to_design is None else {"to_design": bank.to_design}
+    own = {name: getattr(bank, name) for name in BY_PLANT}
+    return {**own, **view, "fused": bank.operators.fused, "weights": bank.operators.weights}
+
+
+def _differ(one: Bank, other: Bank) -> float:
+    """The largest difference of two banks, part by part over the largest number."""
+    pairs = zip(_parts(one).values(), _parts(other).values(), strict=True)
+    return max(float(np.abs(a - b).max(initial=0.0) / max(np.abs(a).max(initial=0.0), 1e-300)) for a, b in pairs)
+
+
+def _room_for(part: Bank, steps: int) -> Bank:
+    """A bank of as many plants, like a part of it, that are still to be put in."""
+    whole = {name: np.empty((steps, *values.shape[1:])) for name, values in _parts(part).items()}
+    operators = replace(part.operators, fused=whole.pop("fused"), weights=whole.pop("weights"))
+    empty = object.__new__(Bank)
+    for each in fields(Bank):  # made without its constructor, which would seal it
+        object.__setattr__(empty, each.name, {**whole, "operators": operators}.get(each.name, getattr(part, each.name)))
+    return empty
+
+
+def _put(whole: Bank, part: Bank, first: int, count: int) -> None:
+    for name, values in _parts(part).items():
+        _parts(whole)[name][first : first + count] = values[:count]
 
 
 def _root(stiffness: Array) -> Array:

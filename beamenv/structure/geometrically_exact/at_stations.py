@@ -8,12 +8,12 @@ values of least energy, a = −K_aa⁻¹ ∫(Φᵀ E_ae + Φ′ᵀ E_a′e) e dz
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
+from beamenv.configuration.read_only import Sealed, sealed_property
 from beamenv.structure.assembly import symmetric
 from beamenv.structure.geometrically_exact.inertia import SpinningSections
 from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, FibreExtension, Placement
@@ -36,7 +36,7 @@ HELD = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class BladeAtStations:
+class BladeAtStations(Sealed):
     """A blade at the S stations at which it is integrated: what does not depend on the speed, and forms for any placement."""
 
     weight: Array
@@ -83,33 +83,33 @@ class BladeAtStations:
             shape_mass=sections.at(z, solid.shape_mass),
         )
 
-    @cached_property
+    @sealed_property
     def unloaded(self) -> Placement:
         """Where the blade is before anything is loaded."""
         return Placement.of(np.zeros((len(self.weight), INCREMENT)), self.frames)
 
-    @cached_property
+    @sealed_property
     def strain_rows(self) -> Array:
         """(S, 6, N) of the unloaded blade."""
         return np.asarray(self.unloaded.strain_rows @ self.rows)
 
-    @cached_property
+    @sealed_property
     def elastic_at_rest(self) -> Array:
         """∫ of the sections' energy (N, N) of the unloaded blade, with the shapes' amplitudes at their best."""
         rows = self.unloaded.strain_rows
         whole = self.form(rows.swapaxes(-1, -2) @ self.energy[:, BEAM, BEAM] @ rows)
         return symmetric(whole - self._asked_at_rest.T @ self._asked_at_rest)
 
-    @cached_property
+    @sealed_property
     def following_at_rest(self) -> Array:
         """(AMPLITUDES × terms, N): amplitudes per coefficient, of the unloaded blade."""
         return self.amplitudes(self._asked_at_rest)
 
-    @cached_property
+    @sealed_property
     def _asked_at_rest(self) -> Array:
         return self.asked(self.strain_rows)
 
-    @cached_property
+    @sealed_property
     def shape_stiffness(self) -> Array:
         """L with L Lᵀ = K_aa, lower triangular."""
         terms = self.value.shape[1]
@@ -127,7 +127,7 @@ class BladeAtStations:
         form = (section.reshape(len(section), -1).T @ products).reshape(AMPLITUDES, AMPLITUDES, terms, terms)
         return np.asarray(form.transpose(0, 2, 1, 3).reshape(AMPLITUDES * terms, -1))
 
-    @cached_property
+    @sealed_property
     def onto_shapes(self) -> Array:
         """Z (AMPLITUDES × terms, 6S) = L⁻¹ ∫: what beam strains at the stations ask of the shapes, where their stiffness is 1."""
         weighted = self.weight[:, None, None, None]
@@ -154,7 +154,7 @@ class BladeAtStations:
         own = (self.stress_moments[:, :, BEAM] @ strain[..., None])[..., 0]
         return np.asarray(own + (self._moments_of_asked @ asked).reshape(own.shape))
 
-    @cached_property
+    @sealed_property
     def _moments_of_asked(self) -> Array:
         """X (6S, AMPLITUDES × terms): what Z e adds to the moments, the amplitudes being −L⁻ᵀ Z e."""
         of_shapes = self.stress_moments[:, :, SHAPE, None] * self.value[:, None, None, :]
@@ -193,7 +193,7 @@ class BladeAtStations:
         """M (N, N), with that of the shapes, whose amplitudes follow (AMPLITUDES × terms, N)."""
         return symmetric(self.form(inertia.mass_form) + following.T @ self._shapes_mass @ following)
 
-    @cached_property
+    @sealed_property
     def _shapes_mass(self) -> Array:
         return self._shape_form(self.shape_mass, self.value, self.value)
 
@@ -230,7 +230,7 @@ class BladeAtStations:
         beyond = rotation_vector(turned) - state[:, SPIN] - increment[:, SPIN]
         return np.asarray(q + step + self._spin_fit @ (self.weight[:, None] * beyond).ravel())
 
-    @cached_property
+    @sealed_property
     def _spin_fit(self) -> Array:
         """(N, 3S): coefficients of rotations at the stations, weighted, by least squares."""
         spins = self.rows[:, SPIN]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Refused
+from beamenv.configuration.read_only import sealed_property
 from beamenv.structure.assembly import BeamMatrices, symmetric
 from beamenv.structure.geometrically_exact.at_stations import BladeAtStations, increment_rows, shape_tables
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
@@ -111,12 +111,12 @@ class ExactBeam:
             return self.sections
         return self.sections.cut_for(wall, width)
 
-    @cached_property
+    @sealed_property
     def at_stations(self) -> BladeAtStations:
         """The blade where it is integrated."""
         return BladeAtStations.of(self.space, self.stations, self.sections, self.hub_radius)
 
-    @cached_property
+    @sealed_property
     def matrices(self) -> BeamMatrices:
         """M, K_e, K_Ω and G₁ with the linear steady state's stresses, K_e alone at rest."""
         at = self.at_stations
@@ -136,7 +136,7 @@ class ExactBeam:
             gyroscopic=at.form(inertia.gyroscopic),
         )
 
-    @cached_property
+    @sealed_property
     def linear_steady_state(self) -> SteadyState:
         """Per Ω²."""
         at = self.at_stations

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed
 from beamenv.structure.geometrically_exact.rotations import curvature, hat, rotation
 
 Array = NDArray[np.float64]
@@ -34,7 +35,7 @@ ALONG = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Placement:
+class Placement(Sealed):
     """Where the reference line and the sections are at S stations."""
 
     displacement: Array

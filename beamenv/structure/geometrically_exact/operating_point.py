@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed
+
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SteadyState:
+class SteadyState(Sealed):
     """What the blade is like as it turns and nothing vibrates."""
 
     coefficients: Array
@@ -21,7 +23,7 @@ class SteadyState:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class OperatingPoint:
+class OperatingPoint(Sealed):
     """A blade at one speed: M q̈ + G q̇ + K q = f about its steady state."""
 
     speed: float

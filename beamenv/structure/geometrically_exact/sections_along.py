@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed, sealed_property
 from beamenv.structure.geometrically_exact.rotations import about_span
 from beamenv.structure.section.mesh import ring
 from beamenv.structure.section.section import Section
@@ -63,7 +63,7 @@ NOTHING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class SectionsAlong:
+class SectionsAlong(Sealed):
     """Every section that a blade has, and which is where."""
 
     section: Section
@@ -125,7 +125,7 @@ class SectionsAlong:
         order = np.argsort(sizes)
         return np.stack([np.interp(scale, sizes[order], row[order]) for row in np.eye(len(sizes))], axis=-1)
 
-    @cached_property
+    @sealed_property
     def _smooth(self) -> bool:
         """Whether the polynomial between sizes leaves every section some energy in every strain. That of very thin walls under
         strong pretwist, which warp otherwise at every size, may not; then the mean of two neighbours does.

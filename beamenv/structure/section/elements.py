@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import sealed
 from beamenv.structure.section.mesh import Ring
 from beamenv.structure.walls.laminate import Laminate, Ply
 from beamenv.structure.walls.materials import wall_stiffness
@@ -48,7 +49,7 @@ def inverse_vandermonde(order: int) -> tuple[Array, Array]:
     slopes = np.zeros((order + 1, order + 1))
     derived = legendre.legder(np.eye(order + 1))
     slopes[: len(derived)] = derived
-    return inverse, np.asarray(slopes @ inverse, dtype=np.float64)
+    return sealed(inverse), sealed(np.asarray(slopes @ inverse, dtype=np.float64))
 
 
 def lagrange(order: int, at: Array) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Refused
+from beamenv.configuration.read_only import Sealed
 from beamenv.structure.walls.contour import Edge
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ FEW = 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ring:
+class Ring(Sealed):
     """A closed ring of K elements at S sizes of a section, all of one topology."""
 
     points: Array

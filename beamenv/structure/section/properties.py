@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed
 from beamenv.structure.section.solid_sections import SolidSections
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SectionProperties:
+class SectionProperties(Sealed):
     """What a section is worth to a beam, about the origin of its corners."""
 
     stiffness: Array

@@ -9,17 +9,15 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator
 
-from beamenv.configuration import Choice, Number, Refused, checked, configuration
-from beamenv.configuration.kinds import plain
+from beamenv.configuration import Choice, Instance, Number, Points, Refused, Text, Texts, checked, configuration
 from beamenv.structure.model import checked_flow
 from beamenv.structure.scale import in_scale
 from beamenv.structure.section.inertia import SectionInertia
 from beamenv.structure.section.mesh import ring
 from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.section.solid_sections import SolidSections
-from beamenv.structure.walls.contour import Inlay, WallPoints, rotated, split_walls, wall_points
+from beamenv.structure.walls.contour import Inlay, WallPoints, meets_itself, rotated, split_walls, wall_points
 from beamenv.structure.walls.laminate import Laminate, Layup, WallLaw, wall_law
 from beamenv.structure.walls.wall_kinematics import (
     GX,
@@ -42,6 +40,9 @@ Array = NDArray[np.float64]
 
 Metres = Annotated[float, Number(gt=0.0, unit="m")]
 THEORY = Choice(SHEAR_THEORIES)
+
+MOST_CORNERS = 1000
+"""Of a polygon: more than any contour needs."""
 
 
 class Section(ABC):
@@ -67,6 +68,14 @@ class Section(ABC):
         return vertices - 0.5 * (length @ (vertices + np.roll(vertices, -1, axis=0))) / length.sum()
 
     @property
+    def stays_plane(self) -> bool:
+        """Whether a uniform wall does not warp in torsion: where its edges touch one circle about the centroid, as a tube's do."""
+        start = self.placed_vertices
+        end = np.roll(start, -1, axis=0)
+        distance = (start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]) / self.edge_lengths
+        return bool(np.ptp(distance) <= 1e-9 * np.abs(distance).max())
+
+    @property
     def perimeter(self) -> float:
         """Length (m) of the mid-line."""
         return float(self.edge_lengths.sum())
@@ -90,9 +99,10 @@ class Section(ABC):
 
     def wall_width(self, wall: str) -> float:
         """Length (m) along the contour of a wall; ``ValueError`` unless it is one straight edge."""
+        checked("wall", wall, Text())
         edges = [k for k, name in enumerate(self.walls) if name == wall]
         if len(edges) != 1:
-            raise ValueError(f"wall = {wall!r} must name one straight wall of the section: {', '.join(dict.fromkeys(self.walls))}.")
+            raise Refused("wall", wall, f"one straight wall of the section: {', '.join(dict.fromkeys(self.walls))}")
         return float(self.edge_lengths[edges[0]])
 
     def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:
@@ -103,7 +113,7 @@ class Section(ABC):
         and Badir, Composites Engineering 2, 1992). Raises ``ValueError`` for an option that is unknown or not the model's, and
         for a lay-up of other walls.
         """
-        layup.check_walls(self.walls)
+        checked("layup", layup, Instance(Layup)).check_walls(self.walls)
         checked("shear", shear, THEORY)
         flow = checked_flow(model, shear_flow)
         return self.properties(layup).classical_stiffness if model == "blade" else self._wall_stiffness(layup, shear, flow)
@@ -114,7 +124,7 @@ class Section(ABC):
         Raises ``ValueError`` for a lay-up of other walls, for a wall too short for its thickness, and for one so thin (below some
         10⁻⁵ of the section's size) that rounding would be seen.
         """
-        layup.check_walls(self.walls)
+        checked("layup", layup, Instance(Layup)).check_walls(self.walls)
         hosts = {wall: Laminate.equal_plies(layup.plies(wall), self.thickness) for wall in self.walls}
         elements = ring(self.vertices[None], self.walls, self.thickness)
         laminates = list(dict.fromkeys(hosts.values()))
@@ -169,19 +179,21 @@ class BoxSection(Section):
 class PolygonSection(Section):
     """Any closed polygon: corners (x, y) of the mid-line in m, counter-clockwise, the wall name of each edge, the wall thickness.
 
-    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, a number of wall
-    names other than that of the edges, or a wall too thick.
+    Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, a mid-line that crosses or touches
+    itself, a number of wall names other than that of the edges, or a wall too thick.
     """
 
-    corners: Annotated[tuple[tuple[float, float], ...], BeforeValidator(plain)]
-    edge_walls: Annotated[tuple[str, ...], BeforeValidator(plain)]
+    corners: Annotated[tuple[tuple[float, float], ...], Points(least=3, most=MOST_CORNERS, unit="m")]
+    edge_walls: Annotated[tuple[str, ...], Texts()]
     thickness: Metres
 
     def __post_init__(self) -> None:
-        if len(self.corners) < 3 or len(self.edge_walls) != len(self.corners):
-            raise Refused("corners", self.corners, "at least three, with one wall name for each edge")
+        if len(self.edge_walls) != len(self.corners):
+            raise Refused("edge_walls", self.edge_walls, f"one wall name for each of the {len(self.corners)} edges")
         if not (self._area > 0.0 and np.all(self.edge_lengths > 0.0)):
             raise Refused("corners", self.corners, "distinct, go round counter-clockwise and enclose an area")
+        if meets_itself(self.vertices):
+            raise Refused("corners", self.corners, "those of a mid-line that neither crosses nor touches itself")
         self.check_thickness()
 
     @property

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import Sealed, sealed, sealed_property
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
 from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
@@ -32,7 +32,7 @@ STRAINS = RIGID + 2 * AMPLITUDES
 
 
 @dataclass(frozen=True, eq=False)
-class SolidSections:
+class SolidSections(Sealed):
     """V sections of one topology, in their own axes."""
 
     ring: Ring
@@ -53,12 +53,6 @@ class SolidSections:
     saint_venant: Array
     """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
     _forces: dict[tuple[str, float, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        """Nobody writes to what many share."""
-        for values in vars(self).values():
-            if isinstance(values, np.ndarray):
-                values.setflags(write=False)
 
     @classmethod
     def build(cls, ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> SolidSections:
@@ -134,7 +128,7 @@ class SolidSections:
         """(V, K, 2), m: where lines between elements reach the outer face."""
         return self.ring.points + 0.5 * self.ring.thickness * self.ring.directions
 
-    @cached_property
+    @sealed_property
     def face_strain(self) -> Array:
         """Spanwise strain (V, K, STRAINS) there, per strain of the section."""
         every = np.arange(self.ring.points.shape[0] * self.ring.points.shape[1])
@@ -149,7 +143,7 @@ class SolidSections:
         """
         key = wall, width, low, high, stress
         if key not in self._forces:
-            self._forces[key] = self._layer_force(wall, width, low, high, np.array(stress))
+            self._forces[key] = sealed(self._layer_force(wall, width, low, high, np.array(stress)))
         return self._forces[key]
 
     def _layer_force(self, wall: str, width: float, low: float, high: float, stress: Array) -> Array:

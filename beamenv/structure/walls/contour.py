@@ -121,6 +121,34 @@ def wall_points(vertices: Array, edges: tuple[Edge, ...]) -> WallPoints:
     )
 
 
+def meets_itself(vertices: Array) -> bool:
+    """Whether the edges of a closed polygon (K, 2) cross, touch or lie on one another anywhere but at the corners they share."""
+    start, end = vertices, np.roll(vertices, -1, axis=0)
+    count = len(vertices)
+    one, other = np.triu_indices(count, 1)
+
+    def side(of: NDArray[np.intp], points: Array) -> Array:
+        """Where points lie: left of an edge (1), right of it (−1), or in line with it within rounding (0)."""
+        along, to = (end - start)[of], points - start[of]
+        turned = along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]
+        return np.where(np.abs(turned) <= 1e-12 * np.hypot(*along.T) * np.hypot(*to.T), 0.0, np.sign(turned))
+
+    def within(of: NDArray[np.intp], points: Array) -> NDArray[np.bool_]:
+        """Whether points in line with an edge lie on it."""
+        along, to = (end - start)[of], points - start[of]
+        share = (along * to).sum(axis=1) / (along**2).sum(axis=1)
+        return (share >= 0.0) & (share <= 1.0)
+
+    sides = [side(one, start[other]), side(one, end[other]), side(other, start[one]), side(other, end[one])]
+    ends = [(one, start[other]), (one, end[other]), (other, start[one]), (other, end[one])]
+    crosses = (sides[0] * sides[1] < 0.0) & (sides[2] * sides[3] < 0.0)
+    touches = [(each == 0.0) & within(of, points) for each, (of, points) in zip(sides, ends, strict=True)]
+    follows, closes = other == one + 1, (one == 0) & (other == count - 1)
+    # neighbours share a corner; their other ends may not lie on one another
+    apart = [~(follows & (k in (0, 3))) & ~(closes & (k in (1, 2))) for k in range(4)]
+    return bool(np.any(crosses | np.any([touch & free for touch, free in zip(touches, apart, strict=True)], axis=0)))
+
+
 def rotated(vertices: Array, angle: Array) -> Array:
     """Vertices (S, K, 2) turned about the span by the angle (S,) in rad (thesis Eq. 2.38)."""
     c, s = np.cos(angle), np.sin(angle)

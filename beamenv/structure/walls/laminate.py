@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, Numbers, checked, configuration
+from beamenv.configuration import Number, Numbers, Refused, Table, Text, checked, configuration
+from beamenv.configuration.numbers import DEGREES
+from beamenv.configuration.read_only import Sealed
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -22,7 +24,7 @@ COMPONENT = np.array([component for component, _ in WALL_STRAINS])
 POWER = np.array([power for _, power in WALL_STRAINS])
 HIGHEST_MOMENT = 2 * int(POWER.max())
 
-PLY_ANGLES = Numbers(Number(unit="degrees"), least=1, of="ply angles")
+PLY_ANGLES = Numbers(DEGREES, least=1, most=1000, of="ply angles")
 """Of one wall, inner to outer face."""
 
 
@@ -31,7 +33,7 @@ class Ply:
     """One layer: its material and the angle of its fibres from the contour tangent (0 = hoop, 90 = spanwise), degrees."""
 
     material: Lamina
-    angle_deg: Annotated[float, Number(unit="degrees")]
+    angle_deg: Annotated[float, DEGREES]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +44,10 @@ class Layup:
     walls: Mapping[str, tuple[Ply, ...]] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "walls", MappingProxyType(dict(self.walls)))
+        if self.default is not None:
+            object.__setattr__(self, "default", _plies("layup.default", self.default))
+        walls = {wall: _plies(f"layup.walls.{wall}", plies) for wall, plies in checked("layup.walls", self.walls, Table()).items()}
+        object.__setattr__(self, "walls", MappingProxyType(walls))
 
     def __reduce__(self) -> tuple[type[Layup], tuple[tuple[Ply, ...] | None, dict[str, tuple[Ply, ...]]]]:
         # A mapping proxy cannot be pickled, and blades travel to worker processes.
@@ -60,7 +65,7 @@ class Layup:
 
     def plies(self, wall: str) -> tuple[Ply, ...]:
         """The plies of a wall; ``ValueError`` for a wall that the lay-up leaves out."""
-        plies = self.walls.get(wall, self.default)
+        plies = self.walls.get(checked("wall", wall, Text()), self.default)
         if plies is None:
             raise ValueError(f"layup has no plies for wall {wall!r}; it has them for {', '.join(sorted(self.walls))}.")
         return plies
@@ -83,6 +88,13 @@ class Layup:
         return Layup(default, {wall: mirror(plies) for wall, plies in self.walls.items()})
 
 
+def _plies(name: str, given: Any) -> tuple[Ply, ...]:
+    """Plies as a tuple; ``ValueError`` for anything else, or none."""
+    if not isinstance(given, (list, tuple)) or not given or not all(isinstance(each, Ply) for each in given):
+        raise Refused(name, given, "a list of one or more of Ply")
+    return tuple(given)
+
+
 def stack(material: Lamina, angles_deg: Sequence[float], name: str) -> tuple[Ply, ...]:
     """Plies of one material at the given angles, inner to outer face."""
     return tuple(Ply(material, angle) for angle in checked(name, angles_deg, PLY_ANGLES))
@@ -95,10 +107,19 @@ class Laminate:
     interfaces: tuple[float, ...]
     plies: tuple[Ply, ...]
 
+    def __post_init__(self) -> None:
+        plies = _plies("laminate.plies", self.plies)
+        levels = checked("laminate.interfaces", self.interfaces, Numbers(Number(unit="m"), least=2))
+        if len(levels) != len(plies) + 1 or any(low >= high for low, high in zip(levels[:-1], levels[1:], strict=True)):
+            raise Refused("laminate.interfaces", levels, f"{len(plies) + 1} ascending numbers (m), one more than plies")
+        object.__setattr__(self, "plies", plies)
+        object.__setattr__(self, "interfaces", levels)
+
     @classmethod
     def equal_plies(cls, plies: tuple[Ply, ...], thickness: float) -> Laminate:
         """Equally thick plies filling ``thickness`` (m)."""
-        return cls(tuple(np.linspace(-0.5 * thickness, 0.5 * thickness, len(plies) + 1).tolist()), plies)
+        count = len(_plies("plies", plies))
+        return cls(tuple(np.linspace(-0.5 * thickness, 0.5 * thickness, count + 1).tolist()), plies)
 
     @property
     def thickness(self) -> float:
@@ -126,7 +147,7 @@ def power_integrals(interfaces: Array, highest: int) -> Array:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WallLaw:
+class WallLaw(Sealed):
     """What a wall contributes to a section, per unit area."""
 
     thickness: float
