@@ -117,18 +117,18 @@ class Factorised:
         """
         sums = self.sums
         warping, strain = self.solve_once(loads, resultants)
-        for count in range(CORRECTIONS):
+        rounds, small = 0, False
+        while rounds < CORRECTIONS and not small:
             here, whole, solved = sums.gather(warping), strain[:, None], self._in_units(warping, strain)
             left = loads - sums.warping @ here - sums.beam_strain @ whole
             missing = resultants - (sums.beam_strain.swapaxes(-1, -2) @ here + sums.beam @ whole).sum(axis=1)
             correction, more = self._solve(left, missing, self.held.swapaxes(-1, -2) @ solved[:, :-RIGID])
             wrong, size = (np.linalg.norm(each, axis=1) for each in (self._in_units(correction, more), solved))
             warping, strain = warping + correction, strain + more
-            if np.all(wrong <= EXACT * size):
-                break
+            rounds, small = rounds + 1, bool(np.all(wrong <= EXACT * size))
         if not np.all(wrong <= DOUBT * size):
             raise _too_thin(sums)
-        return warping, strain, count == 0
+        return warping, strain, small and rounds == 1
 
     def _in_units(self, warping: Array, strain: Array) -> Array:
         """(V, 12 K + 6, c): displacements of the ends of elements and beam strain."""
