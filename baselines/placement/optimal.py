@@ -9,13 +9,12 @@ from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
-from baselines.design.objects import instance
 from baselines.placement.cost.problem import PlacementProblem
 from baselines.placement.search.search import place
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_positions
-from beamenv.configuration import Choice, checked
+from beamenv.configuration import Choice, checked, checked_object
 from beamenv.configuration.writing import write_whole
 
 METHOD, SEED = "multistart", 0
@@ -31,18 +30,19 @@ def optimal_positions(config: BladeConfig, side: Side) -> Positions:
     with the actuators placed. SQP from many starts takes a few seconds; the answer is kept in the process and in the user's
     cache (``$BEAMENV_CACHE``, or ``beamenv`` in ``$XDG_CACHE_HOME`` or ``~/.cache``).
     """
-    instance("config", config, BladeConfig, "a BladeConfig")
-    side = checked("side", side, Choice(SIDES))
+    checked_object("config", config, BladeConfig)
+    checked("side", side, Choice(SIDES))
     return optimal_layout(with_positions(config, {each: len(positions_of(config, each)) for each in SIDES}))[side]
 
 
 def optimal_layout(config: BladeConfig) -> dict[Side, Positions]:
-    """Both sides' positions for a blade with equally spaced patches; ``ValueError`` for what is no ``BladeConfig``."""
-    return dict(_optimal_layout(instance("config", config, BladeConfig, "a BladeConfig")))
+    """Both sides' positions for a blade with equally spaced patches; ``ValueError`` for what is no configuration."""
+    return dict(kept_layout(checked_object("config", config, BladeConfig)))  # a copy: what is kept, nobody changes
 
 
 @lru_cache(maxsize=256)
-def _optimal_layout(config: BladeConfig) -> dict[Side, Positions]:
+def kept_layout(config: BladeConfig) -> dict[Side, Positions]:
+    """What ``optimal_layout`` copies."""
     kept = _kept_in(config)
     try:
         read = json.loads(kept.read_text())
@@ -51,9 +51,6 @@ def _optimal_layout(config: BladeConfig) -> dict[Side, Positions]:
         found = computed_layout(config)
     _keep(kept, json.dumps(found))
     return found
-
-
-optimal_layout.cache_clear = _optimal_layout.cache_clear  # type: ignore[attr-defined] # what is kept in the process
 
 
 def computed_layout(config: BladeConfig) -> dict[Side, Positions]:

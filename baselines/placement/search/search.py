@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from baselines.design.objects import instance
 from baselines.placement.cost.controllability import check_reach
 from baselines.placement.cost.problem import PlacementProblem
 from baselines.placement.search.evolution import Evolution
@@ -19,7 +18,7 @@ from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
 from baselines.placement.search.placement import Placement, Progress, Recorder
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
-from beamenv.configuration import Count, Refused, checked, shown
+from beamenv.configuration import Count, Refused, checked, checked_object
 
 Array = NDArray[np.float64]
 
@@ -71,12 +70,13 @@ def place(
     ``start`` (count,), m, is uniform unless given. Raises ``ValueError`` for an unknown method, a start that is not feasible, or
     a blade with a mode that the patches cannot move (or sense).
     """
-    instance("problem", problem, PlacementProblem, "a PlacementProblem, such as PlacementProblem.of gives")
-    if not (isinstance(method, str) and method in METHODS) and not callable(getattr(method, "run", None)):
-        raise ValueError(f"method = {shown(method)} must be one of {', '.join(METHODS)}.")
-    if progress is not None and not callable(progress):
+    checked_object("problem", problem, PlacementProblem)
+    if not (method in METHODS if isinstance(method, str) else callable(getattr(method, "run", None))):
+        raise Refused("method", method, f"one of {', '.join(METHODS)}, or a search")
+    seed = checked("seed", seed, Count(0, 2**63 - 1))
+    if not (progress is None or callable(progress)):
         raise Refused("progress", progress, "None or a function of the share done and the least cost")
-    chosen, seed = METHODS[method] if isinstance(method, str) else method, checked("seed", seed, Count(0, 2**63 - 1))
+    chosen = METHODS[method] if isinstance(method, str) else method
     begin = problem.bounds.uniform() if start is None else problem.bounds.checked(start)
     clock = time.perf_counter()
     recorder = Recorder(problem, progress)
