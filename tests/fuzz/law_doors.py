@@ -317,6 +317,7 @@ DOORS = [
         placement.reach,
         {"problem": instance(placement.PlacementProblem), "positions": NUMBERS},
         lambda: {"problem": problem(), "positions": [0.1, 0.6]},
+        told=("actuators",),
     ),
     Door(
         "check_reach",

@@ -124,10 +124,9 @@ def test_every_option_of_every_command_is_among_those_tried():
     for name, command in commands.items():
         positional, options, flags, _ = command_doors.COMMANDS[name]
         told = {option for each in command.params for option in (*each.opts, *each.secondary_opts) if option.startswith("--")}
-        tried = {*options, *flags}
-        assert {option for option in told if option not in ("--help",)} - tried <= {
-            f"--{flag[5:]}" for flag in flags if flag.startswith("--no-")
-        }
+        tried = {*options, *flags, "--help"}
+        opposites = {f"--{name[5:]}" if name.startswith("--no-") else f"--no-{name[2:]}" for name in flags}
+        assert told - tried <= opposites
         assert len([each for each in command.params if each.param_type_name == "argument"]) == len(positional)
 
 
