@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.design.controller import Array
+from beamenv.configuration.read_only import Sealed, sealed
 
 RESAMPLES = 2000
 CONFIDENCE = 0.95
@@ -32,11 +33,11 @@ def interval(value: float, resampled: Array, confidence: float = CONFIDENCE) -> 
 @lru_cache(maxsize=8)
 def paired_draws(seeds: int) -> NDArray[np.intp]:
     """(R, N): draws with replacement of N seeds, the same at every call, so that controllers are resampled in pairs."""
-    return _draws(seeds, seeds, RESAMPLES)
+    return sealed(_draws(seeds, seeds, RESAMPLES))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Resamples:
+class Resamples(Sealed):
     """R draws with replacement of K runs and N seeds, each for itself.
 
     Every run meets the same seeds, so that runs and seeds are crossed: this is the pigeonhole bootstrap (Owen, Annals of Applied

@@ -14,7 +14,7 @@ from baselines.placement.search.search import place
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_positions
-from beamenv.configuration import Choice, checked, checked_object
+from beamenv.configuration import Choice, Instance, checked
 from beamenv.configuration.writing import write_whole
 
 METHOD, SEED = "multistart", 0
@@ -30,14 +30,14 @@ def optimal_positions(config: BladeConfig, side: Side) -> Positions:
     with the actuators placed. SQP from many starts takes a few seconds; the answer is kept in the process and in the user's
     cache (``$BEAMENV_CACHE``, or ``beamenv`` in ``$XDG_CACHE_HOME`` or ``~/.cache``).
     """
-    checked_object("config", config, BladeConfig)
+    checked("config", config, Instance(BladeConfig))
     checked("side", side, Choice(SIDES))
     return optimal_layout(with_positions(config, {each: len(positions_of(config, each)) for each in SIDES}))[side]
 
 
 def optimal_layout(config: BladeConfig) -> dict[Side, Positions]:
     """Both sides' positions for a blade with equally spaced patches; ``ValueError`` for what is no configuration."""
-    return dict(kept_layout(checked_object("config", config, BladeConfig)))  # a copy: what is kept, nobody changes
+    return dict(kept_layout(checked("config", config, Instance(BladeConfig))))  # a copy: what is kept, nobody changes
 
 
 @lru_cache(maxsize=256)

@@ -19,6 +19,9 @@ from beamenv.plant.reduction import truncate
 from beamenv.simulation.kernel import Operators
 from beamenv.simulation.plants.speed_family import speed_family
 from beamenv.structure import GRAPHITE_EPOXY
+from beamenv.structure.section.elements import inverse_vandermonde, lobatto_nodes
+from beamenv.structure.trial_functions import gauss_rule, legendre_derivative, remaining_integrals
+from beamenv.structure.walls.laminate import Laminate, Ply, wall_law
 from beamenv.task import resolve_task
 
 CONFIG = blade_config()
@@ -52,6 +55,25 @@ def test_no_array_of_what_is_shared_can_be_written_to(kind, through):
     shared = through(SHARED[kind]())
     assert len(arrays_of(shared)) >= 3
     for values in arrays_of(shared):
+        with pytest.raises(ValueError, match="read-only"):
+            values[...] = 0.0
+
+
+KEPT = {
+    "Gauss's rule": lambda: gauss_rule(7),
+    "derivatives": lambda: (legendre_derivative(7),),
+    "integrals to the end": lambda: (remaining_integrals(7),),
+    "Lobatto's nodes": lambda: (lobatto_nodes(3),),
+    "shapes of an element": lambda: inverse_vandermonde(3),
+    "shipped plant": lambda: arrays_of(load_plant("solid-blade")),
+    "wall": lambda: arrays_of(wall_law(Laminate((-1e-3, 1e-3), (Ply(GRAPHITE_EPOXY, 30.0),)))),
+}
+
+
+@pytest.mark.parametrize("kind", KEPT)
+def test_no_array_kept_from_call_to_call_can_be_written_to(kind):
+    assert len(KEPT[kind]()) > 0
+    for values in KEPT[kind]():
         with pytest.raises(ValueError, match="read-only"):
             values[...] = 0.0
 

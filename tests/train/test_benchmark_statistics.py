@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from baselines.evaluation.statistics import resamples
+from baselines.evaluation.statistics import paired_draws, resamples
 from train.benchmark.statistics import (
     better,
     difference,
@@ -89,3 +89,10 @@ def test_counts_give_the_means_of_the_drawn_values():
 
 def test_seeds_are_drawn_alike_however_many_runs_there_are():
     assert np.array_equal(resamples(1, 20).seeds, resamples(5, 20).seeds)
+
+
+def test_draws_that_every_comparison_shares_cannot_be_written_to():
+    drawn = resamples(2, 5)
+    for kept in (paired_draws(5), drawn.runs, drawn.seeds, drawn.run_counts, drawn.seed_counts):
+        with pytest.raises(ValueError, match="read-only"):
+            kept[...] = 0

@@ -66,9 +66,9 @@ def place_sides(
     from baselines.placement import PlacementProblem, place
     from beamenv.blade.config import BladeConfig
     from beamenv.blade.layouts import SIDES, with_positions
-    from beamenv.configuration import Count, checked, checked_object, checked_table
+    from beamenv.configuration import Count, Instance, checked, checked_table
 
-    checked_object("config", config, BladeConfig)
+    checked("config", config, Instance(BladeConfig))
     for name, count in checked_table("counts", counts, SIDES).items():
         checked(f"counts.{name}", count, Count())
     config, sides = with_positions(config, counts), []

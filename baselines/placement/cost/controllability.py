@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from baselines.placement.cost.problem import PlacementProblem
 from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import checked_object
+from beamenv.configuration import Instance, checked
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ def reach(problem: PlacementProblem, positions: ArrayLike) -> Array:
     By Popov, Belevitch and Hautus: |vᴴB| of each unit left eigenvector v of A, the columns of B each of unit length (sensors: Cᵀ
     and Aᵀ), over both eigenvectors of a mode. Raises ``ValueError`` for positions that are not feasible.
     """
-    checked_object("problem", problem, PlacementProblem)
+    checked("problem", problem, Instance(PlacementProblem))
     blade = problem.at(positions)
     A = blade.dynamics[0]
     if problem.side == "actuators":
@@ -38,7 +38,7 @@ def reach(problem: PlacementProblem, positions: ArrayLike) -> Array:
 
 def check_reach(problem: PlacementProblem, positions: ArrayLike) -> None:
     """``ValueError`` naming the first mode that a layout cannot move (or sense)."""
-    checked_object("problem", problem, PlacementProblem)
+    checked("problem", problem, Instance(PlacementProblem))
     shares = reach(problem, positions)
     if shares.min() >= NO_REACH:
         return

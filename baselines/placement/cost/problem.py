@@ -27,7 +27,7 @@ from beamenv.blade.bounds import Bounds
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
-from beamenv.configuration import Choice, Refused, checked, checked_object
+from beamenv.configuration import Choice, Instance, Refused, checked
 from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
@@ -62,7 +62,7 @@ class PlacementProblem:
 
         Raises ``ValueError`` for an unknown side, bounds without room, more patches than fit, or sensors without noise.
         """
-        checked_object("config", config, BladeConfig)
+        checked("config", config, Instance(BladeConfig))
         checked("side", side, Choice(SIDES))
         if side == "sensors":
             check_noise(config)

@@ -18,7 +18,7 @@ from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
 from baselines.placement.search.placement import Placement, Progress, Recorder
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
-from beamenv.configuration import Count, Refused, checked, checked_object
+from beamenv.configuration import Count, Instance, Refused, checked
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def place(
     ``start`` (count,), m, is uniform unless given. Raises ``ValueError`` for an unknown method, a start that is not feasible, or
     a blade with a mode that the patches cannot move (or sense).
     """
-    checked_object("problem", problem, PlacementProblem)
+    checked("problem", problem, Instance(PlacementProblem))
     if not (method in METHODS if isinstance(method, str) else callable(getattr(method, "run", None))):
         raise Refused("method", method, f"one of {', '.join(METHODS)}, or a search")
     seed = checked("seed", seed, Count(0, 2**63 - 1))
