@@ -257,7 +257,9 @@ def _numbers(name: str, value: Any) -> Array:
         return value
     try:
         given = np.asarray(value)
-        if given.dtype.kind not in "fiub":  # complex numbers would lose a part, text would be read as numbers
+        if given.dtype.kind not in "fiub" or isinstance(
+            value, (bytes, bytearray, memoryview)
+        ):  # complex numbers would lose a part, text would be read as numbers
             raise TypeError
         return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, RuntimeError):  # torch raises the last of a tensor that wants a gradient

@@ -52,7 +52,7 @@ def stability_margins(plant: Plant, controller: LinearController, at: Literal["i
     held, controller = sample(checked_plant(plant)), linear(controller)
     loop = closed_loop(held, controller)[0]
     if spectral_radius(loop) >= 1.0:
-        raise ValueError(f"{controller.name} is unstable on this plant, so it has no stability margins")
+        raise ValueError(f"{controller.name} is unstable on this plant, so it has no stability margins.")
     sensitivity = _sensitivity(plant, controller, at)
     angles = resonant_angles(loop, held.A, controller.transition + controller.voltage_input @ controller.state_gain)
     low, high, phase, delay = _loop_at_a_time(sensitivity, angles)

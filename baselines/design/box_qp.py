@@ -23,9 +23,9 @@ class BoxQP:
 
     def __init__(self, hessian: Array, lowest: Array, highest: Array) -> None:
         if not (np.isfinite([lowest, highest]).all() and np.all(lowest <= highest)):
-            raise ValueError(f"bounds from {lowest} to {highest} are not allowed: they must be finite, the lower ones first")
+            raise ValueError(f"bounds from {lowest} to {highest} are not allowed: they must be finite, the lower ones first.")
         if not (np.isfinite(hessian).all() and np.linalg.eigvalsh(hessian)[0] > 0.0):
-            raise ValueError("hessian is not positive definite, but must be: else there may be more than one least value")
+            raise ValueError("hessian is not positive definite, but must be: else there may be more than one least value.")
         self.hessian, self.lowest, self.highest = hessian, lowest, highest
         self.failures = 0
         """Programs that the solver gave up since this object was made."""

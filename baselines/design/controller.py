@@ -57,7 +57,7 @@ class FunctionController:
         if action.ndim != np.ndim(observation) or action.shape[:-1] != np.shape(observation)[:-1]:
             raise ValueError(
                 f"controller = {self.name} gives actions of shape {action.shape} for observations of shape "
-                f"{np.shape(observation)}, but must give one row of voltages for each row of readings"
+                f"{np.shape(observation)}, but must give one row of voltages for each row of readings."
             )
         return action, None
 
@@ -67,7 +67,7 @@ def as_controller(controller: ControllerArgument) -> Controller:
     if isinstance(controller, type) or not callable(getattr(controller, "predict", controller)):
         raise ValueError(
             f"controller = {shown(controller)} is not allowed: it must be an object with Stable-Baselines3's predict, or a "
-            "function of the observations (N, p) that returns actions (N, m)"
+            "function of the observations (N, p) that returns actions (N, m)."
         )
     return controller if hasattr(controller, "predict") else FunctionController(controller)
 

@@ -35,12 +35,13 @@ class Instruments(ReadOnly):
         p, m = (np.size(each) for each in (self.measurement_scale, self.voltage_scale))
         keep_matrices(self, {"measurement_scale": (p,), "voltage_scale": (m,), "voltage_limits": (2, m)})
         object.__setattr__(self, "interval", checked("interval", self.interval, Number(gt=0.0, unit="s")))
-        checked("observes", self.observes, Choice(get_args(Observes)))
+        object.__setattr__(self, "observes", checked("observes", self.observes, Choice(get_args(Observes))))
 
     @classmethod
     def of(cls, plant: Plant, observes: Observes = "observation") -> Instruments:
         """Those of an environment around this plant, which takes and gives normalised numbers."""
         checked_plant(plant)
+        observes = checked("observes", observes, Choice(get_args(Observes)))
         scale = np.ones(len(plant.A)) if observes == "state" else plant.sensor_full_scale
         scale = np.append(scale, 1.0) if observes == "observation and speed" else scale
         return cls(scale, drive_limit(plant), plant.voltage_limits, plant.control_interval, observes)

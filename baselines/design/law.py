@@ -73,7 +73,7 @@ class Law(ABC):
     def to_control(self) -> control.StateSpace:
         """A linear law as a ``control.StateSpace``; ValueError for any other."""
         kind = f"{self.name} ({type(self).__name__})"
-        raise ValueError(f"law = {kind} is not linear, so it is no control.StateSpace: allowed is a LinearController")
+        raise ValueError(f"law = {kind} is not linear, so it is no control.StateSpace: allowed is a LinearController.")
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}: order {self.order}; {self.instruments.sizes})"

@@ -86,7 +86,7 @@ class LinearController(Law):
         continuous time, for one sampled otherwise than the plant, and for one that is unstable on it.
         """
         if (plant is None) == (instruments is None):
-            raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given")
+            raise ValueError("plant and instruments are both given or both left out, but exactly one of them must be given.")
         behind = Instruments.of(plant) if instruments is None else checked_instruments(instruments)  # type: ignore[arg-type]
         matrices = _matrices(A, behind) if B is None and C is None and D is None else (A, B, C, D)
         s, p, m = rows(matrices[0]), *behind.counts
@@ -145,7 +145,7 @@ def linear(controller: object) -> LinearController:
         return controller
     raise ValueError(
         f"controller = {name_of(controller)} ({type(controller).__name__}) is not linear, so its loop has no poles, margins, "
-        "frequency response or stationary cost: allowed is a LinearController"
+        "frequency response or stationary cost: allowed is a LinearController."
     )
 
 
@@ -153,7 +153,7 @@ def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any
     """Of a system of python-control, or one like it."""
     if not hasattr(system, "dt"):
         raise ValueError(
-            f"A alone is of type {type(system).__name__}, but must be a discrete-time control.StateSpace, or have B, C, D"
+            f"A alone is of type {type(system).__name__}, but must be a discrete-time control.StateSpace, or have B, C, D."
         )
     if not hasattr(system, "A"):
         import control
@@ -165,6 +165,6 @@ def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any
     if system.dt is not True and not (system.dt and np.isclose(system.dt, instruments.interval, rtol=1e-6)):
         raise ValueError(
             f"A is a system with dt = {system.dt!r}, but must be in discrete time and sampled as the plant is, "
-            f"every {instruments.interval:g} s"
+            f"every {instruments.interval:g} s."
         )
     return system.A, system.B, system.C, system.D

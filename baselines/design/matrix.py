@@ -12,16 +12,16 @@ from beamenv.configuration import shown
 
 
 def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """A copy as float64; ``ValueError`` names what is not of real, finite numbers in this shape: complex ones, text, masks."""
+    """A copy as float64; ``ValueError`` for what is not of finite real numbers in this shape: complex ones, text, masks, flags."""
     try:
         given = np.asarray(value)
-    except (TypeError, ValueError, RuntimeError):
+    except (TypeError, ValueError, RuntimeError, OverflowError):
         given = np.array(None)  # ragged, or of a kind that NumPy cannot read
-    if given.dtype.kind not in "iuf" or np.ma.is_masked(value):
-        raise ValueError(f"{name} = {shown(value)} must be a matrix of real numbers")
+    if given.dtype.kind not in "iuf" or np.ma.is_masked(value) or _holds_flags(value):
+        raise ValueError(f"{name} = {shown(value)} must be a matrix of real numbers.")
     numbers = np.array(given, dtype=np.float64)
     if numbers.shape != shape or not np.isfinite(numbers).all():
-        raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}")
+        raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}.")
     return numbers
 
 
@@ -43,4 +43,11 @@ def one_or_each(name: str, value: Any, count: int, of: str) -> Array:
     try:
         return np.broadcast_to(real_matrix(name, value, np.shape(value) if np.shape(value) == (count,) else ()), count)
     except ValueError:
-        raise ValueError(f"{name} = {shown(value)} must be a finite number, or {count} of them, one for each {of}") from None
+        raise ValueError(f"{name} = {shown(value)} must be a finite number, or {count} of them, one for each {of}.") from None
+
+
+def _holds_flags(value: Any) -> bool:
+    """Whether bytes, or true and false among the members of a list, which NumPy makes numbers of."""
+    if isinstance(value, (list, tuple)):
+        return any(map(_holds_flags, value))
+    return isinstance(value, (bool, np.bool_, bytes, bytearray, memoryview))

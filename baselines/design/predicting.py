@@ -21,7 +21,7 @@ def observed(observation: Any, name: str, reads: str = "observation", length: in
         seen = _numbers("observation", observation)
     if seen.ndim not in (1, 2) or length not in (None, seen.shape[-1]):
         wanted = f"{reads} vectors" if length is None else f"{reads} vectors of length {length}"
-        raise ValueError(f"observation has shape {seen.shape}, but {name} takes {wanted}, alone or in rows")
+        raise ValueError(f"observation has shape {seen.shape}, but {name} takes {wanted}, alone or in rows.")
     return seen
 
 

@@ -176,14 +176,16 @@ def sampled_kalman_filter(A: Array, C: Array, process_noise: Array, sensor_noise
 
 def _solved(equation: SampledEquation) -> tuple[Array, float]:
     try:
-        P: Array | None = solve_discrete_are(equation.A, equation.B, equation.Q, equation.R, s=equation.N)
-    except LinAlgError:
+        with np.errstate(all="ignore"):  # the residual says what came of it
+            P: Array | None = solve_discrete_are(equation.A, equation.B, equation.Q, equation.R, s=equation.N)
+    except (LinAlgError, ValueError):
         P = None
     if P is not None and (residual := relative_residual(equation, P)) <= RESIDUAL:
         return P, residual
     return improved(equation, doubled(equation))
 
 
+@np.errstate(all="ignore")
 def doubled(equation: SampledEquation) -> Array:
     """The stabilising solution by the structure-preserving doubling algorithm; ``LinAlgError`` where it does not converge.
 
@@ -207,6 +209,7 @@ def doubled(equation: SampledEquation) -> Array:
     raise LinAlgError("doubling the interval does not converge")
 
 
+@np.errstate(all="ignore")
 def improved(equation: Equation, P: Array) -> tuple[Array, float]:
     """The solution that Newton's steps lead to from P (n, n), none where it is good already, and its relative residual."""
     residual = relative_residual(equation, P)

@@ -55,10 +55,10 @@ def solvable(plant: Plant) -> Iterator[None]:
     except Unsolved as error:
         mode = undamped_out_of_reach(sample(plant))
         cause = str(error) if mode is None else f"plant has {mode}"
-        raise ValueError(f"{cause}: no law is the optimum then, allowed are plants in which every such mode is damped") from None
+        raise ValueError(f"{cause}: no law is the optimum then, allowed are plants in which every such mode is damped.") from None
 
 
 def _broken(law: LinearController, held: SampledPlant, what: str, instead: str) -> ValueError:
     mode = undamped_out_of_reach(held)
     gives = "gives" if mode is None else f"has {mode}: it gives"
-    return ValueError(f"plant {gives} {law.name} {what}; allowed is {instead}, or verify=False for the law as it is")
+    return ValueError(f"plant {gives} {law.name} {what}; allowed is {instead}, or verify=False for the law as it is.")

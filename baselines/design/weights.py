@@ -34,8 +34,8 @@ def _checked(name: str, value: ArrayLike, size: int, definite: str) -> Array:
     weight = real_matrix(name, value, (size, size))
     rounding = _ROUNDING * np.abs(weight).max()
     if np.abs(weight - weight.T).max() > rounding:
-        raise ValueError(f"{name} differs from its transpose by {np.abs(weight - weight.T).max():.3g}, but must be symmetric")
+        raise ValueError(f"{name} differs from its transpose by {np.abs(weight - weight.T).max():.3g}, but must be symmetric.")
     lowest = float(np.linalg.eigvalsh(weight).min())
     if lowest < -rounding if definite == "semidefinite" else lowest <= 0.0:
-        raise ValueError(f"{name} has the eigenvalue {lowest:.3g}, but must be positive {definite}")
+        raise ValueError(f"{name} has the eigenvalue {lowest:.3g}, but must be positive {definite}.")
     return weight

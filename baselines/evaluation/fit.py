@@ -69,7 +69,7 @@ def _check_clock(law: Law, interval: float) -> None:
     if not np.isclose(law.instruments.interval, interval, rtol=1e-6):
         raise ValueError(
             f"controller = {law.name} decides every {law.instruments.interval:g} s, but the environment wants one that does every "
-            f"{interval:g} s"
+            f"{interval:g} s."
         )
 
 
@@ -84,7 +84,7 @@ def _check_spaces(controller: Controller, env: Environment) -> None:
         if own.shape != there.shape or (name == "action" and _normalised(own) is not _normalised(there)):
             raise ValueError(
                 f"controller = {name_of(controller)} has the {name} space {own}, but must have the environment's, {there}, "
-                "within the wrappers that it was trained in"
+                "within the wrappers that it was trained in."
             )
 
 

@@ -27,7 +27,7 @@ def least_cost_gains(cost: Callable[[Array], float], common: NDArray[np.float64]
         if stable is None:
             raise ValueError(
                 f"plant is unstable under {law} of any gain tried, down to {common.min() * _SMALLER[-1]:.1e} of its unit: allowed "
-                "are plants that are stable by themselves, with damping in every mode, or a gain of your own and verify=False"
+                "are plants that are stable by themselves, with damping in every mode, or a gain of your own and verify=False."
             )
         start = stable
     simplex = np.vstack([start, start + start[0] * np.eye(count)])

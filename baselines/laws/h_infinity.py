@@ -53,7 +53,9 @@ def least_attenuation(plant: Plant) -> float:
     plant without white loads, where doing nothing costs nothing.
     """
     if not checked_plant(plant).process_noise.any():
-        raise ValueError("plant has no white load (process_noise is zero), so an H∞ controller has nothing to hold its own against")
+        raise ValueError(
+            "plant has no white load (process_noise is zero), so an H∞ controller has nothing to hold its own against."
+        )
     low, high = 0.0, h_infinity_norm(plant, sampled_lqg(plant))
     while high - low > _BISECTION * high:
         middle = 0.5 * (low + high)
@@ -70,7 +72,7 @@ def h_infinity_law(plant: Plant, attenuation: float, *, verify: bool = True) -> 
     game = _game(checked_plant(plant), attenuation)
     solution = _saddle_point(game)
     if solution is None:
-        raise ValueError(f"attenuation = {attenuation!r} is too little: no controller keeps the gain from noise to cost below it")
+        raise ValueError(f"attenuation = {attenuation!r} is too little: no controller keeps the gain from noise to cost below it.")
     p, unit, reading = len(game.C), game.voltage_unit[:, None], np.linalg.inv(game.reading_unit)
     K, L, predictor = solution.regulator, solution.filter, solution.predictor
     law = observer(

@@ -59,7 +59,7 @@ def lqg(
     if checked("design", design, Choice(("sampled", "continuous"))) == "sampled":
         return sampled_lqg(plant, "LQG" if load is None else "LQG with load estimate", load, verify=verify)
     if load is not None:
-        raise ValueError(f'persistent_load = {load} needs design="sampled": the thesis\' design has no load state')
+        raise ValueError(f'persistent_load = {load} needs design="sampled": the thesis\' design has no load state.')
     return _continuous(plant, verify)
 
 

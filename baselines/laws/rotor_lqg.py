@@ -45,7 +45,7 @@ class RotorHarmonics:
         if max(self.orders) * self.speed * interval >= np.pi:
             raise ValueError(
                 f"order {max(self.orders)} at {self.speed:g} rad/s is not allowed: sampled every {interval:g} s, a load must "
-                f"stay below {np.pi / interval:.6g} rad/s"
+                f"stay below {np.pi / interval:.6g} rad/s."
             )
         return reduce(add, (self._oscillator(order * self.speed * interval, interval) for order in self.orders))
 

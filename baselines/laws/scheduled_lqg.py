@@ -84,7 +84,7 @@ class ScheduledLQG(Law):
         """(…, k): share of each law, all of it at its own speed, falling linearly to none at its neighbours'."""
         if not np.isfinite(speed).all():
             raise ValueError(
-                f"observation has the rotor speed {speed[~np.isfinite(speed)][0]}, but {self.name} needs a number in rad/s"
+                f"observation has the rotor speed {speed[~np.isfinite(speed)][0]}, but {self.name} needs a number in rad/s."
             )
         return np.stack([np.interp(speed, self.speeds, share) for share in np.eye(len(self.speeds))], axis=-1)
 
@@ -109,7 +109,7 @@ def scheduled_lqg(
     for plant in family.plants:
         for name in ("sensor_full_scale", "voltage_limits", "control_interval"):
             if not np.array_equal(getattr(plant, name), getattr(first, name)):
-                raise ValueError(f"family has plants that differ in {name}, but one controller has one set of instruments")
+                raise ValueError(f"family has plants that differ in {name}, but one controller has one set of instruments.")
     laws = (_law(*each, load, rate_weight, verify) for each in zip(family.plants, family.from_common, strict=True))
     name = "LQG, scheduled with speed" if load is None else "LQG with load estimate, scheduled with speed"
     return ScheduledLQG(name, Instruments.of(first, "observation and speed"), family.speeds, tuple(laws))
@@ -135,7 +135,7 @@ def scheduled_lqg_for(
     checked_persistent_load(persistent_load)
     if speeds is None:
         if config.speed == 0.0:
-            raise ValueError("speeds is None, but must be given for a blade at rest: there is no speed to choose them around")
+            raise ValueError("speeds is None, but must be given for a blade at rest: there is no speed to choose them around.")
         speeds = config.speed * _GRID
     family = speed_family(config, speeds, full=checked("full", full, Flag()))
     return scheduled_lqg(family, persistent_load, rate_weight=rate_weight, verify=verify)

@@ -36,7 +36,7 @@ def velocity_feedback(
     meant_for = optional_instance("tuned_on", tuned_on, Plant, "a beamenv.Plant, such as design.full_plant") or plant
     felt = np.diag(pairs @ plant.C @ plant.B)
     if not felt.any():
-        raise ValueError("plant hides what a pair feels behind filters: allowed is the design plant, with tuned_on= for this one")
+        raise ValueError("plant hides what a pair feels behind filters: allowed is the design plant, with tuned_on= for this one.")
     pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
     given = None if gain is None else one_or_each("gain", gain, len(pairs), "actuator")
     gains = _least_cost_gains(plant, meant_for, pairs) if given is None else given
@@ -56,7 +56,7 @@ def pairing(plant: Plant, name: str) -> Array:
     if m not in (1, p):
         raise ValueError(
             f"plant has {m} actuators and {p} sensors, which {name} cannot pair: "
-            "it needs one sensor to each actuator, or one ganged actuator"
+            "it needs one sensor to each actuator, or one ganged actuator."
         )
     return np.eye(p) if m == p else np.full((1, p), 1.0 / p)
 

@@ -14,6 +14,7 @@ from baselines.placement.search.search import place
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.blade.layouts import SIDES, Positions, Side, positions_of, with_positions
+from beamenv.configuration import Choice, checked, checked_object
 from beamenv.configuration.writing import write_whole
 
 METHOD, SEED = "multistart", 0
@@ -29,12 +30,19 @@ def optimal_positions(config: BladeConfig, side: Side) -> Positions:
     with the actuators placed. SQP from many starts takes a few seconds; the answer is kept in the process and in the user's
     cache (``$BEAMENV_CACHE``, or ``beamenv`` in ``$XDG_CACHE_HOME`` or ``~/.cache``).
     """
+    checked_object("config", config, BladeConfig)
+    checked("side", side, Choice(SIDES))
     return optimal_layout(with_positions(config, {each: len(positions_of(config, each)) for each in SIDES}))[side]
 
 
-@lru_cache(maxsize=256)
 def optimal_layout(config: BladeConfig) -> dict[Side, Positions]:
-    """Both sides' positions for a blade with equally spaced patches."""
+    """Both sides' positions for a blade with equally spaced patches; ``ValueError`` for what is no configuration."""
+    return dict(kept_layout(checked_object("config", config, BladeConfig)))  # a copy: what is kept, nobody changes
+
+
+@lru_cache(maxsize=256)
+def kept_layout(config: BladeConfig) -> dict[Side, Positions]:
+    """What ``optimal_layout`` copies."""
     kept = _kept_in(config)
     try:
         read = json.loads(kept.read_text())

@@ -75,9 +75,10 @@ class Bounds:
 
     def checked(self, positions: ArrayLike) -> Array:
         """Positions (count,) in ascending order; ``ValueError`` unless they are finite, within the bounds and apart."""
-        given = np.asarray(positions, dtype=float)
-        if given.shape != (self.count,) or not np.all(np.isfinite(given)):
-            raise Refused(self.name, given.tolist(), f"{self.count} finite positions (m)")
+        try:
+            given = np.array(checked(self.name, positions, Numbers(least=self.count, most=self.count)))
+        except ValueError:
+            raise Refused(self.name, positions, f"{self.count} finite positions (m)") from None
         ordered = np.sort(given)
         if ordered[0] < self.low - TOLERANCE or ordered[-1] > self.high + TOLERANCE:
             raise Refused(self.name, given.tolist(), f"between {self.low:g} and {self.high:.6g} m")

@@ -16,7 +16,7 @@ The rules, the same for every argument, dictionary and file:
 
 from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
-from beamenv.configuration.reading import checked, checked_table, configuration, read
+from beamenv.configuration.reading import checked, checked_object, checked_table, configuration, read
 from beamenv.configuration.sentence import Refused, shown
 
 __all__ = [
@@ -41,6 +41,7 @@ __all__ = [
     "Texts",
     "Whole",
     "checked",
+    "checked_object",
     "checked_table",
     "configuration",
     "read",

@@ -22,7 +22,7 @@ def real_numbers(name: str, value: Any) -> Array:
         values = np.asarray(value)
     except (ValueError, TypeError, RuntimeError):  # the last from a tensor that wants a gradient
         values = np.asarray(None)
-    if values.dtype.kind not in "fiu":
+    if values.dtype.kind not in "fiu" or isinstance(value, (bytes, bytearray, memoryview)):
         raise Refused(name, value, "an array of real numbers")
     return np.asarray(values, dtype=np.float64)
 

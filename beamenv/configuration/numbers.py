@@ -38,7 +38,8 @@ class Number(Kind):
 
     def inner(self) -> CoreSchema:
         """Of a number of Python's."""
-        return core_schema.float_schema(gt=self.gt, ge=self.ge, lt=self.lt, le=self.le, allow_inf_nan=False, strict=True)
+        inner = core_schema.float_schema(gt=self.gt, ge=self.ge, lt=self.lt, le=self.le, allow_inf_nan=False, strict=True)
+        return core_schema.no_info_before_validator_function(_python_number, inner)
 
     def json(self) -> JsonSchema:
         """A number."""
@@ -203,6 +204,13 @@ class Patches(Kind):
     def json(self) -> JsonSchema:
         """An integer, or an array."""
         return {"anyOf": [Count().json(), Numbers(least=1).json()]}
+
+
+def _python_number(value: Any) -> Any:
+    """Itself: what merely can be made a float, such as a fraction or a tensor of true and false, is no number."""
+    if not isinstance(value, (int, float)):
+        raise ValueError
+    return value
 
 
 def _finite(bound: float) -> float | None:

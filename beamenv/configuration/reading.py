@@ -105,6 +105,13 @@ def checked(name: str, value: Any, kind: Kind) -> Any:
         raise sentence(error, name, ()) from None
 
 
+def checked_object(name: str, value: Any, cls: type[T]) -> T:
+    """A single argument that is an object of a class; ``ValueError`` of one sentence about ``name``."""
+    if not isinstance(value, cls):
+        raise Refused(name, value, an(cls.__name__))
+    return value
+
+
 @functools.lru_cache(maxsize=256)
 def _validator(kind: Kind) -> SchemaValidator:
     return SchemaValidator(kind.schema())

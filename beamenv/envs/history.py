@@ -76,7 +76,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
-        RecordConstructorArgs.__init__(self, length=length)
+        RecordConstructorArgs.__init__(self, length=checked("length", length, Count()))
         plant, length = _normalised_plant(env, length, of_batch=False)
         gymnasium.Wrapper.__init__(self, env)
         self._drive = drive_limit(plant)

@@ -16,6 +16,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
 from beamenv.configuration import Count, Refused, Table, checked, checked_table
+from beamenv.envs.seeds import checked_seed
 from beamenv.envs.specification import plain
 from beamenv.envs.within import task_within
 from beamenv.task import Task, reset_options
@@ -51,6 +52,7 @@ class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorA
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode, in another layout if ``options`` or the range say so."""
         layout, rest = _changed(self._home.config, self._layout, options, self._positions)
+        seed = checked_seed(seed)
         reset_options(self.env.unwrapped.task, rest, rows=1)  # type: ignore[attr-defined] # what it refuses must be refused before anything has changed
         drawn = any(isinstance(layout[side], Drawn) for side in SIDES)
         if drawn:

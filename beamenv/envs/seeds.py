@@ -89,7 +89,7 @@ def own_seeds(seed: Any, count: int) -> list[int | None]:
     """One seed for each blade, None for one that goes on with the generator that it has."""
     try:
         seeds = [None if number is None or isinstance(number, bool) else operator.index(number) for number in seed]
-        wrong = isinstance(seed, (str, bytes, Mapping)) or any(isinstance(number, bool) for number in seed)
+        wrong = isinstance(seed, (str, bytes, bytearray, memoryview, Mapping)) or any(isinstance(number, bool) for number in seed)
     except TypeError:
         seeds, wrong = [], True
     if wrong or len(seeds) != count or any(number is not None and number < 0 for number in seeds):

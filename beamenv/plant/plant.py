@@ -233,7 +233,7 @@ def _sampled(plant: Plant, held: Sequence[Array], interval: float) -> SampledPla
     A, B, cost = held
     m = plant.B.shape[1]
     if not all(np.isfinite(part).all() for part in held):
-        raise ValueError(f"interval = {interval!r} s leaves the plant without a finite state: it is unstable, or holds no numbers")
+        raise ValueError(f"interval = {interval!r} s leaves the plant without a finite state: it is unstable, or holds no numbers.")
     return SampledPlant(
         A=A,
         B=B[:, :m],

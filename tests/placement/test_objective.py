@@ -21,9 +21,9 @@ CASES = [("thesis", {}), ("thesis", {"patches": {"ganged": True}}), ("thesis", {
 def trace_of_the_plant(problem, positions):
     plant = build_plant(problem.configuration(positions))
     if problem.side == "actuators":
-        return np.trace(regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)[0])
+        return np.trace(regulator(plant.A, plant.B, plant.state_weight, plant.input_weight).matrix)
     loads = plant.disturbance_input @ plant.process_noise @ plant.disturbance_input.T
-    return np.trace(kalman_filter(plant.A, plant.C, loads, plant.sensor_noise)[0])
+    return np.trace(kalman_filter(plant.A, plant.C, loads, plant.sensor_noise).matrix)
 
 
 @pytest.mark.parametrize("side", ["actuators", "sensors"])

@@ -9,7 +9,8 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.utils.env_checker import check_env
 
 from baselines import lqg, reference_lqg
-from baselines.placement import PlacementProblem, optimal_layout, place
+from baselines.placement import PlacementProblem, place
+from baselines.placement.optimal import kept_layout
 from baselines.placement.search.genetic import Genetic
 from beamenv import ENV_ID, PlacementWrapper, SensorHistory, VectorPlacementWrapper, blade_config, build_plant
 from beamenv.blade.bounds import Bounds
@@ -29,7 +30,7 @@ def batch(count, **arguments):
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("BEAMENV_CACHE", str(tmp_path))
-    optimal_layout.cache_clear()
+    kept_layout.cache_clear()
 
 
 def test_the_plant_is_the_one_with_patches_there():
@@ -89,7 +90,7 @@ def test_optimal_layout_is_found_once_and_kept(monkeypatch, tmp_path):
     monkeypatch.setattr(optimal, "METHOD", Genetic(population=6, generations=2))
     monkeypatch.setattr(optimal, "_kept_in", lambda config: tmp_path / "layout.json")
     first = wrapped(actuators="optimal", sensors="optimal").reset()[1]["layout"]
-    optimal_layout.cache_clear()
+    kept_layout.cache_clear()
     monkeypatch.setattr(optimal, "computed_layout", lambda config: pytest.fail("worked out again"))
     assert wrapped(actuators="optimal", sensors="optimal").reset()[1]["layout"] == first
     assert PlacementProblem.of(blade_config(), "actuators").bounds.checked(first["actuators"]).tolist() == list(first["actuators"])

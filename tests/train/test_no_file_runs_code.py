@@ -177,12 +177,12 @@ def test_a_kept_layout_runs_no_code_and_is_worked_out_again(kind, bombs, trace, 
 
     monkeypatch.setenv("BEAMENV_CACHE", str(tmp_path))
     monkeypatch.setattr(optimal, "computed_layout", lambda config: {"actuators": (0.0,), "sensors": (0.1,)})
-    optimal_layout.cache_clear()
+    optimal.kept_layout.cache_clear()
     config = blade_config()
     optimal._kept_in(config).write_bytes(bombs[kind])
     assert optimal_layout(config) == {"actuators": (0.0,), "sensors": (0.1,)}
     assert not trace.exists()
-    optimal_layout.cache_clear()
+    optimal.kept_layout.cache_clear()
 
 
 @pytest.mark.parametrize("kind", ["pickle", "python"])

@@ -27,10 +27,10 @@ def several():
 
 
 def test_blades_are_divided_among_the_scenarios_and_none_is_left_out():
-    envs = training_envs(tasks(), PPOSettings(blades=8, history=3), 0)
+    envs = training_envs(tasks(), PPOSettings(blades=8, history=3, batch=64), 0)
     assert [each.num_envs for each in envs.batches] == [3, 3, 2]
     with pytest.raises(ValueError, match="blades = 2 must be at least one for each of the 3 scenarios"):
-        training_envs(tasks(), PPOSettings(blades=2, history=3), 0)
+        training_envs(tasks(), PPOSettings(blades=2, history=3, batch=32), 0)
 
 
 def test_windows_rewards_and_ends_are_those_of_the_batches():
@@ -91,7 +91,7 @@ def test_rewards_are_in_units_of_no_control_s_cost():
 
 def test_training_never_meets_a_plant_of_the_evaluation():
     task = resolve_task(duration=0.005, scenario={"plants": {"damping_ratio": (0.003, 0.02), "bank": 3}})
-    envs = training_envs([task], PPOSettings(blades=4, history=3), 0)
+    envs = training_envs([task], PPOSettings(blades=4, history=3, batch=64), 0)
     decays = {float(np.trace(fused[: len(fused), : len(fused)])) for fused in envs.blades.task.bank.operators.fused}
     others = {float(np.trace(fused[: len(fused), : len(fused)])) for fused in task.bank.operators.fused}
     assert len(decays | others) == 6

@@ -14,10 +14,10 @@ import numpy as np
 import beamenv
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
-from beamenv.blade.presets import blade_config
 from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.scenario import Scenario, scenario
+from beamenv.task import resolve_task
 from train.benchmark.bench import Setting
 from train.benchmark.cells import Cell, Job, read_cell, write_cell
 from train.benchmark.claim import claim
@@ -116,7 +116,9 @@ def check_paths(queue: Sequence[Job]) -> None:
 def environment_json(environment: Any) -> str:
     """The environment's arguments as JSON; ``ValueError`` for unknown ones, and for a blade that would fail in every cell."""
     given = checked_table("environment", environment, ARGUMENTS)
-    blade_config(given.get("preset", "thesis"), given.get("blade"), given.get("speed"))
+    resolve_task(**{name: value for name, value in given.items() if name != "max_episode_steps"})
+    if given.get("max_episode_steps") is not None:
+        checked("environment.max_episode_steps", given["max_episode_steps"], Count())
     try:
         return json.dumps(given, sort_keys=True, default=_plain)
     except (TypeError, ValueError) as error:

@@ -27,8 +27,10 @@ from train.cli.place import place
 from train.cli.schema import schema
 from train.cli.speed import speed
 from train.cli.train import train
+from train.cli.usage import OneSentence
 
 app = typer.Typer(
+    cls=OneSentence,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
@@ -169,13 +171,14 @@ def compare(
     An interrupted run resumes from what its folder holds.
     """
     with one_sentence(RESUMES):
+        from beamenv.configuration import Number, checked
         from train.cli.evaluations import screen_table
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison
         from train.comparison.compare import compare as run
 
         default = Comparison().budget
-        share = 60.0 * minutes / sum(default.values())
+        share = 60.0 * checked("minutes", minutes, Number(ge=0.0)) / sum(default.values())
         budget = {name: share * length for name, length in default.items()} if minutes else {}
         comparison = Comparison({**environment_arguments(preset, speed, blade), "scenario": scenario}, budget, seeds)
         with Progressbar(budget) as bar:

@@ -28,7 +28,7 @@ def place(
     method: Annotated[
         str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
     ] = "multistart",
-    seed: Annotated[int, typer.Option(min=0, help="Of the search.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
     picture: Annotated[Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span.")] = None,
     as_json: JsonOption = False,
 ) -> None:

@@ -32,14 +32,17 @@ class Progressbar(Listener):
         }
 
     def __enter__(self) -> Progressbar:
-        self._bars.start()
+        if self._bars.console.is_terminal:  # elsewhere bad input is to leave its one line alone
+            self._bars.start()
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self._bars.stop()
+        if self._bars.live.is_started:
+            self._bars.stop()
 
     def training(self, name: str, budget: float, progress: TrainingProgress) -> None:
         """Move an agent's bar."""
+        self._bars.start()
         task = self._tasks[name]
         self._bars.start_task(task)
         rate = f"{progress.steps / max(progress.elapsed, 1e-9) / 1e3:.0f} k steps/s"

@@ -30,6 +30,8 @@ def schema(
         from beamenv.scenarios.scenario import scenario_schema
 
         content = blade_schema() if kind is Kind.blade else scenario_schema()
+        if output is not None and output.is_dir():
+            raise ValueError(f"output = {str(output)!r} is a folder, but must be the name of a file.")
         if output is None:
             print_json(content)
         else:

@@ -19,7 +19,7 @@ def train(
     scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all named ones but the solids.")] = "nominal",
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
     updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of the training.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the training.")] = 0,
     folder: Annotated[
         Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
     ] = None,

@@ -32,7 +32,7 @@ class LSTMPolicy(Policy):
         """Shift the window; where it is time, one step of the cells to new voltages."""
         m, (gates, width) = len(self.lowest), self.weights["weight_ih"].shape
         if width % (readings.shape[1] + m):
-            raise ValueError(f"instants of {readings.shape[1] + m} numbers do not fill the window")
+            raise ValueError(f"instants of {readings.shape[1] + m} numbers do not fill the window.")
         window, age, hidden, cell, voltages = np.split(memory, np.cumsum([width, 1, gates // 4, gates // 4]), axis=1)
         window = np.hstack([window[:, readings.shape[1] + m :], readings, voltages])
         due = age == 0.0

@@ -52,7 +52,9 @@ class Policy:
         try:
             action, following = self.act(rows, memory)
         except ValueError:
-            raise ValueError(f"observation has shape {readings.shape}, which is not what {self.name} was trained to read") from None
+            raise ValueError(
+                f"observation has shape {readings.shape}, which is not what {self.name} was trained to read."
+            ) from None
         action = np.clip(action, self.lowest, self.highest)
         following[:, -action.shape[1] :] = action
         return (action[0] if single else action), following
@@ -93,7 +95,7 @@ class HistoryPolicy(Policy):
         m = len(self.lowest)
         instant = readings.shape[1] + m
         if self.weights["weight0"].shape[1] % instant:
-            raise ValueError(f"instants of {instant} numbers do not fill the window")
+            raise ValueError(f"instants of {instant} numbers do not fill the window.")
         age, voltages = memory[:, -m - 1 : -m], memory[:, -m:]
         window = np.hstack([memory[:, instant : -m - 1], readings, voltages])
         action = np.where(age == 0.0, self._network(window), voltages)

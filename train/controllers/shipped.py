@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from beamenv.configuration import Count, Text, checked
 from beamenv.plant.plant import Plant
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy
@@ -34,7 +35,9 @@ def shipped(folder: Path = FOLDER) -> list[Shipped]:
 def find_shipped(agent: str, scenario: str, seed: int | None = None, folder: Path = FOLDER) -> Shipped:
     """That of an agent, a scenario and a training seed, the first if None; ``ValueError`` lists what there is."""
     every = shipped(folder)
-    if not isinstance(agent, str) or agent not in {each.agent for each in every}:
+    agent, scenario = checked("agent", agent, Text()), checked("scenario", scenario, Text())
+    seed = None if seed is None else checked("seed", seed, Count(0))
+    if agent not in {each.agent for each in every}:
         names = ", ".join(sorted({each.agent for each in every})) or "none at all"
         raise ValueError(f"agent = {agent!r} must be one of those that ship with the package: {names}.")
     own = [each for each in every if each.agent == agent and each.scenario == scenario]

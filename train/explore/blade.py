@@ -14,6 +14,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, configuration
+from beamenv.configuration.read_only import sealed
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
@@ -120,7 +121,7 @@ def built(beam: BeamConfig, patches: PatchLayout) -> Blade:
 @lru_cache(maxsize=16)
 def campbell(beam: RotatingBeam) -> Array:
     """Natural frequencies (speeds, modes), rad/s."""
-    return frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES)
+    return sealed(frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES))
 
 
 def mode_shapes(beam: RotatingBeam, coefficients: NDArray[Any], half_chord: float) -> tuple[Array, NDArray[np.complex128]]:

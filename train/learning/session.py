@@ -34,7 +34,7 @@ class Budget:
         for name in ("updates", "seconds"):
             given = getattr(self, name)
             if not (isinstance(given, float) and given == math.inf):
-                checked(name, given, Number(gt=0.0))
+                object.__setattr__(self, name, checked(name, given, Number(gt=0.0)))
         if math.isinf(self.updates) and math.isinf(self.seconds):
             raise ValueError("updates or seconds must be given: a training must end.")
 

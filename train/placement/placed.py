@@ -64,10 +64,15 @@ def place_sides(
 ) -> list[PlacedSide]:
     """Place the sides that ``counts`` names, actuators first, then the sensors of the blade with its actuators placed."""
     from baselines.placement import PlacementProblem, place
-    from beamenv.blade.layouts import with_positions
+    from beamenv.blade.config import BladeConfig
+    from beamenv.blade.layouts import SIDES, with_positions
+    from beamenv.configuration import Count, checked, checked_object, checked_table
 
+    checked_object("config", config, BladeConfig)
+    for name, count in checked_table("counts", counts, SIDES).items():
+        checked(f"counts.{name}", count, Count())
     config, sides = with_positions(config, counts), []
-    for side in ("actuators", "sensors"):
+    for side in SIDES:
         if side not in counts:
             continue
         problem = PlacementProblem.of(config, side)

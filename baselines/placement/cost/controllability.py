@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from baselines.placement.cost.problem import PlacementProblem
 from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import checked_object
 
 Array = NDArray[np.float64]
 
@@ -19,9 +20,10 @@ def reach(problem: PlacementProblem, positions: ArrayLike) -> Array:
     """How well one layout (count,) drives (or reads) each of the r modes of the damped blade, the best being one (r,).
 
     By Popov, Belevitch and Hautus: |vᴴB| of each unit left eigenvector v of A, the columns of B each of unit length (sensors: Cᵀ
-    and Aᵀ), over both eigenvectors of a mode.
+    and Aᵀ), over both eigenvectors of a mode. Raises ``ValueError`` for positions that are not feasible.
     """
-    blade = problem.reduced(np.asarray(positions, dtype=float)[None])
+    checked_object("problem", problem, PlacementProblem)
+    blade = problem.at(positions)
     A = blade.dynamics[0]
     if problem.side == "actuators":
         through, matrix = blade.input[0], A.T
@@ -36,12 +38,13 @@ def reach(problem: PlacementProblem, positions: ArrayLike) -> Array:
 
 def check_reach(problem: PlacementProblem, positions: ArrayLike) -> None:
     """``ValueError`` naming the first mode that a layout cannot move (or sense)."""
+    checked_object("problem", problem, PlacementProblem)
     shares = reach(problem, positions)
     if shares.min() >= NO_REACH:
         return
     mode = int(np.flatnonzero(shares < NO_REACH)[0])
     config = problem.configuration(positions)
-    frequency = problem.reduced(np.asarray(positions)[None]).natural_frequencies[0, mode]
+    frequency = problem.at(positions).natural_frequencies[0, mode]
     verb = "move" if problem.side == "actuators" else "sense"
     given = ", ".join(f"{position:.4g}" for position in np.asarray(positions))
     raise ValueError(

@@ -11,14 +11,14 @@ from baselines.placement.cost.riccati import solve_riccati
 
 def design_poles(problem: PlacementProblem, positions: ArrayLike) -> NDArray[np.complex128]:
     """Poles (2r,), rad/s, of A − BK (actuators) or A − LC (sensors) with patches at ``positions`` (count,), slowest first."""
-    equation = problem.equation(problem.reduced(np.asarray(positions, dtype=float)[None]))
+    equation = problem.equation(problem.at(positions))
     A, G, _ = (each[0] for each in equation)
     return _slowest_first(np.linalg.eigvals(A - G @ solve_riccati(*equation)[0]))
 
 
 def open_loop_poles(problem: PlacementProblem, positions: ArrayLike) -> NDArray[np.complex128]:
     """Poles (2r,), rad/s, of the blade left alone, slowest first."""
-    return _slowest_first(np.linalg.eigvals(problem.reduced(np.asarray(positions, dtype=float)[None]).dynamics[0]))
+    return _slowest_first(np.linalg.eigvals(problem.at(positions).dynamics[0]))
 
 
 def _slowest_first(poles: NDArray[np.complex128]) -> NDArray[np.complex128]:

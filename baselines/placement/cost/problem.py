@@ -27,6 +27,7 @@ from beamenv.blade.bounds import Bounds
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
+from beamenv.configuration import Choice, Refused, checked, checked_object
 from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
@@ -61,8 +62,8 @@ class PlacementProblem:
 
         Raises ``ValueError`` for an unknown side, bounds without room, more patches than fit, or sensors without noise.
         """
-        if side not in SIDES:
-            raise ValueError(f"side = {side!r} must be one of {', '.join(SIDES)}.")
+        checked_object("config", config, BladeConfig)
+        checked("side", side, Choice(SIDES))
         if side == "sensors":
             check_noise(config)
         own = getattr(config.patches, side)
@@ -78,13 +79,13 @@ class PlacementProblem:
         return with_positions(self.config, {self.side: tuple(self.bounds.checked(positions).tolist())})
 
     def cost(self, positions: Array) -> Array:
-        """The trace (N,) of feasible layouts (N, count), m from the root."""
+        """The trace (N,) of feasible layouts (N, count), m from the root; ``ValueError`` for another shape, or NaN."""
         reduced = self.reduced(positions)
         return np.asarray(np.trace(solve_riccati(*self.equation(reduced)), axis1=1, axis2=2))
 
     def cost_and_slopes(self, positions: Array) -> tuple[float, Array]:
         """The trace of one layout (count,) and its exact derivatives (count,) by the positions, per m."""
-        actuators, sensors = self._layouts(positions[None])
+        actuators, sensors = self._layouts(self._numbers(positions, 1)[None])
         size = self.bounds.length, self.config.patches.passive
         matrices = self._ganged(layout_matrices(self.parts, actuators, sensors, *size))
         moved = self._ganged(matrix_slopes(self.parts, actuators[0], sensors[0], *size))
@@ -97,9 +98,21 @@ class PlacementProblem:
 
     def reduced(self, positions: Array) -> ReducedBlades:
         """Layouts (N, count), m from the root, as reduced blades."""
-        actuators, sensors = self._layouts(np.atleast_2d(positions))
+        actuators, sensors = self._layouts(self._numbers(positions, 2))
         matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, self.config.patches.passive)
         return reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
+
+    def at(self, positions: ArrayLike) -> ReducedBlades:
+        """One layout (count,), m; ``ValueError`` unless it is feasible."""
+        return self.reduced(self.bounds.checked(positions)[None])
+
+    def _numbers(self, positions: Array, axes: int) -> Array:
+        """Layouts of an array of so many axes."""
+        shape = f"({'N, ' * (axes - 1)}{self.bounds.count}{',' if axes == 1 else ''})"
+        plain = isinstance(positions, np.ndarray) and positions.dtype.kind in "fi" and not np.ma.is_masked(positions)
+        if not plain or positions.ndim != axes or positions.shape[-1] != self.bounds.count or not np.isfinite(positions).all():
+            raise Refused("positions", positions, f"an array {shape} of finite numbers (m)")
+        return positions
 
     def equation(self, reduced: ReducedBlades) -> Equation:
         """The regulator's or the filter's equation of reduced layouts."""

@@ -20,6 +20,7 @@ from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
 from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
 from beamenv.structure import RotatingBeam
@@ -40,7 +41,7 @@ EXTRA_COEFFICIENTS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Contributions:
+class Contributions(ReadOnly):
     """A blade at one speed in the coordinates in which its bare stiffness is the identity, and what patches add to it.
 
     The coordinates are its N modes, each divided by its frequency: K = I + ΔK, M = diag(1/ω²) + ΔM.

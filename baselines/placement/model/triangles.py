@@ -7,6 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration.read_only import sealed
+
 Array = NDArray[np.float64]
 
 
@@ -31,4 +33,4 @@ def _places(size: int) -> NDArray[np.intp]:
     """Where in the triangle each element of a matrix, row by row, is found (n²,)."""
     places = np.zeros((size, size), dtype=np.intp)
     places[np.triu_indices(size)] = np.arange(size * (size + 1) // 2)
-    return np.maximum(places, places.T).ravel()
+    return sealed(np.maximum(places, places.T).ravel())

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.search.placement import Recorder
+from beamenv.configuration import Count, Positive, Whole, configuration
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("Evolution")
 class Evolution:
     """Covariance-matrix adaptation on positions, repaired before they are evaluated."""
 
-    population: int = 20
-    step: float = 0.25
+    population: Annotated[int, Count(2)] = 20
+    step: Positive = 0.25
     """First standard deviation, as a share of the patches' room."""
-    evaluations: int = 3000
+    evaluations: Whole = 3000
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
         """Search from the start."""

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.search.placement import Recorder
 from beamenv.blade.bounds import Bounds
+from beamenv.configuration import Count, Share, Whole, configuration
 
 Array = NDArray[np.float64]
 Bits = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("Genetic")
 class Genetic:
     """Tournaments, crossover, mutation; the best of parents and children survive. Overlaps are repaired, not penalised."""
 
-    population: int = 30
-    crossover: float = 0.7
+    population: Annotated[int, Count(2)] = 30
+    crossover: Share = 0.7
     """Probability that two parents are crossed."""
-    mutation: float = 0.01
+    mutation: Share = 0.01
     """Probability that a bit flips."""
-    generations: int = 50
-    bits: int = 12
+    generations: Whole = 50
+    bits: Annotated[int, Count(1, 40)] = 12
     """Of each position: a third of a millimetre on the thesis' blade."""
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.search.placement import Recorder
 from baselines.placement.search.sqp import SequentialQuadratic
+from beamenv.configuration import Count, Numbers, Whole, configuration
 
 Array = NDArray[np.float64]
 
@@ -16,13 +17,13 @@ CHUNK = 600
 """Layouts between two reports of progress."""
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("Grid")
 class Grid:
     """An exhaustive search."""
 
-    points: tuple[int, int] = (401, 121)
+    points: Annotated[tuple[int, ...], Numbers(Count(2, 10_000), 2, 2)] = (401, 121)
     """Positions of a single patch, and of each of two."""
-    polished: int = 4
+    polished: Whole = 4
     """The best local minima of the grid, from each of which SQP continues."""
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:

@@ -18,6 +18,7 @@ from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
 from baselines.placement.search.placement import Placement, Progress, Recorder
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
+from beamenv.configuration import Count, Refused, checked, checked_object
 
 Array = NDArray[np.float64]
 
@@ -69,8 +70,12 @@ def place(
     ``start`` (count,), m, is uniform unless given. Raises ``ValueError`` for an unknown method, a start that is not feasible, or
     a blade with a mode that the patches cannot move (or sense).
     """
-    if isinstance(method, str) and method not in METHODS:
-        raise ValueError(f"method = {method!r} must be one of {', '.join(METHODS)}.")
+    checked_object("problem", problem, PlacementProblem)
+    if not (method in METHODS if isinstance(method, str) else callable(getattr(method, "run", None))):
+        raise Refused("method", method, f"one of {', '.join(METHODS)}, or a search")
+    seed = checked("seed", seed, Count(0, 2**63 - 1))
+    if not (progress is None or callable(progress)):
+        raise Refused("progress", progress, "None or a function of the share done and the least cost")
     chosen = METHODS[method] if isinstance(method, str) else method
     begin = problem.bounds.uniform() if start is None else problem.bounds.checked(start)
     clock = time.perf_counter()

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from baselines.placement.search.placement import Recorder
+from beamenv.configuration import Positive, Whole, configuration
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("SequentialQuadratic")
 class SequentialQuadratic:
     """SciPy's SLSQP (Kraft 1988) on the patches' positions, which may touch but not overlap."""
 
-    iterations: int = 100
-    tolerance: float = 1e-10
+    iterations: Whole = 100
+    tolerance: Positive = 1e-10
     """Relative change of the cost at which it stops."""
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
@@ -57,13 +56,13 @@ class SequentialQuadratic:
         recorder.costs(bounds.repaired(result.x * length)[None])
 
 
-@dataclass(frozen=True, slots=True)
+@configuration("MultiStart")
 class MultiStart:
     """SQP from the start and from the best of many random layouts."""
 
-    candidates: int = 300
+    candidates: Whole = 300
     """Random layouts evaluated."""
-    starts: int = 10
+    starts: Whole = 10
     """The best of them, from each of which SQP descends."""
     descent: SequentialQuadratic = SequentialQuadratic()
 

@@ -48,7 +48,7 @@ def speed_family(config: BladeConfig, speeds: Sequence[float] | ArrayLike, *, fu
     given = (speeds,) if np.ndim(speeds) == 0 else speeds
     grid = np.array(checked("speeds", given, Numbers(Number(ge=0.0, unit="rad/s"), least=1)), dtype=np.float64)
     if np.any(np.diff(grid) <= 0.0):
-        raise ValueError(f"speeds = {speeds!r} must be one or more numbers in rad/s, each greater than the one before")
+        raise ValueError(f"speeds = {speeds!r} must be one or more numbers in rad/s, each greater than the one before.")
     own = Blade(config).with_fixed_range()
     if full:
         known = _known_at_all(own, grid)
@@ -83,6 +83,6 @@ def _from_common(own: Blade, other: Blade) -> Array:
     if least < _LEAST_IN_COMMON:
         raise ValueError(
             f"speeds: the {modes} modes at {other.config.speed:g} rad/s are not those at {own.config.speed:g} rad/s (principal "
-            f"cosine {least:.2g}); retain another number of modes or stay nearer"
+            f"cosine {least:.2g}); retain another number of modes or stay nearer."
         )
     return seen.T

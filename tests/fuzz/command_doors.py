@@ -1,0 +1,188 @@
+"""Doors of the command line: every option of every command, in this process, where the work itself is left out or small."""
+
+import os
+import shutil
+import warnings
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+import torch
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from tests.fuzz.meaning import Kind
+from tests.fuzz.oracle import Door
+from train.cli.app import app
+
+for _room in ("comparison.page", "comparison.compare", "explore.server", "learning.job", "benchmark.campaign", "placement.picture"):
+    import_module(f"train.{_room}")  # what they import sets itself up, once
+
+BLADE = 'model = "thesis"\nmodes = 3\n[beam]\nterms = 4\n[patches]\nactuators = 2\nsensors = 2\n'
+WORDS = (
+    *("no", "false", "nan", "inf", "-1", "0", "1", "2", "3", "2.5", "1e400", "1_0", "0x10", "10**9", "99999999999999999999", "x"),
+    *("--", "-", "=", ".", "..", "/", "~", "*", "None", "null", "true", "é", "{}", "[1]", "", " ", "a\nb", "\ud800", "x" * 5000),
+    *("/dev/null", "/dev/full", "/proc/x", "no.toml", "no.json", "blade.toml", "broken.toml", "broken.json", "folder", "nowhere/x"),
+    *("--help", "thesis", "nominal", "rotor", "lqg", "none", "gradient", "127.0.0.1", "::1", "0.0.0.0", "8050", "70000"),
+)
+WORD = Kind("word", lambda value: value, st.one_of(st.sampled_from(WORDS), st.text(max_size=5)))
+
+
+OTHER_NAMES = (
+    *("path", "file", "controller", "agent", "folder", "kind", "model", "name", "studies", "teacher", "minutes", "updates"),
+    *("ption", "argument", "command", "json"),
+)
+"""What sentences call arguments that have no option's name."""
+
+
+class Reached(ValueError):
+    """The work begins."""
+
+
+def reached(*given, **named):
+    """In place of long work: all has been read and checked."""
+    raise Reached("the work begins.")
+
+
+COMMANDS = {
+    "frequencies": (
+        (),
+        {"--preset": "thesis", "--speed": "20", "--count": "2", "--blade": "blade.toml"},
+        ("--json", "--no-gyroscopic", "--no-patches"),
+        (),
+    ),
+    "evaluate": (
+        ("none",),
+        {
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--scenario": "white",
+            "--seeds": "2",
+            "--trained-seed": None,
+        },
+        ("--json",),
+        ("baselines.evaluate",),
+    ),
+    "compare": (
+        ("made",),
+        {"--minutes": "0", "--seeds": "2", "--preset": "thesis", "--speed": "20", "--blade": "blade.toml", "--scenario": "white"},
+        ("--json",),
+        ("train.comparison.compare.evaluate_all", "train.comparison.compare.run"),
+    ),
+    "train": (
+        ("gradient",),
+        {
+            "--scenario": "white",
+            "--minutes": None,
+            "--updates": "1",
+            "--seed": "0",
+            "--folder": "made",
+            "--recipe": None,
+            "--from": None,
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+        },
+        ("--resume", "--overwrite"),
+        ("train.learning.job.follow",),
+    ),
+    "benchmark": (
+        (),
+        {
+            "--scenario": "nominal",
+            "--controller": "lqg",
+            "--seeds": "2",
+            "--folder": "made",
+            "--model": None,
+            "--jobs": "1",
+            "--docs": None,
+        },
+        ("--json", "--trust"),
+        ("train.benchmark.campaign._cells",),
+    ),
+    "place": (
+        (),
+        {
+            "--actuators": "2",
+            "--sensors": None,
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--method": "sqp",
+            "--seed": "0",
+            "--picture": None,
+        },
+        ("--json", "--no-passive"),
+        ("baselines.placement.place",),
+    ),
+    "reproduce": (("table-3.4",), {"--output": "made", "--docs": None}, ("--fresh",), ("train.cli.reproduce.run_with_progress",)),
+    "schema": (("blade",), {"--output": None}, (), ()),
+    "speed": ((), {}, ("--json",), ("train.cli.speed.measured",)),
+    "explore": ((), {"--port": "0", "--host": "127.0.0.1"}, (), ("train.explore.serve",)),
+}
+
+
+@contextmanager
+def work_left_out(names):
+    with warnings.catch_warnings(), pytest.MonkeyPatch.context() as patch, torch.random.fork_rng():  # a training seeds it
+        for name in names:
+            patch.setattr(name, reached)
+        settings = dict(os.environ)
+        yield
+        os.environ.clear()
+        os.environ.update(settings)
+
+
+def invoked(command):
+    """The command with words in place of some options: what its shell is told."""
+    positional, options, flags, left_out = COMMANDS[command]
+
+    def call(**words):
+        given = [words[f"argument {k}"] for k in range(len(positional)) if words.get(f"argument {k}") is not None]
+        for name in options:
+            if words.get(name) is not None:
+                given += [name, words[name]]
+        given += [flag for flag in flags if words.get(flag)]
+        if words.get("more") is not None:
+            given.append(words["more"])
+        Path("blade.toml").write_text(BLADE)
+        Path("broken.toml").write_text("[")
+        Path("broken.json").write_text("{")
+        Path("folder").mkdir(exist_ok=True)
+        with work_left_out(left_out):
+            result = CliRunner().invoke(app, [command, *given])
+        for each in Path.cwd().iterdir():
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
+        return judged(result)
+
+    kinds = {
+        **{f"argument {k}": WORD for k in range(len(positional))},
+        **dict.fromkeys(options, WORD),
+        **dict.fromkeys(flags, Kind("flag", bool, st.booleans())),
+        "more": Kind("more", lambda value: value, st.sampled_from(["--colour", "--", "x", "-x", "--json=3", "--seeds"])),
+    }
+    valid = {**{f"argument {k}": word for k, word in enumerate(positional)}, **options, **dict.fromkeys(flags, False), "more": None}
+    return Door(f"beamenv {command}", call, kinds, lambda: dict(valid), junk=st.nothing(), plain=False, told=OTHER_NAMES)
+
+
+def judged(result):
+    """Raises what the command line said, if it refused; AssertionError for a traceback and any other noise."""
+    error = result.exception
+    if isinstance(error, Reached):
+        return str(error)
+    assert error is None or isinstance(error, SystemExit), f"{type(error).__name__}: {str(error)[:200]}"
+    assert "Traceback" not in result.output
+    if result.exit_code == 0:
+        return result.stdout
+    assert result.exit_code == 2, f"status {result.exit_code}: {result.stderr[:200]}"
+    lines = [line for line in result.stderr.splitlines() if line.strip()]
+    assert len(lines) == 1 and lines[0].startswith("beamenv: "), f"not one line: {result.stderr[:300]!r}"
+    said = lines[0].removeprefix("beamenv: ")
+    if said == "the work begins.":
+        return said
+    raise ValueError(said)
+
+
+DOORS = [invoked(command) for command in COMMANDS]

@@ -1,0 +1,174 @@
+"""Doors of training: settings, recipes, budgets, jobs, policies, the benchmark."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from hypothesis import strategies as st
+
+from beamenv.plant.plant import Plant
+from tests.fuzz import small
+from tests.fuzz.env_doors import SINGLE
+from tests.fuzz.meaning import (
+    ANYTHING,
+    COUNT,
+    FLAG,
+    MATRIX,
+    NOTHING,
+    NUMBER,
+    PATH,
+    TEXT,
+    Kind,
+    instance,
+    maybe,
+    of_fields,
+    table,
+)
+from tests.fuzz.oracle import Door
+from train.benchmark import benchmark
+from train.controllers.named import named
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import load_policy
+from train.controllers.shipped import find_shipped, shipped
+from train.learning.agents import AGENTS
+from train.learning.recipe import _recipe, load_recipe, named_recipe
+from train.learning.session import Budget
+
+SETTINGS = {name: type(agent.settings()) for name, agent in AGENTS.items()}
+
+
+@cache
+def policy():
+    first = shipped()[0]
+    return load_policy(first.folder)
+
+
+@cache
+def history():
+    generator = np.random.default_rng(0)
+    weights = {
+        "weight0": generator.normal(size=(5, 12)) * 0.1,
+        "bias0": np.zeros(5),
+        "weight1": generator.normal(size=(2, 5)) * 0.1,
+        "bias1": np.zeros(2),
+    }
+    return HistoryPolicy("mine", weights, {"input_gain": 1.0, "held": 1}, -np.ones(2, np.float32), np.ones(2, np.float32))
+
+
+def finite(answer):
+    action = np.asarray(answer[0])
+    assert not np.abs(action).max(initial=0.0) > 1.0 + 1e-6, "an action outside its space"
+
+
+def settings_door(name, cls):
+    return Door(f"{name} settings", lambda **given: cls(**given), of_fields(cls), dict, lambda made: made, ("settings",))
+
+
+def recipe_table(name):
+    recipe = named_recipe(name)
+    return {**recipe.to_dict()}
+
+
+def recipe_door(name):
+    settings = of_fields(SETTINGS[named_recipe(name).agent])
+    kinds = {"agent": TEXT, "title": TEXT, "updates": COUNT, "settings": table(settings)}
+    return Door(
+        f"recipe {name}",
+        lambda **given: _recipe(given, "mine.toml"),
+        kinds,
+        lambda: recipe_table(name),
+        lambda made: made,
+        ("recipe",),
+    )
+
+
+TEXTS = Kind(
+    "texts",
+    lambda value: (
+        tuple(map(str, value))
+        if isinstance(value, (list, tuple, np.ndarray)) and all(isinstance(each, (str, Path)) for each in value)
+        else NOTHING
+    ),
+    st.sampled_from([["nominal"], ["delay", "x"], "delay", []]),
+)
+
+
+def benched(**given):
+    return benchmark(**given).scenarios
+
+
+DOORS = [
+    *(
+        settings_door(name, cls)
+        for name, cls in {
+            "gradient": SETTINGS["gradient"],
+            "ppo": SETTINGS["ppo"],
+            "sac": SETTINGS["sac"],
+            "recurrent-ppo": SETTINGS["recurrent-ppo"],
+        }.items()
+    ),
+    *(recipe_door(name) for name in ("gradient", "ppo", "residual", "sac")),
+    Door(
+        "Budget",
+        lambda **given: Budget(**given),
+        {"updates": NUMBER, "seconds": NUMBER},
+        lambda: {"updates": 3.0, "seconds": 2.0},
+        lambda made: made,
+    ),
+    Door("named_recipe", named_recipe, {"name": TEXT}, lambda: {"name": "gradient"}, told=("agent", "recipe")),
+    Door("load_recipe", load_recipe, {"path": PATH}, lambda: {"path": "mine.toml"}, told=("file",)),
+    Door("named", named, {"name": TEXT}, lambda: {"name": "lqg"}, told=("controller",)),
+    Door(
+        "find_shipped",
+        lambda **given: find_shipped(**given),
+        {"agent": TEXT, "scenario": TEXT, "seed": maybe(COUNT)},
+        lambda: {"agent": shipped()[0].agent, "scenario": shipped()[0].scenario, "seed": shipped()[0].seed},
+    ),
+    Door(
+        "load_policy",
+        load_policy,
+        {"folder": PATH, "plant": maybe(instance(Plant))},
+        lambda: {"folder": str(shipped()[0].folder), "plant": None},
+        told=("agent",),
+    ),
+    Door(
+        "Policy.predict",
+        lambda **given: history().predict(**given),
+        {"observation": MATRIX, "state": maybe(MATRIX), "episode_start": ANYTHING},
+        lambda: {
+            "observation": np.array([[0.1, -0.2]]),
+            "state": np.zeros((1, history().memory_size)),
+            "episode_start": np.array([True]),
+        },
+        check=finite,
+    ),
+    Door(
+        "benchmark",
+        benched,
+        {
+            "own": maybe(ANYTHING),
+            "scenarios": maybe(TEXTS),
+            "controllers": maybe(TEXTS),
+            "seeds": COUNT,
+            "folder": maybe(PATH),
+            "models": TEXTS,
+            "trusted": FLAG,
+            "jobs": replace(COUNT, near=st.sampled_from([0, -1, 1.5, 1.0, True, "1"])),
+            "environment": maybe(table({k: v for k, v in SINGLE.items() if k != "scenario"})),
+        },
+        lambda: {
+            "own": None,
+            "scenarios": ["nominal"],
+            "controllers": ["none"],
+            "seeds": 2,
+            "folder": None,
+            "models": [],
+            "trusted": False,
+            "jobs": 1,
+            "environment": {"blade": dict(small.BLADE), "duration": 0.002},
+        },
+        told=("controller", "model", "blade"),
+        plain=False,
+    ),
+]
