@@ -84,10 +84,10 @@ def test_patches_stop_where_they_would_overlap(show):
 
 def test_what_makes_no_blade_is_told_and_leaves_the_sliders_usable(show):
     browser = show()
-    browser.execute_script("dash_clientside.set_props('speed', {value: 2000})")  # no slider goes that far
+    browser.execute_script("dash_clientside.set_props('sensors', {value: [0, 20, 500, 900]})")  # the slider keeps them apart
     wait(browser, "return document.getElementById('results').hidden")
-    assert "steady state" in browser.find_element("id", "message").text
-    press(browser, "speed", webdriver.Keys.ARROW_LEFT)
+    assert "overlap" in browser.find_element("id", "message").text
+    browser.execute_script("dash_clientside.set_props('sensors', {value: [0, 300, 500, 900]})")
     wait(browser, f"return !document.getElementById('results').hidden && {IDLE}")
     assert browser.find_element("id", "message").text == ""
 

@@ -22,6 +22,7 @@ from train.cli.options import (
     environment_arguments,
     one_sentence,
     print_json,
+    print_table,
 )
 from train.cli.place import place
 from train.cli.schema import schema
@@ -78,7 +79,7 @@ def frequencies(
         table.add_column(f"at {each:g} rad/s", justify="right")
     for mode in range(count):
         table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
-    Console().print(table)
+    print_table(table)
     for each, state in zip(speeds, steady, strict=True):
         if each > 0.0 and config.model != "thesis":
             Console().print(_turning(each, state), soft_wrap=True)
@@ -152,7 +153,7 @@ def evaluate(
     else:
         from train.cli.evaluations import runs_table, screen_table
 
-        Console().print(runs_table(runs) if len(found) > 1 else screen_table([runs.first]))
+        print_table(runs_table(runs) if len(found) > 1 else screen_table([runs.first]))
 
 
 @app.command()
@@ -186,7 +187,7 @@ def compare(
     if as_json:
         print_json([evaluation.row() for evaluation in evaluations])
     else:
-        Console().print(screen_table(evaluations))
+        print_table(screen_table(evaluations))
         Console().print(f"written to {folder}", markup=False)
 
 

@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from beamenv.configuration.files import ENDINGS
-from train.cli.options import RESUMES, JsonOption, one_sentence, print_json
+from train.cli.options import RESUMES, JsonOption, one_sentence, print_json, print_table
 from train.shared.digests import digest
 from train.shared.files import check_folder
 
@@ -134,10 +134,9 @@ def _show(table: BenchmarkTable, folder: Path) -> None:
         shown.add_column(Text(name), justify="right", no_wrap=True)
     for name in table.controllers:
         shown.add_row(Text(name), *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
-    console = Console()
-    Console(width=max(console.width, console.measure(shown, options=console.options.update(width=1000)).maximum)).print(shown)
+    print_table(shown)
     for each in findings(table):
-        console.print(each.sentence, highlight=False, markup=False)
+        Console().print(each.sentence, highlight=False, markup=False)
 
 
 def _brief(row: Row | None) -> str:

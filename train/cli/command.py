@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 _OWN_PACKAGES = ("beamenv", "baselines", "train")
@@ -16,18 +17,23 @@ _EXTRAS = {
 
 
 def main() -> None:
-    """Run the command line; a signal to end does as Ctrl-C.
+    """Run the command line; a signal to end does as Ctrl-C, a reader that has gone (``| head``) ends it quietly, and a
+    terminal that lacks a letter shows a question mark.
 
     Exits with status 1 and one sentence if a package of an extra is missing. A missing module of our own is
     a defect and stays an error with its traceback.
     """
     from train.shared.interruption import ending_as_interrupted, status_of
 
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
     try:
         with ending_as_interrupted():
-            from train.cli.app import app
-
-            app()
+            _run()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left must not fail once more as Python ends
+        sys.exit(1)
     except KeyboardInterrupt as error:
         print("beamenv: interrupted.", file=sys.stderr)  # noqa: T201 - before a command could say so
         sys.exit(status_of(error))
@@ -37,3 +43,12 @@ def main() -> None:
             raise
         extra = _EXTRAS.get(package, "train")
         sys.exit(f"beamenv: the Python package '{package}' is missing; install it with pip install 'beamenv[{extra}]'.")
+
+
+def _run() -> None:
+    from train.cli.app import app
+
+    try:
+        app()
+    finally:
+        sys.stdout.flush()

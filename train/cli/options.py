@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.console import Console
+from rich.table import Table
 
 from beamenv.blade.presets import PRESETS
 from beamenv.scenarios.scenario import SCENARIOS
@@ -45,12 +47,21 @@ def one_sentence(interrupted: str = "") -> Iterator[None]:
     """
     try:
         yield
+    except BrokenPipeError:
+        raise
     except (ValueError, OSError) as error:
         print(f"beamenv: {error}", file=sys.stderr)  # noqa: T201 - the command's own voice
         raise typer.Exit(2) from None
     except KeyboardInterrupt as error:
         print(f"beamenv: interrupted{interrupted and ': '}{interrupted}.", file=sys.stderr)  # noqa: T201
         raise typer.Exit(status_of(error)) from None
+
+
+def print_table(table: Table) -> None:
+    """To standard output, never cut off however narrow the terminal is."""
+    console = Console()
+    needed = console.measure(table, options=console.options.update(width=1000)).maximum
+    Console(width=max(console.width, needed)).print(table)
 
 
 def print_json(content: Any) -> None:

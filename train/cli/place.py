@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json
+from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json, print_table
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 from train.shared.files import check_file
 
@@ -53,7 +53,7 @@ def place(
         if as_json:
             print_json([side.to_dict() for side in sides])
         else:
-            show(sides, Console())
+            show(sides)
         if drawn is not None:  # last: whatever becomes of it, the positions have been told
             from train.placement.picture import draw_placement
 
@@ -75,7 +75,7 @@ def bars(sides: Any) -> Iterator[Callable[[str, float, float], None]]:
         yield report
 
 
-def show(sides: list[PlacedSide], console: Console) -> None:
+def show(sides: list[PlacedSide]) -> None:
     """Positions, traces and damping ratios on the screen."""
     for side in sides:
         placement, (name, unit) = side.placement, UNITS[side.placement.side]
@@ -87,11 +87,11 @@ def show(sides: list[PlacedSide], console: Console) -> None:
             (placement.method, placement.positions, placement.cost),
         ):
             positions.add_row(label, *(f"{z:.4f}" for z in layout), f"{cost:.5g}", f"{100.0 * cost / side.uniform_cost:.2f} %")
-        console.print(positions)
-        console.print(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
-        console.print(damping_table(side))
+        print_table(positions)
+        Console().print(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
+        print_table(damping_table(side))
         if side.note:
-            console.print(side.note, soft_wrap=True)
+            Console().print(side.note, soft_wrap=True)
 
 
 def damping_table(side: PlacedSide) -> Table:

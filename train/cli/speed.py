@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from rich.console import Console
 from rich.table import Table
 
-from train.cli.options import JsonOption, one_sentence, print_json
+from train.cli.options import JsonOption, one_sentence, print_json, print_table
 from train.tools.speed import ROUNDS, ROWS, TARGETS, met
 from train.tools.speed import speed as measured
 
@@ -31,7 +30,7 @@ def show(results: dict[str, float]) -> None:
         verdict = {None: "", True: "met", False: "[bold]missed[/bold]"}[met(name, results[name])]
         target = _number(TARGETS[name], unit) if name in TARGETS else ""
         table.add_row(label, _number(results[name], unit), target, verdict)
-    Console().print(table)
+    print_table(table)
 
 
 def _number(value: float, unit: str) -> str:

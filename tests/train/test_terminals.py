@@ -1,0 +1,41 @@
+"""The command line on terminals of every kind: narrow, without Unicode, or gone."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+RUN = [sys.executable, "-c", "from train.cli.command import main; main()"]
+
+
+def beamenv(*arguments, encoding="utf-8", columns="80"):
+    changed = {"PYTHONIOENCODING": encoding, "COLUMNS": columns}
+    return subprocess.run(RUN + list(arguments), capture_output=True, env=os.environ | changed, check=False)  # noqa: S603 - our own
+
+
+@pytest.mark.parametrize(("encoding", "degrees"), [("ascii", "15.2 ?"), ("latin-1", "15.2 °")])
+def test_a_terminal_that_lacks_a_letter_shows_a_question_mark(encoding, degrees):
+    shown = beamenv("frequencies", encoding=encoding)
+    assert shown.returncode == 0
+    assert not shown.stderr
+    assert degrees in shown.stdout.decode(encoding)
+
+
+def test_no_number_is_cut_off_on_a_narrow_terminal():
+    narrow, wide = (beamenv("frequencies", columns=columns).stdout.decode() for columns in ("20", "200"))
+    assert [word for word in narrow.split() if "." in word and word[0].isdigit()][:10] == [
+        word for word in wide.split() if "." in word and word[0].isdigit()
+    ][:10]
+    assert "…" not in narrow
+
+
+def test_a_reader_that_has_gone_ends_a_command_quietly():
+    read, write = os.pipe()
+    os.close(read)
+    with os.fdopen(write, "wb") as output:
+        ended = subprocess.run([*RUN, "schema", "blade"], stdout=output, stderr=subprocess.PIPE, check=False)  # noqa: S603 - our own
+    assert ended.returncode == 1
+    assert ended.stderr == b""
