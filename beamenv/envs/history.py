@@ -14,10 +14,14 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Count, checked
+from beamenv.configuration.memory import check_room
 from beamenv.envs.within import task_within
 from beamenv.plant.plant import Plant, drive_limit
 
 Array = NDArray[np.floating[Any]]
+
+INSTANT = 20
+"""Bytes that a number of a history takes for each instant shown: four in the window, four times that in what it moves along."""
 
 
 class RollingHistory:
@@ -165,6 +169,8 @@ def _normalised_plant(env: Any, length: Any, of_batch: bool) -> tuple[Plant, int
     """The plant of the environment within, and the length as an integer; ValueError unless both will do."""
     length = checked("length", length, Count())
     task = task_within(env, of_batch)
+    plant, blades = task.plant, env.num_envs if of_batch else 1
+    check_room("length", length, INSTANT * blades * (len(plant.C) + plant.B.shape[1]), "instants")
     if task.physical_units:
         raise ValueError("env has physical_units=True, but a history is made of normalised readings and voltages.")
-    return task.plant, length
+    return plant, length

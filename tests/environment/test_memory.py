@@ -1,0 +1,20 @@
+"""Counts that no memory has room for are refused before anything is built."""
+
+import gymnasium
+import pytest
+
+import beamenv
+from beamenv.envs.history import VectorSensorHistory
+
+
+def test_more_blades_than_memory_has_room_for_are_refused():
+    with pytest.raises(ValueError, match=r"^num_envs is 1000000000, but must be at most \d+ blades: so many fit into memory[.]$"):
+        gymnasium.make_vec(beamenv.ENV_ID, num_envs=10**9)
+
+
+def test_a_longer_history_than_memory_has_room_for_is_refused():
+    with pytest.raises(ValueError, match=r"^length is 1000000000, but must be at most \d+ instants: so many fit into memory[.]$"):
+        beamenv.SensorHistory(gymnasium.make(beamenv.ENV_ID), length=10**9)
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=1000)
+    with pytest.raises(ValueError, match="^length is 100000000, but must be at most"):
+        VectorSensorHistory(envs, length=10**8)
