@@ -10,7 +10,6 @@ import numpy as np
 from baselines.design.controller import Array
 from beamenv.configuration import shown
 
-
 _ROUNDING = 1e-9
 """Of the largest entry: what an asymmetry or a negative eigenvalue may come to by rounding."""
 

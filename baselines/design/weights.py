@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
-from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.matrix import definite_matrix
 from beamenv.plant.plant import Plant

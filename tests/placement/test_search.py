@@ -110,7 +110,7 @@ def test_strings_of_bits_hold_positions_to_a_third_of_a_millimetre(seed):
 
 def test_methods_are_known_by_name():
     assert set(METHODS) == {"ga+sqp", "ga", "sqp", "multistart", "cma-es", "grid"}
-    with pytest.raises(ValueError, match="method = 'magic' must be one of multistart, ga"):
+    with pytest.raises(ValueError, match="method is 'magic', but must be one of multistart, ga"):
         place(problem_of("actuators", 1), "magic")
 
 
@@ -146,5 +146,5 @@ def test_sensors_need_noise_to_be_placed(name):
 
 
 def test_an_unknown_side_is_refused():
-    with pytest.raises(ValueError, match="side = 'top' must be one of actuators, sensors"):
+    with pytest.raises(ValueError, match="side is 'top', but must be one of actuators, sensors"):
         PlacementProblem.of(blade_config(), "top")
