@@ -15,7 +15,7 @@ REQUIRES_sbx := sbx-rl
 REQUIRES_skrl := skrl
 REQUIRES_tianshou := tianshou
 REQUIRES_torchrl := torchrl
-REQUIRES_zoo := rl_zoo3
+REQUIRES_zoo := rl_zoo3 requests
 APART := build/apart
 
 .PHONY: help compare benchmark reproduce speed test slow pages clients quick-clients lowest newest lint docs format install clean
@@ -56,7 +56,7 @@ client-%: | $(BIN)/python
 	@mkdir -p $(APART)
 	@test -x $(APART)/$*/bin/python || $(BIN)/python -m venv $(APART)/$*
 	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
-	$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/torch.txt torch pytest . '$(REQUIRES_$*)'
+	$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/torch.txt torch pytest . $(foreach each,$(REQUIRES_$*),'$(each)')
 	$(APART)/$*/bin/python -m pytest --confcutdir=tests/clients -m "slow or not slow" tests/clients/test_$*.py $(ARGS)
 
 # Tools at the versions of .venv, what the package itself runs on at the lowest that pyproject.toml declares.

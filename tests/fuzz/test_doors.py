@@ -3,6 +3,7 @@
 import inspect
 import warnings
 from collections import Counter
+from tempfile import NamedTemporaryFile
 
 import gymnasium as gym
 import numpy as np
@@ -183,8 +184,8 @@ def _names_nothing(on, size):
 
 
 def _writes(on, size):
-    with open("left", "a", encoding="utf-8") as file:
-        file.write("x")
+    with NamedTemporaryFile(dir=".", delete=False):
+        pass
     return _right(on, size)
 
 

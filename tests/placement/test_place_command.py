@@ -82,8 +82,8 @@ def test_no_patch_can_be_moved_alone_to_anything_better(sides):
     ("arguments", "sentence"),
     [
         (["--actuators", "40"], "actuators is 40, but must be at most 16"),
-        (["--actuators", "0"], "blade.patches.actuators is 0, but must be a number of patches, at least one"),
-        (["--method", "magic"], "method = 'magic' must be one of " + ", ".join(METHODS)),
+        (["--actuators", "0"], "actuators is 0, but must be a whole number not below 1"),
+        (["--method", "magic"], "method is 'magic', but must be one of " + ", ".join(METHODS)),
         (["--method", "grid"], "method = 'grid' serves one or two patches, not 4"),
         (["--speed", "nan"], "speed"),
         (["--preset", "rotor"], "preset is 'rotor', but must be one of thesis"),

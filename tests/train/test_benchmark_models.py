@@ -73,7 +73,7 @@ def test_a_model_whose_spaces_do_not_fit_is_told_in_one_sentence(env_id, sentenc
     arguments = {"physical_units": True} if env_id == beamenv.ENV_ID else {}
     env = gymnasium.make(env_id, **arguments)
     if arguments:
-        env = gymnasium.wrappers.RescaleAction(env, -1.0, 1.0)
+        env = gymnasium.wrappers.RescaleAction(env, np.float32(-1.0), np.float32(1.0))
     model = PPO("MlpPolicy", env, n_steps=8, batch_size=8, device="cpu")
     row = benchmark({"mine": model}, **SMALL).row("nominal", "mine")
     assert row.sentences[0].startswith("PPO ")

@@ -16,7 +16,7 @@ def beamenv(*arguments, encoding="utf-8", columns="80"):
     return subprocess.run(RUN + list(arguments), capture_output=True, env=os.environ | changed, check=False)  # noqa: S603 - our own
 
 
-@pytest.mark.parametrize(("encoding", "degrees"), [("ascii", "15.2 ?"), ("latin-1", "15.2 °")])
+@pytest.mark.parametrize(("encoding", "degrees"), [("ascii", "by 15.1?"), ("latin-1", "by 15.1°")])
 def test_a_terminal_that_lacks_a_letter_shows_a_question_mark(encoding, degrees):
     shown = beamenv("frequencies", encoding=encoding)
     assert shown.returncode == 0

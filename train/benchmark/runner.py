@@ -11,8 +11,6 @@ from contextlib import closing, contextmanager
 from itertools import islice
 from typing import Any
 
-import cloudpickle
-
 from train.benchmark.bench import Bench
 from train.benchmark.cells import Cell, Job, measured
 from train.controllers.sources import Source
@@ -77,6 +75,8 @@ def check_portable(jobs: Sequence[Job]) -> None:
 
 def is_portable(source: Source) -> bool:
     """Whether another process can have it too."""
+    import cloudpickle  # comes with the extra for training, which one process does without
+
     try:
         cloudpickle.dumps(source)
     except Exception:  # noqa: BLE001 - pickling raises whatever the object does

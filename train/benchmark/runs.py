@@ -13,7 +13,7 @@ from baselines import Estimate, Evaluation
 from baselines.evaluation.metrics import finite
 from baselines.evaluation.statistics import CONFIDENCE
 from train.benchmark import statistics
-from train.comparison.table import COLUMNS
+from train.shared.columns import EVALUATION
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Runs:
     def cells(self) -> list[str]:
         """A row of a table: name, then every column."""
         found = self.estimates()
-        return [f"mean of {len(self.evaluations)} runs", *(column.text(found[column.name]) for column in COLUMNS)]
+        return [f"mean of {len(self.evaluations)} runs", *(column.text(found[column.name]) for column in EVALUATION)]
 
     @property
     def sentence(self) -> str:

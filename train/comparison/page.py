@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from baselines import Controller, Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.comparison.figures import clearest_episode
-from train.comparison.table import COLUMNS, HEADINGS, caption, cells, ranked
+from train.comparison.table import HEADINGS, caption, cells, ranked
 from train.page import Cell, LearningCurves, PageContent, Table, record_episode, write_page
+from train.shared.columns import EVALUATION
 
 Array = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ def page_table(evaluations: Sequence[Evaluation]) -> Table:
     rows = []
     for evaluation in ranked(evaluations):
         name, *texts = cells(evaluation)
-        numbers = [getattr(evaluation, column.name).value for column in COLUMNS]
+        numbers = [getattr(evaluation, column.name).value for column in EVALUATION]
         rows.append((Cell(name), *(Cell(text, number) for text, number in zip(texts, numbers, strict=True))))
     return Table(HEADINGS, tuple(rows), caption(evaluations))
 

@@ -8,19 +8,10 @@ from pathlib import Path
 from baselines import Evaluation
 from beamenv.configuration.writing import write_whole
 from train.shared import markdown
-from train.shared.columns import Column
+from train.shared.columns import EVALUATION
 from train.shared.files import write_csv
 
-COLUMNS = (
-    Column("relative_cost", "J / J without control", 1.0, "{:.3f}", interval=True),
-    Column("settling_time", "settling (5 %), s", 1.0, "{:.3f}"),
-    Column("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
-    Column("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
-    Column("peak_voltage", "peak, V", 1.0, "{:.0f}"),
-    Column("rms_voltage", "RMS, V", 1.0, "{:.0f}"),
-    Column("saturation", "saturated, %", 100.0, "{:.1f}"),
-)
-HEADINGS = ("controller", *(column.heading for column in COLUMNS))
+HEADINGS = ("controller", *(column.heading for column in EVALUATION))
 
 
 def ranked(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
@@ -30,7 +21,7 @@ def ranked(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
 
 def cells(evaluation: Evaluation) -> list[str]:
     """Name, then every column."""
-    return [evaluation.name, *(column.text(getattr(evaluation, column.name)) for column in COLUMNS)]
+    return [evaluation.name, *(column.text(getattr(evaluation, column.name)) for column in EVALUATION)]
 
 
 def caption(evaluations: Sequence[Evaluation]) -> str:

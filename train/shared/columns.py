@@ -30,6 +30,18 @@ class Column:
         return f"{value} [{low}, {high}]" if self.interval else value
 
 
+EVALUATION = (
+    Column("relative_cost", "J / J without control", 1.0, "{:.3f}", interval=True),
+    Column("settling_time", "settling (5 %), s", 1.0, "{:.3f}"),
+    Column("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
+    Column("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
+    Column("peak_voltage", "peak, V", 1.0, "{:.0f}"),
+    Column("rms_voltage", "RMS, V", 1.0, "{:.0f}"),
+    Column("saturation", "saturated, %", 100.0, "{:.1f}"),
+)
+"""What tables show of an ``Evaluation``."""
+
+
 def number(value: float, form: str) -> str:
     """Three digits at most where it is large; ∞ for a blade that broke."""
     if abs(value) == float("inf"):
