@@ -12,6 +12,7 @@ import pytest
 from beamenv import ENV_ID, RotatingBeamEnv, VectorPlacementWrapper
 from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
+from beamenv.patches.operators import actuation, sensing
 from beamenv.structure.section.elements import inverse_vandermonde, lobatto_nodes
 from beamenv.structure.trial_functions import gauss_rule, legendre_derivative, remaining_integrals
 from beamenv.structure.walls.laminate import wall_law
@@ -86,6 +87,23 @@ def test_blades_built_at_once_from_empty_caches_are_those_built_one_after_the_ot
     forget()
     for found, expected in zip(together(built), alone, strict=True):
         assert_same(found, expected)
+
+
+def test_patches_of_one_beam_asked_at_once_push_and_sense_as_when_asked_one_after_the_other():
+    def asked(blade):
+        layout, at = blade.config.patches, blade.config.speed
+        return np.concatenate([actuation(blade.beam, layout, at), sensing(blade.beam, layout, at).T])
+
+    def fresh():
+        blade = Blade(blade_config(overrides=SMALL))
+        blade.beam.at(blade.config.speed)  # all but what the patches alone need
+        return blade
+
+    alone = asked(fresh())
+    for _ in range(3):
+        shared = fresh()
+        for found in together(lambda k, shared=shared: asked(shared)):
+            np.testing.assert_array_equal(found, alone)
 
 
 def episode(env, seed):
