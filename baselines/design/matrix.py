@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from baselines.design.controller import Array
 from beamenv.configuration import shown
+
+_ROUNDING = 1e-9
+"""Of the largest entry: what an asymmetry or a negative eigenvalue may come to by rounding."""
 
 
 def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
@@ -23,6 +26,18 @@ def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     if numbers.shape != shape or not np.isfinite(numbers).all():
         raise ValueError(f"{name} has shape {numbers.shape}, but must hold finite numbers in shape {shape}.")
     return numbers
+
+
+def definite_matrix(name: str, value: Any, size: int, definite: Literal["semidefinite", "definite"]) -> Array:
+    """As ``real_matrix``, (size, size), symmetric and positive definite or semidefinite; ``ValueError`` otherwise."""
+    weight = real_matrix(name, value, (size, size))
+    rounding = _ROUNDING * np.abs(weight).max()
+    if np.abs(weight - weight.T).max() > rounding:
+        raise ValueError(f"{name} differs from its transpose by {np.abs(weight - weight.T).max():.3g}, but must be symmetric.")
+    lowest = float(np.linalg.eigvalsh(weight).min())
+    if lowest < -rounding if definite == "semidefinite" else lowest <= 0.0:
+        raise ValueError(f"{name} has the eigenvalue {lowest:.3g}, but must be positive {definite}.")
+    return weight
 
 
 def keep_matrices(holder: object, shapes: Mapping[str, tuple[int, ...]]) -> None:

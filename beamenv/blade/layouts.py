@@ -13,7 +13,7 @@ import numpy as np
 
 from beamenv.blade.bounds import Bounds
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import Refused, checked_table
+from beamenv.configuration import Number, Refused, checked, checked_table
 
 Side = Literal["actuators", "sensors"]
 SIDES: tuple[Side, ...] = ("actuators", "sensors")
@@ -99,6 +99,8 @@ def thesis_positions(config: BladeConfig, side: Side, name: str, count: int) -> 
 
 def _range(config: BladeConfig, side: Side, given: Mapping[str, Any], own: int) -> Drawn:
     given = checked_table(side, given, ("low", "high", "count"))
+    for name in given.keys() & {"low", "high"}:
+        checked(f"{side}.{name}", given[name], Number(unit="m"))
     count = given.get("count", own)
     whole = Bounds.of(config.patches, config.beam.length, 1, None, side)
     limits = (given.get("low", whole.low), given.get("high", whole.high))

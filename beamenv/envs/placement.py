@@ -85,7 +85,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
     """``PlacementWrapper`` for the batched environment: one layout for all blades, or one for each.
 
     - `env`: a `RotatingBeamVectorEnv`; `actuators`, `sensors`: as for `PlacementWrapper`.
-    - `layouts`: instead, one mapping {"actuators": …, "sensors": …} for each blade.
+    - `layouts`: instead, one name or mapping {"actuators": …, "sensors": …} for each blade, or one for all.
     - `bank`: how many layouts are drawn from a range at each `reset`, default 16; blade k has layout k modulo `bank`. (A plant
       takes some hundredths of a second to build.) An autoreset keeps the layout.
 
@@ -107,8 +107,11 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         super().__init__(env)
         self._own: np.random.Generator | None = None
         """What layouts are drawn with when every blade has a seed of its own; the batch's generator otherwise."""
-        given: Any = {"actuators": actuators, "sensors": sensors} if layouts is None else layouts
-        self._layouts = self._resolved(given)
+        given: Any = {"actuators": actuators, "sensors": sensors}
+        for side in SIDES:
+            if layouts is not None and given[side] is not None:
+                raise Refused(side, given[side], "left out where layouts are given")
+        self._layouts = self._resolved("layouts", given if layouts is None else layouts)
         self._positions = [{side: _first(layout[side]) for side in SIDES} for layout in self._layouts]
         self._tasks: dict[tuple[Positions, ...], Task] = {}
         """By positions: what layouts have had their blades built for, as long as they are in use."""
@@ -119,7 +122,9 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         options = _options(options)
         if options.get("reset_mask") is not None:
             return self._reset_some(seed, options)
-        layouts = self._resolved(options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
+        layouts = (
+            self._resolved("options['layout']", options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
+        )
         self.env.unwrapped.check_options(options)  # type: ignore[attr-defined]
         drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
         if drawn:
@@ -147,13 +152,13 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         observations, reward, terminated, truncated, info = self.env.step(actions)
         return observations, reward, terminated, truncated, self._told(info)
 
-    def _resolved(self, given: Any, like: Mapping[Side, Positions] | None = None) -> list[Layout]:
+    def _resolved(self, name: str, given: Any, like: Mapping[Side, Positions] | None = None) -> list[Layout]:
         """One layout for all blades, or one for each."""
         if isinstance(given, (str, Mapping)):
-            return [_resolved(self._home.config, given, like)]
+            return [_resolved(self._home.config, given, like, name)]
         if not isinstance(given, Sequence) or len(given) != self.num_envs:
-            raise ValueError(f"layouts is {given!r}, but must be one layout, or a sequence of {self.num_envs}, one for each blade.")
-        layouts = [_resolved(self._home.config, each, like) for each in given]
+            raise Refused(name, given, f"one layout, or a sequence of {self.num_envs}, one for each blade")
+        layouts = [_resolved(self._home.config, each, like, f"{name}[{k}]") for k, each in enumerate(given)]
         counts = {tuple(len(_first(layout[side])) for side in SIDES) for layout in layouts}
         if len(counts) > 1:
             raise ValueError(f"layouts have {sorted(counts)} actuators and sensors, but those of one batch must have equally many.")
@@ -209,9 +214,9 @@ def _of_blades(task: Task, changed: Callable[[Blade], Blade]) -> Task:
     return replace(task, blade=blade, design_blade=blade if task.design_blade == task.blade else changed(task.design_blade))
 
 
-def _resolved(config: BladeConfig, given: Any, like: Mapping[Side, Positions] | None = None) -> Layout:
+def _resolved(config: BladeConfig, given: Any, like: Mapping[Side, Positions] | None = None, name: str = "layout") -> Layout:
     """Each side's layout; ``ValueError`` for what does not fit, or has other numbers of patches than ``like``."""
-    asked = _both_sides(given)
+    asked = _both_sides(name, given)
     layout = {side: resolve(config, side, asked.get(side)) for side in SIDES}
     for side in SIDES:
         count = len(_first(layout[side]))
@@ -220,12 +225,12 @@ def _resolved(config: BladeConfig, given: Any, like: Mapping[Side, Positions] | 
     return layout
 
 
-def _both_sides(given: Any) -> Mapping[str, Any]:
+def _both_sides(name: str, given: Any) -> Mapping[str, Any]:
     if isinstance(given, str):
         return dict.fromkeys(SIDES, given)
     if not isinstance(given, Mapping):
-        raise Refused("layout", given, f"a name or a mapping with the keys {' and '.join(SIDES)}")
-    return checked_table("layout", given, SIDES)
+        raise Refused(name, given, f"a name or a mapping with the keys {' and '.join(SIDES)}")
+    return checked_table(name, given, SIDES)
 
 
 def _options(options: Any) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """What is handed to the placement functions and makes no sense is refused in one sentence, and nothing that is kept is changed."""
 
 import threading
+from dataclasses import fields, replace
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -11,7 +13,10 @@ from baselines.placement.cost.damping import design_poles, open_loop_poles
 from baselines.placement.search.evolution import Evolution
 from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
+from baselines.placement.search.search import InTurn
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
+from beamenv import ENV_ID, VectorPlacementWrapper
+from beamenv.blade.bounds import Bounds
 from beamenv.blade.presets import blade_config
 from train.placement.placed import place_sides
 
@@ -142,3 +147,129 @@ def test_searches_in_several_threads_find_what_each_alone_finds(problem):
     for thread in threads:
         thread.join()
     assert found == alone
+
+
+def test_stages_are_one_or_more_searches_and_a_class_of_them_is_none(problem):
+    for wrong in [
+        *SOMETHING_ELSE,
+        (),
+        (None,),
+        (QUICK, "sqp"),
+        [[QUICK]],
+        QUICK,
+        SequentialQuadratic,
+        (SequentialQuadratic,),
+        {QUICK},
+    ]:
+        with pytest.raises(ValueError, match="stages is .* but must be one or more searches") as told:
+            InTurn(wrong)
+        check_sentence(told)
+    with pytest.raises(ValueError, match="method is"):
+        place(problem, SequentialQuadratic)
+    assert InTurn([QUICK, QUICK]).stages == (QUICK, QUICK)
+    assert place(problem, InTurn((QUICK,))).positions == place(problem, QUICK).positions
+
+
+BAD_NOISE = [[1.0, 1.0], np.eye(3), [[1.0, np.nan], [0.0, 1.0]], -np.eye(2), [[1.0, 0.5], [0.0, 1.0]], np.eye(2) * 1j]
+BAD_BOUNDS = [Bounds("actuators", *numbers) for numbers in [(np.nan, 1.0, 0.085, 2), (0.9, 0.1, 0.085, 2), (0.0, 9.0, 0.085, 2)]]
+BAD_BOUNDS += [Bounds("actuators", 0.0, 1.0, *rest) for rest in [(0.0, 2), (0.085, None), (0.085, 99), ("x", 2)]]
+BAD_BOUNDS += [Bounds("sensors", 0.0, 1.0, 0.085, 2), Bounds("actuators", None, 1.0, 0.085, 2)]
+FIELDS = {
+    "config": [],
+    "side": ["both"],
+    "bounds": BAD_BOUNDS,
+    "load_noise": BAD_NOISE,
+    "sensor_noise": [-1e-9, [1e-9]],
+    "parts": [],
+}
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_parts_of_a_problem_that_cannot_be_are_refused_in_one_sentence(name, problem):
+    assert {each.name for each in fields(problem)} == set(FIELDS)
+    for wrong in [*SOMETHING_ELSE, *FIELDS[name]]:
+        if (name == "config" and wrong is CONFIG) or (
+            name == "sensor_noise" and type(wrong) in (int, float) and 0 <= wrong < np.inf
+        ):
+            continue
+        with pytest.raises(ValueError, match=name if any(wrong is each for each in SOMETHING_ELSE) else None) as told:
+            replace(problem, **{name: wrong})
+        check_sentence(told)
+
+
+def test_sensors_without_noise_are_no_problem_and_the_noise_of_one_is_read_only():
+    sensors = PlacementProblem.of(CONFIG, "sensors", 2)
+    with pytest.raises(ValueError, match="sensor_noise is 0"):
+        replace(sensors, sensor_noise=0.0)
+    own = np.eye(2)
+    kept = replace(sensors, load_noise=own)
+    own[:] = 7.0
+    np.testing.assert_array_equal(kept.load_noise, np.eye(2))
+    with pytest.raises(ValueError, match="read-only"):
+        kept.load_noise[:] = 0.0
+
+
+@pytest.fixture(scope="module")
+def envs():
+    return gymnasium.make_vec(ENV_ID, num_envs=2, duration=0.02)
+
+
+OTHER_NUMBERS = (None, {}, [0.1], [0.1, 0.5, 0.9])
+"""Which a side may have: the spaces follow."""
+SIDEWISE = [each for each in NO_LAYOUT if not any(type(each) is type(may) and each == may for may in OTHER_NUMBERS)]
+SIDEWISE += ["nowhere", {"from": 0.1}, {"low": "x"}, {"low": np.nan}, {"high": None}, {"count": 0}, {"count": 2.5}, {1: 0.1}]
+
+
+@pytest.mark.parametrize("argument", ["actuators", "sensors"])
+def test_sides_of_a_batch_that_cannot_be_are_refused_in_one_sentence(envs, argument):
+    before = envs.unwrapped.tasks
+    for wrong in SIDEWISE:
+        with pytest.raises(ValueError, match=argument) as told:
+            VectorPlacementWrapper(envs, **{argument: wrong})
+        check_sentence(told)
+    assert envs.unwrapped.tasks == before
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        *(each for each in SOMETHING_ELSE if each not in (None, {})),
+        "nowhere",
+        ["uniform"],
+        ["uniform"] * 3,
+        ["uniform", None],
+        ("uniform", 4),
+    ],
+)
+def test_layouts_of_a_batch_that_cannot_be_are_refused_in_one_sentence(envs, wrong):
+    before = envs.unwrapped.tasks
+    with pytest.raises(ValueError) as told:
+        VectorPlacementWrapper(envs, layouts=wrong)
+    check_sentence(told)
+    assert envs.unwrapped.tasks == before
+
+
+def test_layouts_that_are_wrong_are_named_with_their_place(envs):
+    for wrong, sentence in [
+        (["uniform", {"top": [0.0]}], r"layouts\[1\] has no field 'top': its fields are actuators, sensors"),
+        (["uniform", 4], r"layouts\[1\] is 4, but must be a name or a mapping"),
+        (np.zeros((2, 2)), "layouts is .* must be one layout, or a sequence of 2, one for each blade"),
+    ]:
+        with pytest.raises(ValueError, match=sentence) as told:
+            VectorPlacementWrapper(envs, layouts=wrong)
+        check_sentence(told)
+
+
+def test_a_side_beside_layouts_would_be_ignored_and_is_refused(envs):
+    with pytest.raises(ValueError, match="sensors is 'uniform', but must be left out where layouts are given"):
+        VectorPlacementWrapper(envs, sensors="uniform", layouts=["uniform", "uniform"])
+
+
+@pytest.mark.parametrize("name", ["env", "bank"])
+def test_other_arguments_of_a_placed_batch_are_refused_in_one_sentence(envs, name):
+    for wrong in [*SOMETHING_ELSE, *([gymnasium.make(ENV_ID)] if name == "env" else [0])]:
+        if name == "bank" and wrong == 10**40:
+            continue  # more than there are blades is one for each
+        with pytest.raises(ValueError) as told:
+            VectorPlacementWrapper(wrong) if name == "env" else VectorPlacementWrapper(envs, bank=wrong)
+        check_sentence(told)

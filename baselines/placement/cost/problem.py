@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from baselines.design.matrix import definite_matrix
 from baselines.placement.cost.riccati import solve_riccati
 from baselines.placement.model.contributions import Contributions, contributions
 from baselines.placement.model.equations import (
@@ -27,11 +29,15 @@ from beamenv.blade.bounds import Bounds
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
-from beamenv.configuration import Choice, Instance, Refused, checked
+from beamenv.configuration import Choice, Instance, Number, Refused, checked
+from beamenv.configuration.read_only import sealed
 from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
 Matrices = TypeVar("Matrices", LayoutMatrices, MatrixSlopes)
+
+NOISE: Mapping[Side, Number] = MappingProxyType({"actuators": Number(ge=0.0), "sensors": Number(gt=0.0)})
+"""What V may be: of sensors to be placed it is divided by."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +48,8 @@ class PlacementProblem:
     of bringing the blade to rest, over initial states of 1 J in every direction of its 2r states.
     Sensors: tr(S) in J, of AS + SAᵀ + W − SCᵀV⁻¹CS = 0 with the environment's noise; ½tr(S) is the mean energy of the filter's
     error. The data acquisition, and so V, stays as it is when sensors move.
+
+    ``of`` makes one; the constructor raises ``ValueError`` for parts of another kind, and bounds that are not those of the blade.
     """
 
     config: BladeConfig
@@ -53,6 +61,17 @@ class PlacementProblem:
     sensor_noise: float
     """V, A² s, of every sensor."""
     parts: Contributions
+
+    def __post_init__(self) -> None:
+        for name, kind in (("config", BladeConfig), ("bounds", Bounds), ("parts", Contributions)):
+            checked(name, getattr(self, name), Instance(kind))
+        checked("side", self.side, Choice(SIDES))
+        given = self.bounds
+        room = Bounds.of(self.config.patches, self.config.beam.length, given.count, (given.low, given.high), self.side)
+        if given != room:
+            raise Refused("bounds", given, f"{room}, for the {self.side} of this blade")
+        object.__setattr__(self, "load_noise", sealed(definite_matrix("load_noise", self.load_noise, 2, "semidefinite")))
+        object.__setattr__(self, "sensor_noise", checked("sensor_noise", self.sensor_noise, NOISE[self.side]))
 
     @classmethod
     def of(

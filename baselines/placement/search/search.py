@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,11 +31,24 @@ class Method(Protocol):
         ...
 
 
+def is_search(value: Any) -> bool:
+    """Whether it is a ``Method``: an object, not a class of them."""
+    return callable(getattr(value, "run", None)) and not isinstance(value, type)
+
+
 @dataclass(frozen=True, slots=True)
 class InTurn:
-    """One search after another, each from the best so far (thesis Fig. 6.3: GA, then SQP)."""
+    """One search after another, each from the best so far (thesis Fig. 6.3: GA, then SQP).
+
+    Raises ``ValueError`` for stages that are not one or more searches.
+    """
 
     stages: tuple[Method, ...]
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.stages, (tuple, list)) and self.stages and all(map(is_search, self.stages))):
+            raise Refused("stages", self.stages, "one or more searches, in a tuple")
+        object.__setattr__(self, "stages", tuple(self.stages))
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
         """Search."""
@@ -71,7 +84,7 @@ def place(
     a blade with a mode that the patches cannot move (or sense).
     """
     checked("problem", problem, Instance(PlacementProblem))
-    if not (method in METHODS if isinstance(method, str) else callable(getattr(method, "run", None))):
+    if not (method in METHODS if isinstance(method, str) else is_search(method)):
         raise Refused("method", method, f"one of {', '.join(METHODS)}, or a search")
     seed = checked("seed", seed, Count(0, 2**63 - 1))
     if not (progress is None or callable(progress)):
