@@ -221,7 +221,7 @@ def checked_dtype(dtype: Any) -> DType:
     """One of the two, also from NumPy's types of these names; ``ValueError`` for any other."""
     try:
         name = np.dtype(dtype).name if dtype is not None else ""
-    except TypeError:
+    except (TypeError, ValueError):
         name = ""
     if name == "float32":
         return "float32"
@@ -257,7 +257,7 @@ def _numbers(name: str, value: Any) -> Array:
         return value
     try:
         given = np.asarray(value)
-        if given.dtype.kind not in "fiub" or isinstance(
+        if given.dtype.kind not in "fiu" or isinstance(
             value, (bytes, bytearray, memoryview)
         ):  # complex numbers would lose a part, text would be read as numbers
             raise TypeError

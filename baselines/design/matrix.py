@@ -50,7 +50,7 @@ def keep_matrices(holder: object, shapes: Mapping[str, tuple[int, ...]]) -> None
 
 def rows(matrix: Any) -> int:
     """So many rows a first matrix has, which decides the shapes of all: of what is none, one."""
-    return len(matrix) if hasattr(matrix, "__len__") else 1
+    return len(matrix) if hasattr(matrix, "__len__") and getattr(matrix, "shape", None) != () else 1
 
 
 def one_or_each(name: str, value: Any, count: int, of: str) -> Array:

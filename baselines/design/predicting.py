@@ -41,7 +41,10 @@ def remembered(state: Any, episode_start: Any, batch: tuple[int, ...], order: in
 
 def _begins(episode_start: Any, batch: tuple[int, ...]) -> NDArray[np.bool_]:
     """(*batch,): true where an episode starts."""
-    begins = np.asarray(episode_start)
+    try:
+        begins = np.asarray(episode_start)
+    except (TypeError, ValueError, RuntimeError):  # rows of different lengths
+        begins = np.array(None)
     if begins.dtype.kind not in "biuf" or begins.size != math.prod(batch):
         raise Refused("episode_start", episode_start, f"None, or {math.prod(batch)} of True and False, one a blade")
     return np.asarray(begins.reshape(batch), dtype=bool)

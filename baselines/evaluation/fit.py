@@ -12,7 +12,7 @@ from gymnasium.vector import VectorEnv
 from baselines.design.controller import Controller, name_of
 from baselines.design.law import Law
 from baselines.evaluation.loop import Environment, attribute
-from beamenv.configuration import Refused
+from beamenv.configuration import Refused, shown
 from beamenv.task import Task
 
 ENVIRONMENT = "an environment with a blade, a batch of them, or the id of one"
@@ -23,7 +23,7 @@ def made(env: Any, count: int) -> Environment:
     try:
         return gym.make_vec(env, num_envs=count)
     except (gym.error.Error, ImportError, TypeError) as error:
-        raise ValueError(f"env is {env!r}, but must be {ENVIRONMENT}: {' '.join(str(error).split())}") from None
+        raise ValueError(f"env is {shown(env)}, but must be {ENVIRONMENT}: {' '.join(str(error).split()).rstrip('.')}.") from None
 
 
 def check_fit(controller: Controller, env: Any) -> None:

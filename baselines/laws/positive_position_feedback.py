@@ -84,7 +84,8 @@ def _held_filters(frequencies: Array, damping: float, corner: float, interval: f
         at = 1 + 2 * k
         dynamics[at, at + 1] = dynamics[at + 1, 0] = omega
         dynamics[at + 1, at : at + 2] = -omega, -2.0 * damping * omega
-    transition, held_input = hold(dynamics, np.eye(size, 1), interval)
+    with np.errstate(all="ignore"):  # of numbers too large nothing finite is left, which verification tells
+        transition, held_input = hold(dynamics, np.eye(size, 1), interval)
     return transition, held_input[:, 0]
 
 

@@ -20,6 +20,9 @@ from beamenv.plant.plant import Plant, drive_limit
 
 Array = NDArray[np.floating[Any]]
 
+LONGEST = 10_000
+"""Instants: five seconds of the default interval, and some hundred kilobytes a blade."""
+
 INSTANT = 20
 """Bytes that a number of a history takes for each instant shown: four in the window, four times that in what it moves along."""
 
@@ -80,7 +83,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
-        RecordConstructorArgs.__init__(self, length=checked("length", length, Count()))
+        RecordConstructorArgs.__init__(self, length=checked("length", length, Count(1, LONGEST)))
         plant, length = _normalised_plant(env, length, of_batch=False)
         gymnasium.Wrapper.__init__(self, env)
         self._drive = drive_limit(plant)
@@ -167,7 +170,7 @@ def _space(history: RollingHistory) -> Box:
 
 def _normalised_plant(env: Any, length: Any, of_batch: bool) -> tuple[Plant, int]:
     """The plant of the environment within, and the length as an integer; ValueError unless both will do."""
-    length = checked("length", length, Count())
+    length = checked("length", length, Count(1, LONGEST))
     task = task_within(env, of_batch)
     plant, blades = task.plant, env.num_envs if of_batch else 1
     check_room("length", length, INSTANT * blades * (len(plant.C) + plant.B.shape[1]), "instants")

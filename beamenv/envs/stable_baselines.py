@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
-from beamenv.configuration import Refused
+from beamenv.configuration import Count, Refused, checked
 from beamenv.envs.seeds import checked_seed
 
 try:
@@ -32,6 +32,7 @@ class BladeVecEnv(VecEnv):
     def __init__(self, num_envs: int = 64, seed: int | None = None, **arguments: Any) -> None:
         if "autoreset_mode" in arguments:
             raise Refused("autoreset_mode", arguments["autoreset_mode"], "left out: Stable-Baselines3 knows 'SameStep' alone")
+        num_envs = checked("num_envs", num_envs, Count())
         self.envs: Any = gymnasium.make_vec(
             "beamenv/RotatingBeam-v0", num_envs=num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **arguments
         )

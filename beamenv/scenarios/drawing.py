@@ -78,7 +78,9 @@ def _load_cases(chosen: Scenario, interval: float, lowest_frequency: Any, unifor
     load = magnitude[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
     onset = _intervals(_within(chosen.onset, uniforms[:, 3]), interval)
     lasting = np.maximum(_intervals(_within(chosen.duration, uniforms[:, 4]), interval), 1)
-    rate = np.minimum(_within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval, np.pi)
+    with np.errstate(over="ignore"):  # of what no load case draws
+        ratio = _within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval
+    rate = np.minimum(ratio, np.pi)
     return LoadCases(
         case=case,
         amplitude=np.where(is_release[:, None], 0.0, load),

@@ -227,6 +227,7 @@ OTHERS = {
     "physical": cache(lambda: gym.make(beamenv.ENV_ID, blade=small.BLADE, duration=small.DURATION, physical_units=True)),
     "batch": cache(new_envs),
 }
+ANY_UNITS = Kind("env", lambda value: value if value is OWN or value is OTHERS["physical"]() else NOTHING, ENV.near)
 VECTOR_ENV = Kind(
     "envs", ENV.means, st.sampled_from(["cartpole", "single"]).map(lambda name: {"cartpole": cartpole, "single": new_env}[name]())
 )
@@ -358,7 +359,7 @@ DOORS = [
     Door(
         "PlacementWrapper",
         wrapper(beamenv.PlacementWrapper),
-        {"env": ENV, "actuators": maybe(SIDE), "sensors": maybe(SIDE)},
+        {"env": ANY_UNITS, "actuators": maybe(SIDE), "sensors": maybe(SIDE)},
         lambda: {"env": OWN, "actuators": [0.1, 0.6], "sensors": None},
         told=("layout", "span"),
         public="PlacementWrapper",

@@ -40,6 +40,8 @@ def _number(value):
 
 
 def _count(value):
+    if type(value) is int:
+        return value
     plain = _number(value)
     if plain is NOTHING or not plain.is_integer():
         return NOTHING

@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from beamenv.blade.presets import PRESETS
+from beamenv.configuration import shown
 from beamenv.scenarios.scenario import SCENARIOS
 from train.shared.interruption import status_of
 
@@ -50,11 +51,18 @@ def one_sentence(interrupted: str = "") -> Iterator[None]:
     except BrokenPipeError:
         raise
     except (ValueError, OSError) as error:
-        print(f"beamenv: {error}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        print(f"beamenv: {_said(error)}", file=sys.stderr)  # noqa: T201 - the command's own voice
         raise typer.Exit(2) from None
     except KeyboardInterrupt as error:
         print(f"beamenv: interrupted{interrupted and ': '}{interrupted}.", file=sys.stderr)  # noqa: T201
         raise typer.Exit(status_of(error)) from None
+
+
+def _said(error: ValueError | OSError) -> str:
+    """The sentence; of the system's own errors the file and what is wrong with it."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"file {shown(error.filename)} cannot be used: {error.strerror}."
+    return str(error)
 
 
 def print_table(table: Table) -> None:

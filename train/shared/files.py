@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from beamenv.configuration import Refused
+from beamenv.configuration import Refused, shown
 from beamenv.configuration.writing import write_whole
 
 SPACE = 16_000_000
@@ -33,14 +33,14 @@ def check_folder(folder: Path, name: str = "folder", space: int = SPACE) -> None
     place = _standing(folder, name)
     if not place.is_dir():
         what = "is a file" if place == folder.absolute() else f"{str(place)!r} is a file"
-        raise ValueError(f"{name} = {str(folder)!r} must be a folder, or not be there yet, but {what}.")
+        raise ValueError(f"{name} = {shown(str(folder))} must be a folder, or not be there yet, but {what}.")
     try:
         _probe(place)
         free = shutil.disk_usage(place).free
     except OSError as error:
-        raise ValueError(f"{name} = {str(folder)!r} must be a folder that can be written in: {error.strerror}.") from None
+        raise ValueError(f"{name} = {shown(str(folder))} must be a folder that can be written in: {error.strerror}.") from None
     if free < space:
-        raise ValueError(f"{name} = {str(folder)!r} must have {space / 1e6:g} MB free on its disk, but has {free / 1e6:.1f}.")
+        raise ValueError(f"{name} = {shown(str(folder))} must have {space / 1e6:g} MB free on its disk, but has {free / 1e6:.1f}.")
 
 
 def _standing(path: Path, name: str) -> Path:
@@ -83,10 +83,14 @@ def read_json(path: Path) -> Any:
         raise ValueError(f"file {str(path)!r} cannot be read: {error}.") from None
 
 
+LONGEST_NAME = 255
+"""Characters of a file's name: no more on any usual system."""
+
+
 def as_path(name: str, value: Any) -> Path:
     """A path, or the text of one; ``ValueError`` names what is neither."""
     text = os.fspath(value) if isinstance(value, os.PathLike) else value
-    if not isinstance(text, str) or "\0" in text:
+    if not isinstance(text, str) or "\0" in text or max(map(len, Path(text).parts), default=0) > LONGEST_NAME:
         raise Refused(name, value, "a path")
     return Path(text)
 
