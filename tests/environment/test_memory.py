@@ -14,7 +14,7 @@ def test_more_blades_than_memory_has_room_for_are_refused():
 
 
 def test_a_longer_history_than_memory_has_room_for_is_refused(monkeypatch):
-    with pytest.raises(ValueError, match="^length is 1000000000, but must be a whole number not below 1 and not above 10000[.]$"):
+    with pytest.raises(ValueError, match="^length is 1000000000, but must be a whole number from 1 to 10000[.]$"):
         beamenv.SensorHistory(gymnasium.make(beamenv.ENV_ID), length=10**9)
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=1000)
     monkeypatch.setattr(memory, "memory", lambda: 10**9)
