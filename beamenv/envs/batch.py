@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.configuration import Count, checked
+from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import batch_reset, chosen_mode, drawn_rows
 from beamenv.envs.batch_blades import blades_of, masked, of_rows
 from beamenv.envs.seeds import SeededVectorEnv, Seeds
@@ -37,6 +38,9 @@ if TYPE_CHECKING:
     from beamenv.rendering import BatchRenderer
 
 Array = NDArray[np.float64]
+
+BLADE = 2048
+"""Bytes that a blade of a batch takes, at the default 1980."""
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
@@ -103,6 +107,7 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
         self.num_envs = checked("num_envs", num_envs, Count())
+        check_room("num_envs", self.num_envs, BLADE, "blades")
         is_drawn = render_mode is not None or render_index is not None
         self._drawn = drawn_rows("render_index", render_index, self.num_envs) if is_drawn else ()
         self._time_limit = sys.maxsize if max_episode_steps is None else checked("max_episode_steps", max_episode_steps, Count())

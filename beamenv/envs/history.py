@@ -13,7 +13,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.configuration import Count, Refused, checked
+from beamenv.configuration import Count, checked
+from beamenv.configuration.memory import check_room
 from beamenv.envs.within import task_within
 from beamenv.plant.plant import Plant, drive_limit
 
@@ -21,6 +22,9 @@ Array = NDArray[np.floating[Any]]
 
 LONGEST = 10_000
 """Instants: five seconds of the default interval, and some hundred kilobytes a blade."""
+
+INSTANT = 20
+"""Bytes that a number of a history takes for each instant shown: four in the window, four times that in what it moves along."""
 
 
 class RollingHistory:
@@ -79,7 +83,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
-        RecordConstructorArgs.__init__(self, length=_checked_length(length))
+        RecordConstructorArgs.__init__(self, length=checked("length", length, Count(1, LONGEST)))
         plant, length = _normalised_plant(env, length, of_batch=False)
         gymnasium.Wrapper.__init__(self, env)
         self._drive = drive_limit(plant)
@@ -166,16 +170,10 @@ def _space(history: RollingHistory) -> Box:
 
 def _normalised_plant(env: Any, length: Any, of_batch: bool) -> tuple[Plant, int]:
     """The plant of the environment within, and the length as an integer; ValueError unless both will do."""
-    length = _checked_length(length)
+    length = checked("length", length, Count(1, LONGEST))
     task = task_within(env, of_batch)
+    plant, blades = task.plant, env.num_envs if of_batch else 1
+    check_room("length", length, INSTANT * blades * (len(plant.C) + plant.B.shape[1]), "instants")
     if task.physical_units:
         raise ValueError("env has physical_units=True, but a history is made of normalised readings and voltages.")
-    return task.plant, length
-
-
-def _checked_length(length: Any) -> int:
-    """A number of instants."""
-    instants: int = checked("length", length, Count())
-    if instants > LONGEST:
-        raise Refused("length", length, f"at most {LONGEST} instants")
-    return instants
+    return plant, length
