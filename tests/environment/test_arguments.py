@@ -188,8 +188,8 @@ def test_counts_of_wrappers_follow_the_rule_of_counts():
         (3, "options is 3, but must be a mapping"),
         ([], r"options is \[\], but must be a mapping"),
         ({1: 2}, "options is {1: 2}, but must be a mapping"),
-        ({"layout": {1: 1, "a": 2}}, "options.'layout'. is {1: 1, 'a': 2}, but must be a mapping"),
-        ({"layout": {"top": 1}}, "options.'layout'. has no field 'top': its fields are actuators, sensors"),
+        ({"layout": {1: 1, "a": 2}}, "(options.'layout'.|layout) is {1: 1, 'a': 2}, but must be a mapping"),
+        ({"layout": {"top": 1}}, "(options.'layout'.|layout) has no field 'top': its fields are actuators, sensors"),
     ],
 )
 def test_options_of_a_placement_are_told_by_name(wrap, options, words):
