@@ -146,7 +146,7 @@ def test_stepping_or_drawing_before_a_reset_is_refused():
 @pytest.mark.parametrize("length", [0, -1, 2.5, True, "long"])
 def test_a_bad_history_length_is_named(length):
     for wrap in (lambda: SensorHistory(RotatingBeamEnv(), length), lambda: VectorSensorHistory(RotatingBeamVectorEnv(2), length)):
-        with pytest.raises(ValueError, match="length is .*, but must be a whole number not below 1"):
+        with pytest.raises(ValueError, match="length is .*, but must be a whole number from 1 to 10000"):
             wrap()
 
 

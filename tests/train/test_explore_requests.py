@@ -345,7 +345,9 @@ def test_the_page_is_served_at_every_loopback_address(host):
         for path in ("/", "/_dash-layout", "/assets/explore.js"):
             connection = http.client.HTTPConnection(host, server.port, timeout=30)
             connection.request("GET", path)
-            assert connection.getresponse().status == 200
+            answer = connection.getresponse()
+            assert answer.status == 200
+            assert answer.read()
             connection.close()
 
 
