@@ -229,7 +229,7 @@ def test_a_wall_that_the_section_lacks_is_told_whatever_its_name(wall):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"beam": {"length": 1e6}}, "(beam cannot be computed|speed is 200.0, but must be at least 0 and below the critical speed)"),
+        ({"beam": {"length": 1e6}}, "(beam cannot be computed|speed is 200.0, but must be .* below the critical speed)"),
         ({"beam": {"width": 1e100}}, "beam cannot be computed"),
         ({"beam": {"taper": 5e-324}}, "beam cannot be computed"),
         ({"beam": {"material": {"G13": 1e100}}}, "(beam cannot be computed|thickness is 0.01016, but must be large enough)"),
