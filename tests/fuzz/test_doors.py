@@ -195,7 +195,8 @@ def _spoils(on, size):
     return _right(on, size)
 
 
-def test_a_right_door_has_no_fault():
+def test_a_right_door_has_no_fault(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # files are looked at all around
     assert counted(doing(_right, read=lambda made: made), SLOW)["refused"] > 100
 
 
