@@ -12,13 +12,21 @@ def frequencies(pretwist, model):
     return RotatingBeam(section, layup, 2.023, hub_radius=0.2, pretwist_deg=pretwist, model=model).natural_frequencies()
 
 
-@pytest.mark.parametrize("model", ["thesis", "blade"])
-@pytest.mark.parametrize("pretwist", [720.0, -720.0, 1440.0])
+@pytest.mark.parametrize(
+    ("pretwist", "model"),
+    [(720.0, "thesis"), (-720.0, "thesis"), (1440.0, "thesis"), (500.0, "blade"), (720.0, "blade"), (-720.0, "blade")],
+)
 def test_stations_are_enough_for_blades_of_several_turns(pretwist, model, monkeypatch):
     """Six frequencies within 2e-6 of those with thirty more stations on each piece."""
     ours = frequencies(pretwist, model)
     monkeypatch.setattr(module, "EXTRA_STATIONS", 36)
     np.testing.assert_allclose(ours, frequencies(pretwist, model), rtol=2e-6)
+
+
+def test_sections_that_are_turned_too_fast_to_be_worked_out_are_refused():
+    """At four turns in two metres the box's edges lie at 58° to the span."""
+    with pytest.raises(ValueError, match="large enough beside the section for a pretwist of 12.4 rad/m"):
+        frequencies(1440.0, "blade")
 
 
 @pytest.mark.parametrize(("model", "within"), [("thesis", 1e-4), ("blade", 1e-3)])

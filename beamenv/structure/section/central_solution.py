@@ -32,8 +32,8 @@ PASSES = 10
 """Most iterations for the pretwist's terms before they are extrapolated; on a blade each is some 50 times smaller than the last,
 while in thin, wide, strongly pretwisted walls they may grow."""
 
-CYCLES = 8
-"""Most extrapolations."""
+CYCLES = 30
+"""Most extrapolations; two turns a blade take more than eight."""
 
 CONVERGED = 1e-6
 
