@@ -118,7 +118,10 @@ def test_a_training_that_is_killed_or_told_to_end_goes_on_to_the_same_weights(tm
         ended(number, generator.uniform(0.0, 0.3), *arguments(broken), ready=lambda earlier=earlier: events(broken) > earlier)
         assert_whole(broken)
     run(job, broken, lambda progress: None, resume=True)
-    assert weights(broken) == weights(whole)
+    ours, theirs = weights(broken), weights(whole)
+    assert ours.keys() == theirs.keys()
+    for name in ours:  # to rounding: processes may sum over more or fewer threads
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-4, atol=1e-6)
     assert not [path for path in broken.iterdir() if path.name.startswith(".")]
 
 
