@@ -32,15 +32,10 @@ class BeamMatrices(ReadOnly):
 
     @property
     def regular(self) -> bool:
-        """Whether every number is finite, and mass and stiffness are positive definite to rounding."""
+        """Whether every number is finite, and mass and stiffness are positive definite by more than rounding."""
         if not all(np.isfinite(each).all() for each in (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic)):
             return False
-        try:
-            np.linalg.cholesky(self.mass)
-            np.linalg.cholesky(self.elastic_stiffness)
-        except np.linalg.LinAlgError:
-            return False
-        return True
+        return _definite(self.mass) and _definite(self.elastic_stiffness)
 
     def stiffness(self, speed: float) -> Array:
         """K (N, N) at a speed in rad/s."""
@@ -50,6 +45,20 @@ class BeamMatrices(ReadOnly):
         """The matrices of some coefficients alone, the others held at zero."""
         pick = np.ix_(columns, columns)
         return BeamMatrices(self.mass[pick], self.elastic_stiffness[pick], self.spin_stiffness[pick], self.gyroscopic[pick])
+
+
+def _definite(matrix: Array) -> bool:
+    """Whether a symmetric matrix is positive definite by more than rounding, n ε of its diagonal, may make or take."""
+    diagonal = np.diagonal(matrix)
+    if not np.all(diagonal > 0.0):
+        return False
+    unit = 1.0 / np.sqrt(diagonal)
+    rounding = len(matrix) * np.finfo(np.float64).eps
+    try:
+        np.linalg.cholesky(unit[:, None] * matrix * unit - rounding * np.eye(len(matrix)))
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 def generalised_strains(rows: dict[tuple[str, int], Array]) -> Array:

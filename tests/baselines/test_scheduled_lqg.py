@@ -104,13 +104,13 @@ def test_what_cannot_be_scheduled_is_refused_by_name(family):
         scheduled_lqg(replace(family, plants=(family.plants[0], other, *family.plants[2:])))
 
 
-@pytest.mark.parametrize("speed", [120.0, 185.0, 290.0])
-def test_on_all_that_is_known_it_is_near_the_optimum_of_every_speed_behind_the_electronics(speed):
-    """As "scheduled-lqg" is: seven speeds from half to half as much again as the blade's own. It costs up to 1.1 % more."""
+@pytest.mark.parametrize(("speed", "more"), [(120.0, 0.0059), (185.0, 0.0025), (290.0, 0.0111)])
+def test_on_all_that_is_known_it_is_near_the_optimum_of_every_speed_behind_the_electronics(speed, more):
+    """As "scheduled-lqg" is: seven speeds from half to half as much again as the blade's own."""
     law = scheduled_lqg_for(THESIS, THESIS.speed * np.linspace(0.5, 1.5, 7), full=True, rate_weight=1.0)
     truth = Blade(replace(THESIS, speed=speed, sensor_full_scale=float(build_plant(THESIS).sensor_full_scale[0]))).truth
     optimum = stationary_cost(truth, lqg(truth))
-    assert optimum < stationary_cost(truth, law.at(speed)) < 1.012 * optimum
+    assert stationary_cost(truth, law.at(speed)) / optimum - 1.0 == pytest.approx(more, abs=3e-4)
     assert stationary_cost(truth, scheduled_lqg_for(THESIS).at(speed)) == np.inf
 
 

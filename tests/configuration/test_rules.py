@@ -229,10 +229,10 @@ def test_a_wall_that_the_section_lacks_is_told_whatever_its_name(wall):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"beam": {"length": 1e6}}, "(beam cannot be computed|speed is 200.0, but must be .* below the critical speed)"),
+        ({"beam": {"length": 1e6}}, "beam cannot be computed"),
         ({"beam": {"width": 1e100}}, "beam cannot be computed"),
         ({"beam": {"taper": 5e-324}}, "beam cannot be computed"),
-        ({"beam": {"material": {"G13": 1e100}}}, "(beam cannot be computed|thickness is 0.01016, but must be large enough)"),
+        ({"beam": {"material": {"G13": 1e100}}}, "thickness is 0.01016, but must be large enough"),
         ({"beam": {"material": {"E1": 1e308}}}, "beam cannot be computed"),
         ({"white_load": 1e308}, "blade.white_load is 1e[+]308, but must be a number from 0 to 1e[+]06 [(]N/m[)]"),
         ({"modes": 97}, "blade.modes is 97, but must be a whole number from 1 to 96"),

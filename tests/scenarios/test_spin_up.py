@@ -176,7 +176,10 @@ def test_a_run_down_is_the_whole_equation_too():
 
 
 def test_a_run_up_beyond_what_the_blade_bears_is_told():
-    with pytest.raises(ValueError, match=r"^(scenario.plants.spin_up|speed) is .*, but must be .*[.]$"):
+    with pytest.raises(
+        ValueError,
+        match=r"^scenario.plants.spin_up is \[0.0, 1700.0\], but must be speeds at which the blade has a steady state[.]$",
+    ):
         RotatingBeamEnv(blade=CONFIG, scenario={"preset": "spin-up", "plants": {"spin_up": [0, 1700]}})
 
 

@@ -13,9 +13,6 @@ import numpy as np
 import pytest
 
 from train.learning.checkpoint import NAME as CHECKPOINT
-from train.learning.job import Job, run
-from train.learning.recipe import load_recipe
-from train.learning.session import Budget
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 
@@ -109,19 +106,14 @@ def events(folder):
 def test_a_training_that_is_killed_or_told_to_end_goes_on_to_the_same_weights(tmp_path):
     arguments = train_of(GRADIENT, tmp_path / "brief.toml")
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    recipe = load_recipe(tmp_path / "brief.toml")
-    job = Job("mine", recipe, "nominal", 0, Budget(updates=recipe.updates), {"preset": "thesis"})
-    run(job, whole, lambda progress: None)
+    finished(*arguments(whole))  # on as many threads as the others: sums depend on them
     generator = random.Random(0)
     for number in (signal.SIGKILL, signal.SIGTERM):
         earlier = events(broken)
         ended(number, generator.uniform(0.0, 0.3), *arguments(broken), ready=lambda earlier=earlier: events(broken) > earlier)
         assert_whole(broken)
-    run(job, broken, lambda progress: None, resume=True)
-    ours, theirs = weights(broken), weights(whole)
-    assert ours.keys() == theirs.keys()
-    for name in ours:  # to rounding: processes may sum over more or fewer threads
-        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-4, atol=1e-6)
+    finished(*arguments(broken))
+    assert weights(broken) == weights(whole)
     assert not [path for path in broken.iterdir() if path.name.startswith(".")]
 
 

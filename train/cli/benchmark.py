@@ -6,7 +6,7 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -56,33 +56,31 @@ def benchmark(
     with one_sentence(RESUMES):
         if docs is not None:
             check_folder(docs, "docs")
-        from train.benchmark.campaign import benchmark as run
-        from train.benchmark.showing.report import as_json as content
-
         home = default_folder(scenario or (), controller or (), seeds, model or ()) if folder is None else folder
-        with _Bar() as bar:
-            table = run(
-                scenarios=scenario or None,
-                controllers=controller or None,
-                seeds=seeds,
-                folder=home,
-                models=model or (),
-                trusted=trust,
-                jobs=jobs,
-                progress=bar.show,
-            )
+        table = _measured(
+            scenarios=scenario or None,
+            controllers=controller or None,
+            seeds=seeds,
+            folder=home,
+            models=model or (),
+            trusted=trust,
+            jobs=jobs,
+        )
         if docs is not None:
             from train.benchmark.showing.docs import write_docs
 
             write_docs(docs, table, shlex.join(["beamenv", *sys.argv[1:]]))
-    if as_json:
-        print_json(content(table))
-    else:
-        _show(table, home)
-    for where, sentence in table.sentences.items():
-        print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
+    _show(table, None if as_json else home)
     if table.sentences:
         raise typer.Exit(1)
+
+
+def _measured(**arguments: Any) -> BenchmarkTable:
+    """The benchmark, with its bar."""
+    from train.benchmark.campaign import benchmark as run
+
+    with _Bar() as bar:
+        return run(**arguments, progress=bar.show)
 
 
 def default_folder(scenarios: Sequence[str], controllers: Sequence[str], seeds: int, models: Sequence[Path]) -> Path:
@@ -119,7 +117,19 @@ class _Bar:
         self._bars.update(self._task, description=name.strip(), completed=done, total=total)
 
 
-def _show(table: BenchmarkTable, folder: Path) -> None:
+def _show(table: BenchmarkTable, folder: Path | None) -> None:
+    """For people, who are told the folder, or as JSON; and what could not be measured."""
+    from train.benchmark.showing.report import as_json
+
+    if folder is None:
+        print_json(as_json(table))
+    else:
+        _print(table, folder)
+    for where, sentence in table.sentences.items():
+        print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
+
+
+def _print(table: BenchmarkTable, folder: Path) -> None:
     """Two digits of each cell, never cut off however narrow the terminal is; the files hold the rest."""
     from rich import box
     from rich.table import Table

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -12,6 +12,9 @@ from rich.console import Console
 from beamenv.configuration import FileName, checked
 from train.cli.options import BladeOption, PresetOption, SpeedOption, environment_arguments, one_sentence
 from train.learning.recipes import NAMES
+
+if TYPE_CHECKING:
+    from train.learning.session import Budget
 
 
 def train(
@@ -45,16 +48,10 @@ def train(
         from train.controllers.policy_files import read_about
         from train.learning.job import Job, run
         from train.learning.recipe import load_recipe, named_recipe
-        from train.learning.session import Budget
 
         checked("agent", agent, FileName())
         chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
-        if minutes is not None and updates is not None:
-            raise ValueError("minutes and updates must not both be given.")
-        if minutes is not None:
-            budget = Budget(seconds=60.0 * minutes)
-        else:
-            budget = Budget(updates=chosen.updates if updates is None else updates)
+        budget = _budget(minutes, updates, chosen.updates)
         environment = environment_arguments(preset, speed, blade)
         home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
         job = Job(agent, chosen, scenario, seed, budget, environment, start)
@@ -64,3 +61,14 @@ def train(
         Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)
         if not read_about(places[0])["finished"]:
             raise KeyboardInterrupt
+
+
+def _budget(minutes: float | None, updates: int | None, otherwise: int) -> Budget:
+    """By the clock or by updates; ``otherwise`` are the recipe's."""
+    from train.learning.session import Budget
+
+    if minutes is None:
+        return Budget(updates=otherwise if updates is None else updates)
+    if updates is not None:
+        raise ValueError("minutes and updates must not both be given.")
+    return Budget(seconds=60.0 * minutes)

@@ -10,8 +10,12 @@ from beamenv.simulation.plants.run_up import Cycloid, RunUp
 
 
 def run_up_of(blade: Blade, course: Cycloid) -> RunUp:
-    """In the modes of the configured speed, with their damping; ``ValueError`` past the critical speed."""
+    """In the modes of the configured speed, with their damping; ``ValueError`` where the blade cannot turn so fast."""
     critical, speeds = blade.beam.critical_speed, [course.first, course.last]
     if max(speeds) >= critical:
         raise Refused("scenario.plants.spin_up", speeds, f"below the critical speed, {critical:.6g} rad/s")
+    try:
+        blade.beam.at(max(speeds))
+    except Refused:
+        raise Refused("scenario.plants.spin_up", speeds, "speeds at which the blade has a steady state") from None
     return (AboutRest if blade.config.model == "thesis" else AboutSteadyStates).of(blade, course)

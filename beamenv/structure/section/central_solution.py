@@ -12,7 +12,6 @@ exactly after two passes without pretwist. The section's stiffness is the invers
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,33 +101,25 @@ class Factorised:
         return Factorised(self.sums.first, self.inner[:1], self.coupling[:1], self.factors[:1], self.scale[:1], self.held[:1])
 
     def solve(self, loads: Array, resultants: Array) -> tuple[Array, Array]:
-        """As ``solve_and_tell``, without telling."""
-        return self.solve_and_tell(loads, resultants)[:2]
-
-    def solve_once(self, loads: Array, resultants: Array) -> tuple[Array, Array]:
         """Warping (V, lines, 12, c) and beam strain (V, 6, c) under nodal loads of the elements (V, K, size, c), not yet added up
-        where they meet, and resultants (V, 6, c); to as many digits as the factors have.
-        """
-        return self._solve(loads, resultants, np.zeros((len(loads), RIGID, loads.shape[-1])))
+        where they meet, and resultants (V, 6, c); ``ValueError`` where walls are so thin that too few digits are left.
 
-    def solve_and_tell(self, loads: Array, resultants: Array) -> tuple[Array, Array, bool]:
-        """As ``solve_once``, and corrected: what a solution leaves over is solved for in its turn, which tells by how much it was
-        wrong. ``ValueError`` where walls are so thin that too few digits are left. The last is whether once would have done.
+        What a solution leaves over is solved for in its turn, which tells by how much it was wrong.
         """
         sums = self.sums
-        warping, strain = self.solve_once(loads, resultants)
-        rounds, small = 0, False
-        while rounds < CORRECTIONS and not small:
+        warping, strain = self._solve(loads, resultants, np.zeros((len(loads), RIGID, loads.shape[-1])))
+        for _ in range(CORRECTIONS):
             here, whole, solved = sums.gather(warping), strain[:, None], self._in_units(warping, strain)
             left = loads - sums.warping @ here - sums.beam_strain @ whole
             missing = resultants - (sums.beam_strain.swapaxes(-1, -2) @ here + sums.beam @ whole).sum(axis=1)
             correction, more = self._solve(left, missing, self.held.swapaxes(-1, -2) @ solved[:, :-RIGID])
             wrong, size = (np.linalg.norm(each, axis=1) for each in (self._in_units(correction, more), solved))
             warping, strain = warping + correction, strain + more
-            rounds, small = rounds + 1, bool(np.all(wrong <= EXACT * size))
+            if np.all(wrong <= EXACT * size):
+                break
         if not np.all(wrong <= DOUBT * size):
             raise _too_thin(sums)
-        return warping, strain, small and rounds == 1
+        return warping, strain
 
     def _in_units(self, warping: Array, strain: Array) -> Array:
         """(V, 12 K + 6, c): displacements of the ends of elements and beam strain."""
@@ -230,7 +221,6 @@ def central_solution(system: Factorised, pretwist: float) -> CentralSolution:
     T, one = equilibrium(pretwist), np.broadcast_to(np.eye(RIGID), (sections, RIGID, RIGID))
     warping = np.zeros((sections, sums.lines, PER_LINE, RIGID))
     strain = np.zeros((sections, RIGID, RIGID))
-    solve: Callable[[Array, Array], tuple[Array, Array]] | None = None
     for _ in range(CYCLES):
         passes = [(warping, strain)]
         for _ in range(PASSES):
@@ -239,12 +229,7 @@ def central_solution(system: Factorised, pretwist: float) -> CentralSolution:
             stress = sums.cross.swapaxes(-1, -2) @ here + sums.derivative @ onward + sums.derivative_strain @ strain[:, None]
             loads = stress @ T - sums.cross @ onward
             resultants = one - (sums.derivative_strain.swapaxes(-1, -2) @ onward).sum(axis=1)
-            before = strain
-            if solve is None:
-                warping, strain, exact = system.solve_and_tell(loads, resultants)
-                solve = system.solve_once if exact else system.solve
-            else:
-                warping, strain = solve(loads, resultants)
+            before, (warping, strain) = strain, system.solve(loads, resultants)
             passes.append((warping, strain))
             change = np.abs(strain - before).max() / np.abs(strain).max()
             if converged := bool(change <= CONVERGED):
