@@ -196,16 +196,15 @@ def doubled(equation: SampledEquation) -> Array:
     taken = np.linalg.solve(equation.R, np.hstack([equation.N.T, equation.B.T]))
     A = equation.A - equation.B @ taken[:, :n]
     G, H = symmetric(equation.B @ taken[:, n:]), symmetric(equation.Q - equation.N @ taken[:, :n])
-    with np.errstate(over="ignore", invalid="ignore"):  # said below
-        for _ in range(_DOUBLINGS):
-            inner = np.linalg.solve(np.eye(n) + G @ H, np.hstack([A, G]))
-            more = symmetric(A.T @ H @ inner[:, :n])
-            A, G, H = A @ inner[:, :n], G + symmetric(A @ inner[:, n:] @ A.T), H + more
-            added, whole = np.linalg.norm(more), np.linalg.norm(H)
-            if not np.isfinite(whole):
-                break
-            if added <= 1e-15 * whole:
-                return np.asarray(H)
+    for _ in range(_DOUBLINGS):
+        inner = np.linalg.solve(np.eye(n) + G @ H, np.hstack([A, G]))
+        more = symmetric(A.T @ H @ inner[:, :n])
+        A, G, H = A @ inner[:, :n], G + symmetric(A @ inner[:, n:] @ A.T), H + more
+        added, whole = np.linalg.norm(more), np.linalg.norm(H)
+        if not np.isfinite(whole):
+            break
+        if added <= 1e-15 * whole:
+            return np.asarray(H)
     raise LinAlgError("doubling the interval does not converge")
 
 
