@@ -16,8 +16,8 @@ INTRODUCTION = """\
 # The benchmark
 
 Every controller in every scenario on the same held-out episodes. Controllers are built from the design plant and agents are used
-as shipped; neither knows what a scenario does to the true blade. The scenarios are the files in `beamenv/scenarios/named/`, the
-controllers those in `train/controllers/named/`: a further file there adds a column or a row.
+as shipped; neither knows what a scenario does to the true blade. The scenarios are `beamenv.BENCHMARK_SCENARIOS`, files in
+`beamenv/scenarios/named/`, the controllers those in `train/controllers/named/`: a further file there adds a column or a row.
 """
 
 
