@@ -20,11 +20,12 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.configuration import Count, Instance, checked
 from beamenv.plant.plant import Plant
-from beamenv.scenarios.scenario import Scenario
+from beamenv.scenarios.named import UNSEEN
+from beamenv.scenarios.scenario import SCENARIOS, Scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.banks import build_bank
-from beamenv.simulation.signals.faults import DRAWS, Faults, draw_faults
+from beamenv.simulation.signals.faults import DRAWS, Faults, Onsets, draw_faults, draw_onsets, fault_draws
 
 TIERS: Mapping[int, str] = MappingProxyType(
     {0: "the nominal plant", 1: "the scenario's distribution", 2: "further measurements", 3: "the episode's truth"}
@@ -44,6 +45,8 @@ class Hypotheses(NamedTuple):
     plant: NDArray[np.int64]
     """(H,) places in the bank."""
     faults: Faults
+    onsets: Onsets | None
+    """When they set in; None where it is at the start."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,7 +58,7 @@ class Prior:
     """
 
     blade: Blade
-    """The blade that plants depart from: the true one, but for a plant file, which nobody is told of."""
+    """The blade that plants depart from: the true one, or the design's where the truth is kept for judging."""
     design_blade: Blade
     scenario: Scenario
     """With the seed of the training bank."""
@@ -83,11 +86,13 @@ class Prior:
 
     def hypotheses(self, count: int) -> Hypotheses:
         """``count`` of them, drawn as the episodes of tuning draw theirs."""
-        uniforms = np.stack([each.random(DRAWS) for each in self.generators(checked("count", count, Count()))])
+        failures = self.scenario.failures
+        uniforms = np.stack([each.random(fault_draws(failures)) for each in self.generators(checked("count", count, Count()))])
         m, p = self.blade.truth.B.shape[1], len(self.blade.truth.C)
         drawn = len(self.bank) > 1 and not self.bank.runs
         place = (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn else np.zeros(len(uniforms), dtype=np.int64)
-        return Hypotheses(place, draw_faults(self.scenario.failures, self.scenario.drive.delay, uniforms, m, p))
+        begins = draw_onsets(failures, self.bank.plant.control_interval, uniforms[:, DRAWS:]) if failures.drawn_instants else None
+        return Hypotheses(place, draw_faults(failures, self.scenario.drive.delay, uniforms, m, p), begins)
 
     def generators(self, count: int) -> list[np.random.Generator]:
         """Of the first ``count`` episodes of tuning: one for each blade, as environments make them of a seed."""
@@ -125,7 +130,16 @@ def on_training_bank(scenario: Scenario) -> Scenario:
     return replace(scenario, plants=replace(scenario.plants, seed=scenario.plants.seed + 1))
 
 
-def without_plant_file(scenario: Scenario) -> Scenario:
-    """The scenario as designers know it where a plant file moves, which is kept for judging."""
-    plants = scenario.plants
-    return scenario if plants.truth is None else replace(scenario, plants=replace(plants, truth=None, modes=None))
+def kept_for_judging(scenario: Scenario) -> bool:
+    """Whether nobody is told of it: a plant file moves, or it is one of ``UNSEEN``."""
+    return scenario.plants.truth is not None or any(scenario == SCENARIOS[name] for name in UNSEEN)
+
+
+def without_faults(scenario: Scenario) -> Scenario:
+    """The scenario's loads on the blade as it was designed, with nothing known to be wrong on the way to it and back."""
+    return replace(
+        scenario, plants=_NOTHING.plants, drive=_NOTHING.drive, acquisition=_NOTHING.acquisition, failures=_NOTHING.failures
+    )
+
+
+_NOTHING = Scenario()

@@ -21,7 +21,7 @@ from beamenv.blade.given import given_blade
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
 from beamenv.configuration.numbers import UNBOUNDED
-from beamenv.knowledge import TIERS, TRUTH, Prior, Truth, on_training_bank, without_plant_file
+from beamenv.knowledge import TIERS, TRUTH, Prior, Truth, kept_for_judging, on_training_bank, without_faults
 from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.sampling import check_frequencies, largest_speed
@@ -93,10 +93,10 @@ class Task:
     @cached_property
     def prior(self) -> Prior:
         """What a controller of tier 1 may be built from."""
-        blades = self.blade, self.design_blade
-        if self.scenario.plants.truth is not None:
-            blades = (_alive(_BLADES, Blade(self.design_config)),) * 2  # the design blade may know the file's plant as its own
-        return Prior(*blades, on_training_bank(without_plant_file(self.scenario)), self.steps)
+        if kept_for_judging(self.scenario):
+            own = _alive(_BLADES, Blade(self.design_config))  # the design blade may have a plant file's modes
+            return Prior(own, own, on_training_bank(without_faults(self.scenario)), self.steps)
+        return Prior(self.blade, self.design_blade, on_training_bank(self.scenario), self.steps)
 
     @property
     def truth(self) -> Truth:

@@ -78,3 +78,22 @@ def test_a_prior_is_refused_what_it_cannot_hold():
         beamenv.Prior(None, known.design_blade, known.scenario, 3)
     with pytest.raises(ValueError, match="prior.steps is 0"):
         beamenv.Prior(known.blade, known.design_blade, known.scenario, 0)
+
+
+def test_hypotheses_of_what_breaks_within_the_episode_tell_when():
+    given = task("mid-failure")
+    drawn = given.prior.hypotheses(12)
+    blades = given.prior.blades(12)
+    blades.begin(given.prior.generators(12))
+    assert np.array_equal(drawn.onsets.actuators, blades.electronics.state_dict()["onsets"]["actuators"])
+    assert np.array_equal(drawn.faults.actuator_gain, blades.electronics.state_dict()["faults"]["actuator_gain"])
+    assert task("failure").prior.hypotheses(2).onsets is None
+
+
+@pytest.mark.parametrize("name", beamenv.UNSEEN_SCENARIOS)
+def test_of_what_is_kept_for_judging_a_prior_tells_the_loads_alone(name):
+    told, true = task(name).prior.scenario, beamenv.SCENARIOS[name]
+    assert (told.shares, told.magnitude, told.rotor) == (true.shares, true.magnitude, true.rotor)
+    assert not told.imperfect
+    assert not told.plants.varies
+    assert told.plants.truth is None

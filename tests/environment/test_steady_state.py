@@ -10,6 +10,7 @@ import beamenv
 from beamenv.blade.build import Blade
 from beamenv.envs.batch import RotatingBeamVectorEnv
 from beamenv.envs.single import RotatingBeamEnv
+from beamenv.scenarios.named import NAMES
 from beamenv.scenarios.scenario import scenario
 from beamenv.simulation.plants.banks import build_bank
 from beamenv.simulation.plants.run_up import Cycloid
@@ -149,7 +150,7 @@ def test_a_run_up_strains_the_blade_by_each_speed_s_steady_state_and_by_euler_s_
     assert bank.steady[-1] == pytest.approx(state_of(blade.config, 100.0))
 
 
-@pytest.mark.parametrize("name", [name for name in beamenv.BENCHMARK_SCENARIOS if not name.startswith("solid")])
+@pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("solid")])
 def test_the_sound_blade_survives_every_scenario(name):
     few = {"plants": {"bank": 8}} if name in ("off-model", "off-speed") else {}
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, preset="sound-blade", scenario={"preset": name, **few})
