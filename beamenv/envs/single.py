@@ -289,6 +289,11 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         """() rad/s: what a tachometer shows now."""
         return self._blade.speed
 
+    @property
+    def episode_truth(self) -> Array:
+        """(2 + m + 2 p): which plant of the bank moves, and what is wrong now: see ``Blades.truth``."""
+        return self._blade.truth
+
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[NDArray[Any], dict[str, Any]]:
         """Begin an episode; ``options`` may fix its "load" or give its "initial_state" (see the class)."""
         scenario, initial_state = reset_options(self.task, options, rows=1)

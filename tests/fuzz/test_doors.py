@@ -100,7 +100,7 @@ def test_a_door_refuses_in_a_sentence_or_takes_what_was_meant_three_hundred_time
 RECORDS = {
     "BENCHMARK_SCENARIOS", "ENV_ID", "OPEN_SCENARIOS", "PRESETS", "SCENARIOS", "UNSEEN_SCENARIOS",  # no callables
     "Controller", "Episodes", "EpisodeMetrics", "Estimate", "Evaluation", "StabilityMargins",  # what functions give
-    "PredictiveController", "ScheduledLQG",  # what mpc and scheduled_lqg give
+    "PredictiveController", "ScheduledLQG", "ClairvoyantLQG",  # what mpc, scheduled_lqg and clairvoyant_lqg give
     "BeamConfig",
 }  # fmt: skip
 
