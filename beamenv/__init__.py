@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
     from beamenv.envs.single import RotatingBeamEnv
     from beamenv.envs.stable_baselines import BladeVecEnv
+    from beamenv.knowledge import Prior
     from beamenv.patches import PatchLayout
     from beamenv.plant.files import load_plant, save_plant
     from beamenv.plant.modal_plant import ModalPlant
@@ -49,6 +50,7 @@ _HOMES = {
     "PRESETS": "blade.presets",
     "BladeConfig": "blade.config",
     "Design": "blade.design",
+    "Prior": "knowledge",
     "blade_config": "blade.presets",
     "build_plant": "blade.build",
     "RotatingBeamEnv": "envs.single",
@@ -85,6 +87,7 @@ __all__ = [
     "PatchLayout",
     "PlacementWrapper",
     "Plant",
+    "Prior",
     "RotatingBeam",
     "RotatingBeamEnv",
     "RotatingBeamVectorEnv",
