@@ -136,7 +136,10 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     | `overload`   | steps of 500 N/m: the actuators saturate, the sensors clip                                             |
     | `solid`      | the blade is a solid of three dimensions (finite elements, 11 modes), the design plant is the beam's   |
     | `solid-20`   | the same solid with 20 modes                                                                           |
-    | `mid-failure` | an actuator or a sensor dies, 0.05 … 0.3 s into the episode                                           |
+    | `mid-failure` | an actuator or a sensor dies, 0.05 … 0.3 s into the episode                                         |
+    | `unknown-everything` | speed, plies, mass, hysteresis, delay, lost readings, a weak actuator, a bias, rotor loads: all mild |
+    | `off-speed-failure`, `delay-off-model`, `delay-failure`, `hysteresis-rotor` | both of what the name says               |
+    | `long-delay`, `two-dead-actuators`, `biased-sensor` | voltages 4 control intervals late; two dead; by 30 % of full scale |
 
     A file of one's own (`scenario="gusts.toml"`) or a dictionary may depart from any of them by `preset`, table by table:
 

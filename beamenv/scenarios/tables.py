@@ -94,7 +94,9 @@ class Failures:
     """What is broken in an episode, from its start or from a drawn instant on; which one is drawn, every one equally likely."""
 
     dead_actuators: Natural = 0
-    """Actuators that do nothing and store nothing."""
+    """Actuators that do nothing and store nothing, or less than they should."""
+    remaining: Annotated[Pair, Range(0.0, 1.0)] = (0.0, 0.0)
+    """What is left of the effect of an actuator that is not quite dead: the share of its voltage that acts."""
     faulty_sensors: Natural = 0
     """Sensors that are dead (noise alone) or biased."""
     biased_share: Share = 0.5

@@ -31,7 +31,7 @@ class Faults:
     delay: Any
     """(N,) control intervals."""
     actuator_gain: Any
-    """(N, m): 0 for a dead one."""
+    """(N, m): 0 for a dead one, 1 for a sound one."""
     sensor_gain: Any
     """(N, p): 0 for a dead one."""
     sensor_bias: Any
@@ -101,11 +101,13 @@ def draw_faults(failures: Failures, delay: tuple[int, int], uniforms: NDArray[np
     """Faults of N blades from uniform numbers (N, ``DRAWS``)."""
     count = len(uniforms)
     bias = failures.bias[0] + (failures.bias[1] - failures.bias[0]) * np.abs(2.0 * uniforms[:, 5] - 1.0)
+    low, high = failures.remaining
+    lost = 1.0 - low - (high - low) * (uniforms[:, 2] * actuators % 1.0)  # which one it is does not say what is left of it
     faulty = _drawn(uniforms[:, 3], failures.faulty_sensors, sensors)
     biased = (uniforms[:, 4] < failures.biased_share)[:, None]
     return Faults(
         delay=delay[0] + np.floor(uniforms[:, 1] * (delay[1] - delay[0] + 1)).astype(np.int64),
-        actuator_gain=1.0 - _drawn(uniforms[:, 2], failures.dead_actuators, actuators),
+        actuator_gain=1.0 - lost[:, None] * _drawn(uniforms[:, 2], failures.dead_actuators, actuators),
         sensor_gain=np.where(faulty & ~biased, 0.0, np.ones((count, sensors))),
         sensor_bias=np.where(faulty & biased, (np.sign(uniforms[:, 5] - 0.5) * bias)[:, None], 0.0),
     )
