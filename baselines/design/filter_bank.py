@@ -86,7 +86,7 @@ class FilterBank(ReadOnly):
             output=np.stack([each.C.T for each in same]),
             cross=cross,
             covariance=covariance,
-            inverse=np.linalg.inv(covariance),
+            inverse=np.asarray(np.linalg.inv(covariance), dtype=np.float64),
             log_determinant=np.linalg.slogdet(covariance)[1],
             full_scale=full_scale,
             holds=np.array(holds, dtype=bool),
@@ -105,7 +105,7 @@ class FilterBank(ReadOnly):
     def corrections(self, instant: Array, predicted: Array, reading: Array, lost: NDArray[np.bool_]) -> Correction:
         """From predicted states (H, N, s) and readings (N, p) in A, each blade at an ``instant`` (N,) of its own.
 
-        A reading is predicted as it will be taken, clipped. A lost one tells no likelihood anything, nor a filter that holds it for lost.
+        A reading is predicted as it will be taken, clipped. A lost one counts in no likelihood, nor for filters that know.
         """
         expected = np.matmul(predicted, self.output)
         innovation = reading - np.minimum(np.maximum(expected, -self.full_scale), self.full_scale)

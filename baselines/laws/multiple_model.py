@@ -32,13 +32,14 @@ FLOOR = 1e-6
 """Least weight of a hypothesis: one that has been ruled out can be right later."""
 
 WINDOW = 40
-"""Instants over which the test of fit remembers: one period of the default blade's first mode is some 70."""
+"""Instants over which the test of fit remembers: the default blade's first mode has a period of some 70."""
 
 CONFIDENCE = 1.0 - 1e-9
 """Of the test of fit in Gaussian noise."""
 
-ALLOWANCE = 10.0
-"""Times χ²'s quantile: the loads of episodes are no Gaussian noise, and what a step brings is no misfit."""
+ALLOWANCE = 30.0
+"""Times χ²'s quantile. The loads of episodes are no Gaussian noise: where a hypothesis is right, a step brings up to 25 times for a
+moment, while the wrong one is not yet ruled out; what lets a law become unstable brings thousands."""
 
 
 def multiple_model(
@@ -160,9 +161,9 @@ def _part(hypothesis: Hypothesis, regulated: Solution, depth: int, biased: bool,
 def late(held: SampledPlant, gain: Array, delay: int, depth: int) -> tuple[Array, Array]:
     """Gains (m, n) from the state and (m, m depth) from the voltages before, newest first, of voltages that act late.
 
-    ``gain`` (m, n) or (m, n + m) is the best without ``delay``, from the state and, with a price on changes, from u₋₁. What is asked
-    for answers the state as it will be when it acts, A^d x + Σ A^(i−1) B u₋ᵢ: all costs come d intervals later and are the same
-    (Artstein, IEEE Trans. Automatic Control 27, 1982).
+    ``gain`` (m, n) or (m, n + m) is the best without ``delay``, from the state and, with a price on changes, from u₋₁. What is
+    asked for answers the state as it will be when it acts, A^d x + Σ A^(i−1) B u₋ᵢ: all costs come d intervals later and are the
+    same (Artstein, IEEE Trans. Automatic Control 27, 1982).
     """
     n, m = held.B.shape
     K, before = gain[:, :n], np.zeros((m, m * depth))
