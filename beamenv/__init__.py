@@ -1,6 +1,6 @@
 """Vibration control of rotating thin-walled composite blades: structure, patches, plant and Gymnasium environments.
 
-Importing this package registers ``beamenv/RotatingBeam-v0``, single and batched, and for each scenario of the benchmark, say
+Importing this package registers ``beamenv/RotatingBeam-v0``, single and batched, and for each scenario with a file, say
 "overload", ``beamenv/RotatingBeam-overload-v0``.
 """
 
@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 
 from beamenv import wings
-from beamenv.scenarios.named import NAMES as BENCHMARK_SCENARIOS
+from beamenv.scenarios.named import BENCHMARK as BENCHMARK_SCENARIOS
+from beamenv.scenarios.named import NAMES
+from beamenv.scenarios.named import OPEN as OPEN_SCENARIOS
+from beamenv.scenarios.named import UNSEEN as UNSEEN_SCENARIOS
 
 if TYPE_CHECKING:
     from beamenv.blade.build import build_plant
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
     from beamenv.envs.single import RotatingBeamEnv
     from beamenv.envs.stable_baselines import BladeVecEnv
+    from beamenv.knowledge import Prior
     from beamenv.patches import PatchLayout
     from beamenv.plant.files import load_plant, save_plant
     from beamenv.plant.modal_plant import ModalPlant
@@ -46,6 +50,7 @@ _HOMES = {
     "PRESETS": "blade.presets",
     "BladeConfig": "blade.config",
     "Design": "blade.design",
+    "Prior": "knowledge",
     "blade_config": "blade.presets",
     "build_plant": "blade.build",
     "RotatingBeamEnv": "envs.single",
@@ -68,6 +73,7 @@ _HOMES = {
 __all__ = [
     "BENCHMARK_SCENARIOS",
     "ENV_ID",
+    "OPEN_SCENARIOS",
     "PRESETS",
     "SCENARIOS",
     "BeamConfig",
@@ -81,12 +87,14 @@ __all__ = [
     "PatchLayout",
     "PlacementWrapper",
     "Plant",
+    "Prior",
     "RotatingBeam",
     "RotatingBeamEnv",
     "RotatingBeamVectorEnv",
     "SampledPlant",
     "Scenario",
     "SensorHistory",
+    "UNSEEN_SCENARIOS",
     "VectorPlacementWrapper",
     "VectorSensorHistory",
     "blade_config",
@@ -125,5 +133,5 @@ def _register(env_id: str, **arguments: str) -> None:
 
 wings.install()
 _register(ENV_ID)
-for _name in BENCHMARK_SCENARIOS:
+for _name in NAMES:
     _register(f"beamenv/RotatingBeam-{_name}-v0", scenario=_name)

@@ -19,8 +19,9 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
 from beamenv.blade.presets import PRESETS, blade_config
-from beamenv.configuration import Choice, Flag, Number, Refused, checked, checked_table, read
+from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
 from beamenv.configuration.numbers import UNBOUNDED
+from beamenv.knowledge import TIERS, TRUTH, Prior, Truth, kept_for_judging, on_training_bank, without_faults
 from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.sampling import check_frequencies, largest_speed
@@ -86,13 +87,26 @@ class Task:
 
     @property
     def design(self) -> Design:
-        """All that a controller may be built from."""
+        """What a controller of tier 0 may be built from (``beamenv.knowledge``)."""
         return Design(self.design_plant, self.design_config)
 
+    @cached_property
+    def prior(self) -> Prior:
+        """What a controller of tier 1 may be built from."""
+        if kept_for_judging(self.scenario):
+            own = _alive(_BLADES, Blade(self.design_config))  # the design blade may have a plant file's modes
+            return Prior(own, own, on_training_bank(without_faults(self.scenario)), self.steps)
+        return Prior(self.blade, self.design_blade, on_training_bank(self.scenario), self.steps)
+
     @property
-    def true_design(self) -> Design:
-        """What a bound may be built from: the true plant in place of the design's, or the one that all drawn ones depart from."""
-        return Design(self.plant, self.config)
+    def truth(self) -> Truth:
+        """What a controller of tier 3 may be built from."""
+        return Truth(self.design, self.config, self.bank, self.scenario, self.steps)
+
+    def told(self, tier: int) -> Design | Prior | Truth:
+        """What a controller of that tier may be built from, and no more; ``ValueError`` for a tier that is not in ``TIERS``."""
+        tier = checked("tier", tier, Count(0, max(TIERS)))
+        return self.design if tier == 0 else self.truth if tier == TRUTH else self.prior
 
     @cached_property
     def bank(self) -> Bank:

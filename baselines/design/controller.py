@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Literal, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
@@ -14,6 +15,9 @@ from beamenv.configuration import shown
 Array = NDArray[np.float64]
 Observes = Literal["observation", "state", "observation and speed"]
 """What ``predict`` wants: the sensors' readings, the true state, or the readings (p,) with the rotor speed in rad/s behind them."""
+
+LEAST_TIER: Mapping[str, int] = MappingProxyType({"observation": 0, "observation and speed": 2, "state": 3})
+"""The least tier of information (``beamenv.knowledge``) at which each of these may be seen."""
 
 
 @runtime_checkable

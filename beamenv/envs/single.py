@@ -119,7 +119,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
 
     ## Scenarios
 
-    A scenario is what may happen to a blade in an episode: loads, noises, and what is wrong with it. Those of the benchmark are
+    A scenario is what may happen to a blade in an episode: loads, noises, and what is wrong with it. Those with names are
     TOML files, each an environment of its own: `beamenv/RotatingBeam-overload-v0`. What is not named is as in the default.
 
     | Scenario     | What it has                                                                                            |
@@ -136,6 +136,10 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     | `overload`   | steps of 500 N/m: the actuators saturate, the sensors clip                                             |
     | `solid`      | the blade is a solid of three dimensions (finite elements, 11 modes), the design plant is the beam's   |
     | `solid-20`   | the same solid with 20 modes                                                                           |
+    | `mid-failure` | an actuator or a sensor dies, 0.05 … 0.3 s into the episode                                         |
+    | `unknown-everything` | speed, plies, mass, hysteresis, delay, lost readings, a weak actuator, a bias, rotor loads: all mild |
+    | `off-speed-failure`, `delay-off-model`, `delay-failure`, `hysteresis-rotor` | both of what the name says               |
+    | `long-delay`, `two-dead-actuators`, `biased-sensor` | voltages 4 control intervals late; two dead; by 30 % of full scale |
 
     A file of one's own (`scenario="gusts.toml"`) or a dictionary may depart from any of them by `preset`, table by table:
 

@@ -76,8 +76,8 @@ def _load_cases(chosen: Scenario, interval: float, lowest_frequency: Any, unifor
     magnitude[case == CASES.index("none")] = 0.0
     direction = np.radians(_within(chosen.direction_deg, uniforms[:, 2]))
     load = magnitude[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
-    onset = _intervals(_within(chosen.onset, uniforms[:, 3]), interval)
-    lasting = np.maximum(_intervals(_within(chosen.duration, uniforms[:, 4]), interval), 1)
+    onset = whole_intervals(_within(chosen.onset, uniforms[:, 3]), interval)
+    lasting = np.maximum(whole_intervals(_within(chosen.duration, uniforms[:, 4]), interval), 1)
     with np.errstate(over="ignore"):  # of what no load case draws
         ratio = _within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval
     rate = np.minimum(ratio, np.pi)
@@ -102,7 +102,7 @@ def _choose(chosen: Scenario, uniform: NDArray[np.float64]) -> NDArray[np.int64]
     return np.searchsorted(thresholds, uniform, side="right").astype(np.int64)
 
 
-def _intervals(time: NDArray[np.float64], interval: float) -> NDArray[np.int64]:
+def whole_intervals(time: NDArray[np.float64], interval: float) -> NDArray[np.int64]:
     """Whole control intervals in a time (s), no more than may be added up: what sets in later never does."""
     with np.errstate(over="ignore"):
         return np.minimum(np.rint(time / interval), float(NEVER // 4)).astype(np.int64)

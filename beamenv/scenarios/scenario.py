@@ -110,7 +110,7 @@ _SCENARIOS: dict[str, Scenario] = {
 }
 SCENARIOS: Mapping[str, Scenario] = MappingProxyType(_SCENARIOS)
 """Named scenarios: all four load cases in turn; each one alone; white load and sensor noise only (what an LQG is
-designed for); nothing at all; and the benchmark's, a file each."""
+designed for); nothing at all; and those that have a file each."""
 
 
 def scenario(given: Scenario | Mapping[str, Any] | str | os.PathLike[str] | None = None) -> Scenario:
@@ -161,8 +161,17 @@ def _named(name: Any, path: str = "scenario") -> Scenario:
     return SCENARIOS[name]
 
 
-for _name in NAMES:
-    _SCENARIOS[_name] = scenario(parsed_table(files(named).joinpath(f"{_name}.toml").read_text(encoding="utf-8"), f"{_name}.toml"))
+def _read_in(name: str, unread: dict[str, dict[str, Any]]) -> None:
+    """Put a file's scenario among those with names, and before it the one that it departs from."""
+    content = unread.pop(name)
+    if (base := content.get(PRESET)) in unread:
+        _read_in(base, unread)
+    _SCENARIOS[name] = scenario(content)
+
+
+_UNREAD = {name: parsed_table(files(named).joinpath(f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml") for name in NAMES}
+while _UNREAD:
+    _read_in(next(iter(_UNREAD)), _UNREAD)
 
 
 LOAD_OPTIONS = ("case", "magnitude", "direction_deg", "onset", "duration", "frequency_ratio", "phase_deg")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from beamenv.configuration import Count, NameOrFile, Natural, Number, Numbers, Range, Refused, Share, configuration
+from beamenv.configuration import Count, Flag, NameOrFile, Natural, Number, Numbers, Range, Refused, Share, configuration
 from beamenv.plant.limits import VOLTAGES
 from beamenv.plant.named import ENDING, NAMES
 
@@ -91,16 +91,27 @@ class Acquisition:
 
 @configuration("scenario.failures")
 class Failures:
-    """What is broken from the start of an episode; which one is drawn, every one equally likely."""
+    """What is broken in an episode, from its start or from a drawn instant on; which one is drawn, every one equally likely."""
 
     dead_actuators: Natural = 0
-    """Actuators that do nothing and store nothing."""
+    """Actuators that do nothing and store nothing, or less than they should."""
+    remaining: Annotated[Pair, Range(0.0, 1.0)] = (0.0, 0.0)
+    """What is left of the effect of an actuator that is not quite dead: the share of its voltage that acts."""
     faulty_sensors: Natural = 0
     """Sensors that are dead (noise alone) or biased."""
     biased_share: Share = 0.5
     """Share of faulty sensors that are biased instead of dead."""
     bias: Annotated[Pair, Range(0.0, 1.0)] = (0.05, 0.2)
     """Of full scale, of either sign."""
+    onset: Annotated[Pair, Range(0.0, unit="s")] = (0.0, 0.0)
+    """s: when actuators and when sensors break, an instant of its own for each; they are sound before."""
+    either: Annotated[bool, Flag()] = False
+    """Whether it is actuators or sensors that break in an episode, equally likely, instead of both."""
+
+    @property
+    def drawn_instants(self) -> bool:
+        """Whether what breaks is not just broken from the start."""
+        return self.either or self.onset != (0.0, 0.0)
 
 
 @configuration("scenario.rotor")

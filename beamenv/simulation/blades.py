@@ -21,6 +21,7 @@ from beamenv.simulation.plants.allotment import Allotment
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 from beamenv.simulation.signals.electronics import Electronics
+from beamenv.simulation.signals.faults import fault_draws
 from beamenv.simulation.strain_limit import FAILURE_STRAIN as FAILURE_STRAIN
 from beamenv.simulation.strain_limit import safe_energy, strained_too_much
 
@@ -73,6 +74,8 @@ class Blades:
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
         self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
+        self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
+        self._changing = self.bank.runs or (self.electronics is not None and self.electronics.changing)
         own = self.plant, *self.bank.others
         self._lowest_frequency = np.array([plant.natural_frequencies[0] for plant in own])
         per_cost = np.array([-1.0 / reward_scale(plant) for plant in own])
@@ -173,7 +176,7 @@ class Blades:
             turbulence = Turbulence.of(self.plant, scenario)
             self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence)
         assert self._disturbances is not None
-        numbers = draw(scenario, generators, rows, self.plants.group, self._disturbances.columns, self._chance_at_begin)
+        numbers = draw(scenario, generators, rows, self.plants.group, self._disturbances.columns, self._fault_draws)
         self._begin_plants_and_faults(rows, numbers.faults)
         index = self.plants.index[rows]
         lowest = self._lowest_frequency[self.plants.group[rows]]
@@ -192,11 +195,6 @@ class Blades:
         self._squares[at] = state[:, : self.plant.blade_states] ** 2
         motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
-
-    @property
-    def _chance_at_begin(self) -> bool:
-        """Whether a scenario leaves plants or faults to chance; else nothing is drawn for them."""
-        return self.plants.drawn or self.electronics is not None
 
     def _begin_plants_and_faults(self, rows: Rows, uniforms: Array) -> None:
         """Which plant each blade has, and what is wrong with it."""
@@ -244,7 +242,8 @@ class Blades:
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = weighted(np.square(then.energetic, out=self._squares), self._halves)
         effort = row_dot(self._multiply(now.voltages, self.plants.effort_weight, self._weighted), now.voltages)
-        self.elapse()
+        if self._changing:
+            self.elapse()
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
         return Motion(
@@ -259,9 +258,11 @@ class Blades:
         )
 
     def elapse(self) -> None:
-        """One control interval later: where plants follow one another, the next is on."""
+        """One control interval later: where plants follow one another, the next is on; what breaks then is broken."""
         if self.bank.runs:
             self.plants.follow()
+        if self.electronics is not None:
+            self.electronics.elapse()
 
     def state_dict(self) -> dict[str, Any]:
         """What moves, from the first ``begin`` on: copies of arrays, in dictionaries; the generators are the caller's.

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from beamenv.scenarios.drawing import DRAWS as LOAD_DRAWS
 from beamenv.scenarios.drawing import draw_uniforms
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.signals.faults import DRAWS as FAULT_DRAWS
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -22,7 +21,7 @@ class Numbers(NamedTuple):
     """Random numbers that k beginning episodes take, in the order in which they are drawn."""
 
     faults: Array
-    """(k, ``FAULT_DRAWS``) uniform, or (k, 0): plant and faults."""
+    """(k, f) uniform: plant and faults."""
     load: Array
     """(k, ``LOAD_DRAWS``) uniform: load case."""
     turns: Array
@@ -31,12 +30,12 @@ class Numbers(NamedTuple):
     """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
 
 
-def draw(scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: bool) -> Numbers:
+def draw(scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: int) -> Numbers:
     """The numbers of the episodes of ``rows``: one generator for all serves one group of blades after the other.
 
-    ``group`` (N,) is each blade's, ``columns`` is c; without ``faults`` nothing is drawn for plants and faults.
+    ``group`` (N,) is each blade's, ``columns`` is c and ``faults`` f, 0 where nothing is drawn for plants and faults.
     """
-    widths = FAULT_DRAWS if faults else 0, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
+    widths = faults, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
     if not isinstance(generators, np.random.Generator):
         own = [generators[row] for row in rows]
         first, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)

@@ -11,13 +11,14 @@ SCENARIOS = [
     "default",
     "delay",
     "failure",
+    {"preset": "mid-failure", "failures": {"onset": [0.0, 0.05]}},
     "hysteresis",
     "rotor",
     {"acquisition": {"dropout": 0.2}, "rotor": {"turbulence": 5.0}},
     {"plants": {"spin_up": [100.0, 150.0]}},
     {"plants": {"speed_ratio": [0.7, 1.3], "bank": 3}},
 ]
-IDS = [*SCENARIOS[:5], "dropout and turbulence", "run-up", "drawn plants"]
+IDS = [*SCENARIOS[:3], "failure on the way", *SCENARIOS[4:6], "dropout and turbulence", "run-up", "drawn plants"]
 
 
 def batch_of(scenario, count):

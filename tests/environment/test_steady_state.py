@@ -10,7 +10,8 @@ import beamenv
 from beamenv.blade.build import Blade
 from beamenv.envs.batch import RotatingBeamVectorEnv
 from beamenv.envs.single import RotatingBeamEnv
-from beamenv.scenarios.scenario import scenario
+from beamenv.scenarios.named import NAMES
+from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.plants.banks import build_bank
 from beamenv.simulation.plants.run_up import Cycloid
 from beamenv.simulation.strain_limit import FAILURE_STRAIN, safe_energy
@@ -149,9 +150,9 @@ def test_a_run_up_strains_the_blade_by_each_speed_s_steady_state_and_by_euler_s_
     assert bank.steady[-1] == pytest.approx(state_of(blade.config, 100.0))
 
 
-@pytest.mark.parametrize("name", [name for name in beamenv.BENCHMARK_SCENARIOS if not name.startswith("solid")])
+@pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("solid")])
 def test_the_sound_blade_survives_every_scenario(name):
-    few = {"plants": {"bank": 8}} if name in ("off-model", "off-speed") else {}
+    few = {"plants": {"bank": 8}} if SCENARIOS[name].plants.varies else {}
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, preset="sound-blade", scenario={"preset": name, **few})
     envs.reset(seed=0)
     assert not any(envs.step(np.zeros((8, 4)))[2].any() for _ in range(999))

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 import beamenv
 from beamenv.blade import BeamConfig, BladeConfig
+from beamenv.blade.build import Blade
 from beamenv.blade.electronics import ElectronicsConfig
 from beamenv.patches import PatchLayout
 from beamenv.patches.material import MFC, PatchMaterial
@@ -232,6 +233,13 @@ DOORS = [
         {"config": instance(BladeConfig)},
         lambda: {"config": small.config()},
         public="build_plant",
+    ),
+    Door(
+        "Prior",
+        lambda **given: beamenv.Prior(**given),
+        {"blade": instance(Blade), "design_blade": instance(Blade), "scenario": instance(Scenario), "steps": COUNT},
+        lambda: {"blade": Blade(small.config()), "design_blade": Blade(small.config()), "scenario": scenario(), "steps": 3},
+        public="Prior",
     ),
     Door(
         "Design",

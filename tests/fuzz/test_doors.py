@@ -98,7 +98,7 @@ def test_a_door_refuses_in_a_sentence_or_takes_what_was_meant_three_hundred_time
 
 
 RECORDS = {
-    "BENCHMARK_SCENARIOS", "ENV_ID", "PRESETS", "SCENARIOS",  # no callables
+    "BENCHMARK_SCENARIOS", "ENV_ID", "OPEN_SCENARIOS", "PRESETS", "SCENARIOS", "UNSEEN_SCENARIOS",  # no callables
     "Controller", "Episodes", "EpisodeMetrics", "Estimate", "Evaluation", "StabilityMargins",  # what functions give
     "PredictiveController", "ScheduledLQG",  # what mpc and scheduled_lqg give
     "BeamConfig",

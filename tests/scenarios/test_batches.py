@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 import beamenv
-from beamenv import BENCHMARK_SCENARIOS, RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv.scenarios.named import NAMES
+from beamenv.scenarios.scenario import SCENARIOS
 
 SEEDS = [3, 4, 5, 6, 7]
 
+DRAWN = [name for name in NAMES if SCENARIOS[name].plants.varies]
 SMALL = {
-    "off-speed": {"preset": "off-speed", "plants": {"bank": 6}},
-    "off-model": {"preset": "off-model", "plants": {"bank": 6}},
+    **{name: {"preset": name, "plants": {"bank": 6}} for name in DRAWN},
+    "mid-failure": {"preset": "mid-failure", "failures": {"onset": [0.0, 0.02]}},
     "spin-up": {"preset": "spin-up", "plants": {"spin_up": [199.9, 200.1]}},  # in 20 ms more would break the blade
 }
 
@@ -40,7 +43,7 @@ def same(expected, actual):
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
-@pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
+@pytest.mark.parametrize("name", NAMES)
 def test_a_batch_is_its_blades_alone_through_several_episodes(name, mode):
     """Plant, faults, loads, noise and lost readings are the same for the same seed, bit by bit of what is drawn."""
     arguments = {"scenario": SMALL.get(name, name), "duration": 0.02}
@@ -56,7 +59,7 @@ def test_a_batch_is_its_blades_alone_through_several_episodes(name, mode):
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
-@pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
+@pytest.mark.parametrize("name", NAMES)
 def test_blades_out_of_step_are_still_their_blades_alone(name, mode):
     """Staggered by options["elapsed"], the episodes end one after another; each blade is followed through its second one."""
     elapsed = np.array([0, 7, 19, 33, 38])
@@ -88,7 +91,7 @@ def test_blades_out_of_step_are_still_their_blades_alone(name, mode):
 
 @pytest.mark.parametrize("duplicate", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
 @pytest.mark.parametrize("kind", [RotatingBeamEnv, partial(RotatingBeamVectorEnv, 3)])
-@pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
+@pytest.mark.parametrize("name", NAMES)
 def test_a_copy_in_the_middle_of_an_episode_goes_on_alike(name, kind, duplicate):
     """But for the last bit: where its arrays begin in memory changes the order of sums."""
     env = kind(scenario=SMALL.get(name, name), duration=0.05)
@@ -111,7 +114,7 @@ def test_a_copy_in_the_middle_of_an_episode_goes_on_alike(name, kind, duplicate)
     np.testing.assert_allclose(twin.state, env.state, rtol=1e-11, atol=1e-13)
 
 
-@pytest.mark.parametrize("name", BENCHMARK_SCENARIOS)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_reward_is_minus_the_cost_whatever_the_plant(name):
     """J adds up from steps whose cost is at least the actuators' effort, over the scale of the plant that all depart from."""
     env = RotatingBeamEnv(scenario=SMALL.get(name, name))

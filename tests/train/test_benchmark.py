@@ -11,6 +11,7 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, reference_lqg, stationary_cost
+from beamenv.knowledge import Truth
 from beamenv.plant.fingerprint import fingerprint
 from train.benchmark import benchmark
 from train.benchmark.listed import agents
@@ -117,9 +118,13 @@ def test_every_piece_is_written(finished):
     assert float(rows[0]["relative_cost"]) == table.rows[0].estimates["relative_cost"].value
     assert (folder / "heat_map.png").read_bytes().startswith(b"\x89PNG")
     text = (folder / "table.md").read_text()
-    assert "| broken | own | failed | failed |" in text
+    assert "| broken | 1 | own | failed | failed |" in text
     assert "- broken in nominal: ZeroDivisionError: the weights sum to zero" in text
     kept = json.loads((folder / "benchmark.json").read_text())
+    assert {row["controller"]: row["tier"] for row in kept["rows"]} == {
+        name: int(name not in ("none", "lqg", "lqg-load")) for name in table.controllers
+    }
+    assert [row["tier"] for row in rows] == [str(row.tier) for row in table.rows]
     assert kept["configuration"]["seeds"] == [HELD_OUT, HELD_OUT + 2]
     assert {"beamenv", "numpy", "Python"} <= set(kept["configuration"]["versions"])
 
@@ -170,7 +175,7 @@ def test_a_scenario_file_is_a_scenario_of_its_name(tmp_path):
 
 def test_a_file_in_the_folder_is_a_controller(tmp_path, monkeypatch):
     (tmp_path / "half_lqg.py").write_text(
-        "from dataclasses import replace\nfrom baselines import lqg\nKIND = 'fixed'\n\n"
+        "from dataclasses import replace\nfrom baselines import lqg\nKIND = 'fixed'\nTIER = 0\n\n"
         "def build(design):\n    law = lqg(design.plant)\n    return replace(law, state_gain=0.5 * law.state_gain)\n"
     )
     monkeypatch.setattr(named_controllers, "__path__", [*named_controllers.__path__, str(tmp_path)])
@@ -181,7 +186,12 @@ def test_a_file_in_the_folder_is_a_controller(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("content", "sentence"),
-    [("KIND = 'fixed'\n", "has no build"), ("KIND = 'fuzzy'\nbuild = print\n", "wrong.KIND is 'fuzzy', but must be one of fixed")],
+    [
+        ("KIND = 'fixed'\nTIER = 0\n", "has no build"),
+        ("KIND = 'fixed'\nbuild = print\n", "has no TIER"),
+        ("KIND = 'fuzzy'\nTIER = 0\nbuild = print\n", "wrong.KIND is 'fuzzy', but must be one of fixed"),
+        ("KIND = 'fixed'\nTIER = 4\nbuild = print\n", "wrong.TIER is 4, but must be a whole number from 0 to 3"),
+    ],
 )
 def test_a_controller_that_lacks_something_is_named(content, sentence, tmp_path, monkeypatch):
     (tmp_path / "wrong.py").write_text(content)
@@ -203,7 +213,7 @@ class Unseen:
         return getattr(self._task, name)
 
 
-@pytest.mark.parametrize("name", sorted(name for name, each in discover().items() if not each.told_the_truth))
+@pytest.mark.parametrize("name", sorted(name for name, each in discover().items() if each.tier == 0))
 def test_a_controller_is_built_without_a_look_at_the_true_blade(name):
     """Nor does another true blade behind the same design change what it does."""
     electronics = {"sensor_full_scale": 2e-5}
@@ -220,11 +230,24 @@ def test_a_controller_is_built_without_a_look_at_the_true_blade(name):
     assert name == "none" or np.abs(actions[0]).max() > 0.0
 
 
-def test_only_a_bound_is_told_the_truth_and_then_designed_for_it():
-    assert [name for name, each in discover().items() if each.told_the_truth] == ["lqg-truth"]
-    assert discover()["lqg-truth"].kind == "bound"
-    with pytest.raises(ValueError, match="rival.TOLD_THE_TRUTH is True, but must be False for what is no bound"):
-        NamedController("rival", "fixed", lqg, told_the_truth=True)
+def test_a_controller_is_told_what_its_tier_knows():
+    assert {name for name, each in discover().items() if each.tier == 3} >= {"lqg-truth", "lqr", "lqr-load"}
+    task = gymnasium.make("beamenv/RotatingBeam-off-speed-v0", **SHORT).unwrapped.task
+    for tier, kind in ((0, beamenv.Design), (1, beamenv.Prior), (2, beamenv.Prior), (3, Truth)):
+        told = []
+        NamedController("rival", "fixed", lambda known, told=told: told.append(known), tier).build_for(task)
+        assert [type(each) for each in told] == [kind]
+
+
+@pytest.mark.parametrize(("name", "least"), [("lqr", 3), ("scheduled-lqg", 2)])
+def test_a_controller_that_sees_more_than_its_tier_is_refused(name, least):
+    task = gymnasium.make(beamenv.ENV_ID, **SHORT).unwrapped.task
+    law = named(name).build(task.told(least))
+    with pytest.raises(ValueError, match=f"sly.TIER is {least - 1}, but must be at least {least} for what observes"):
+        NamedController("sly", "fixed", lambda known: law, least - 1).build_for(task)
+
+
+def test_lqg_that_is_told_the_truth_is_designed_for_it():
     task = gymnasium.make("beamenv/RotatingBeam-solid-20-v0", **SHORT).unwrapped.task
     law = named("lqg-truth").build_for(task)
     assert stationary_cost(task.plant, law) == stationary_cost(task.plant, lqg(task.plant))
@@ -255,7 +278,7 @@ def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
     }
     sentences = [each.sentence for each in findings(table)]
     assert sentences[0].startswith("ppo-generalist on nominal: J differs from LQG's by ")
-    assert "ahead of the best fixed controller in 0 of 1 scenarios besides nominal." in sentences[1]
+    assert "ahead of the best other controller that is told no more in 0 of 1 scenarios besides nominal." in sentences[1]
     (tmp_path / "ppo" / "generalist" / "1" / "weights.npz").write_bytes(b"")
     row = benchmark(trained=tmp_path, **chosen).row("nominal", "ppo-generalist")
     assert row.runs == 1

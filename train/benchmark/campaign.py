@@ -176,7 +176,7 @@ def configuration(settings: Sequence[Setting], listed: Sequence[ListedController
         "seeds": [seeds[0], seeds[-1]],
         "environment": json.loads(settings[0].arguments),
         "scenarios": {setting.name: setting.scenario.to_dict() for setting in settings},
-        "controllers": {each.name: each.kind for each in listed},
+        "controllers": {each.name: {"kind": each.kind, "tier": each.tier} for each in listed},
         "versions": versions(),
     }
 

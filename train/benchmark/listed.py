@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from baselines.design.controller import as_controller
+from baselines.design.controller import LEAST_TIER, as_controller
 from beamenv.configuration import FileName, Refused, checked
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, discover
@@ -20,6 +20,9 @@ GENERALIST = "generalist"
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
 
+LEARNT = 1
+"""The tier of agents: what they train on is the scenario's distribution, and they see the readings alone."""
+
 INDISPENSABLE = ("none", "lqg")
 """What every cost is relative to, and what everyone is compared with in pairs."""
 
@@ -30,6 +33,8 @@ class ListedController:
 
     name: str
     kind: str
+    tier: int
+    """Of information: what it was built from and what it sees, in ``beamenv.knowledge.TIERS``."""
     everywhere: Mapping[str, Source] = field(default_factory=dict)
     """Runs by name that are put into every scenario."""
     only_in: Mapping[str, Mapping[str, Source]] = field(default_factory=dict)
@@ -50,17 +55,27 @@ def listed_controllers(
     """
     if models and not trusted:
         raise ValueError(UNTRUSTED)
-    classical = [ListedController(name, each.kind, {"": Classical(each)}) for name, each in discover().items()]
+    classical = [ListedController(name, each.kind, each.tier, {"": Classical(each)}) for name, each in discover().items()]
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     if unknown := [name for name in names if name not in known]:
         raise Refused("controller", unknown[0], f"one of {', '.join(known)}")
-    brought = [ListedController(name, "own", {"": _given(name, each)}) for name, each in own.items()]
-    brought += [ListedController(checked("model", path.stem, FileName()), "own", {"": ModelFile(path)}) for path in models]
+    brought = [ListedController(name, "own", own_tier(each), {"": _given(name, each)}) for name, each in own.items()]
+    brought += [ListedController(checked("model", path.stem, FileName()), "own", LEARNT, {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]
     if doubled := [each.name for index, each in enumerate(chosen) if each.name in {other.name for other in chosen[:index]}]:
         raise ValueError(f"controller {doubled[0]!r} is there twice: give yours another name.")
-    return sorted(chosen, key=lambda each: ORDER.index(each.kind))
+    return sorted(chosen, key=lambda each: place(each.tier, each.kind))
+
+
+def place(tier: int, kind: str) -> tuple[int, int]:
+    """By which tables and figures order controllers: by what they know, and then by kind."""
+    return tier, ORDER.index(kind)
+
+
+def own_tier(controller: Any) -> int:
+    """Of a caller's controller: that of what it sees, and at least that of agents, for nobody knows what it was made from."""
+    return max(LEARNT, LEAST_TIER.get(getattr(controller, "observes", "observation"), 0))
 
 
 def _given(name: str, controller: Any) -> Given:
@@ -82,7 +97,7 @@ def agents(folder: Path) -> list[ListedController]:
     found = []
     for agent, runs in homes.items():
         if general := runs.pop(GENERALIST, {}):
-            found.append(ListedController(f"{agent}-{GENERALIST}", "learned", general))
+            found.append(ListedController(f"{agent}-{GENERALIST}", "learned", LEARNT, general))
         if runs:
-            found.append(ListedController(f"{agent}-specialist", "learned", only_in=runs))
+            found.append(ListedController(f"{agent}-specialist", "learned", LEARNT, only_in=runs))
     return found

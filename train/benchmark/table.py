@@ -13,7 +13,7 @@ from baselines import Estimate
 from baselines.evaluation.metrics import judged
 from train.benchmark import statistics
 from train.benchmark.cells import SERIES, Cell
-from train.benchmark.listed import ORDER, ListedController
+from train.benchmark.listed import ListedController, place
 
 Array = NDArray[np.float64]
 
@@ -32,6 +32,8 @@ class Row:
     controller: str
     title: str
     kind: str
+    tier: int
+    """Of information, in ``beamenv.knowledge.TIERS``."""
     runs: int
     """Training runs that were measured; 1 for what does not learn."""
     seeds: int
@@ -60,7 +62,7 @@ class BenchmarkTable:
     """Everything a benchmark has found out."""
 
     rows: tuple[Row, ...]
-    """Scenario by scenario; within one by kind, then as they listed."""
+    """Scenario by scenario; within one by tier and kind, then as they are listed."""
     refused: Mapping[str, str]
     """Scenarios that could not be read, and why."""
     configuration: Mapping[str, Any]
@@ -73,9 +75,9 @@ class BenchmarkTable:
 
     @property
     def controllers(self) -> tuple[str, ...]:
-        """By kind."""
-        kinds = {row.controller: row.kind for row in self.rows}
-        return tuple(sorted(kinds, key=lambda name: ORDER.index(kinds[name])))
+        """By tier and kind."""
+        places = {row.controller: place(row.tier, row.kind) for row in self.rows}
+        return tuple(sorted(places, key=places.__getitem__))
 
     def within(self, scenario: str) -> tuple[Row, ...]:
         """The rows of a scenario."""
@@ -100,7 +102,7 @@ def tabulate(
     for scenario in dict.fromkeys(cell.scenario for cell in cells):
         found = {each.name: [c for c in cells if (c.scenario, c.controller) == (scenario, each.name)] for each in listed}
         rivals = costs(found.get(RIVAL, []))
-        rows += [row(found[each.name], each.kind, rivals) for each in listed if found[each.name]]
+        rows += [row(found[each.name], each, rivals) for each in listed if found[each.name]]
     return BenchmarkTable(tuple(rows), refused, configuration)
 
 
@@ -115,10 +117,11 @@ def _judged(cell: Cell) -> Array:
     return judged(cell.metrics["cost"], cell.uncontrolled, cell.lost > 0.0)
 
 
-def row(cells: Sequence[Cell], kind: str, rival: Array | None) -> Row:
+def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None) -> Row:
     """The training runs of one controller in one scenario taken together."""
     served = [cell for cell in cells if cell.metrics is not None]
-    about = (cells[0].scenario, cells[0].controller, (served or cells)[0].title or cells[0].controller, kind)
+    title = (served or cells)[0].title or listed.name
+    about = (cells[0].scenario, listed.name, title, listed.kind, listed.tier)
     sentences = tuple(dict.fromkeys(cell.sentence for cell in cells if cell.sentence))
     if not served:
         return Row(*about, runs=0, seeds=0, sentences=sentences)

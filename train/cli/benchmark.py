@@ -140,10 +140,12 @@ def _print(table: BenchmarkTable, folder: Path) -> None:
     caption = f"▲ some episodes unstable. Written to {folder}"
     shown = Table(title="J / J without control", caption=Text(caption), box=box.SIMPLE, padding=(0, 1, 0, 0))
     shown.add_column("controller", no_wrap=True)
+    shown.add_column("tier", justify="right")
+    tiers = {row.controller: str(row.tier) for row in table.rows}
     for name in table.scenarios:
         shown.add_column(Text(name), justify="right", no_wrap=True)
     for name in table.controllers:
-        shown.add_row(Text(name), *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
+        shown.add_row(Text(name), tiers[name], *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
     print_table(shown)
     for each in findings(table):
         Console().print(each.sentence, highlight=False, markup=False)

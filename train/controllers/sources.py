@@ -34,7 +34,7 @@ class Classical:
     controller: NamedController
 
     def build(self, task: Task) -> Controller:
-        """From the design plant; a bound that is told the truth, from the true one."""
+        """From what its tier is told of the task."""
         return self.controller.build_for(task)
 
     def fingerprint(self) -> str:

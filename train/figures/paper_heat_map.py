@@ -13,7 +13,7 @@ from train.shared.columns import number, share
 
 RANGE = (0.35, 2.0)
 """J / J without control between which shades differ, on a logarithmic scale: twice no control and worse is all the same dark."""
-LEGEND = "bold: least J in a scenario, bounds aside    ▲ share of unstable episodes    ✕ not measured"
+LEGEND = "bold: least J in a scenario, tier 3 aside    ▲ share of unstable episodes    ✕ not measured"
 
 
 def heat_map(content: HeatMap) -> Any:

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from beamenv.plant.fingerprint import fingerprint
-from beamenv.scenarios.named import NAMES
-from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.scenarios.named import BENCHMARK, UNSEEN
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
@@ -29,7 +28,7 @@ from train.shared.threads import one_torch_thread
 from train.shared.versions import versions
 
 GENERALIST = "generalist"
-"""In place of a scenario: all named ones, in one training, but those where a plant file moves: these are kept for judging."""
+"""In place of a scenario: all of the benchmark, in one training, but those that are kept for judging."""
 
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
@@ -56,8 +55,7 @@ class Job:
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario."""
-        beams = [name for name in NAMES if SCENARIOS[name].plants.truth is None]
-        scenarios = beams if self.scenario == GENERALIST else [self.scenario]
+        scenarios = [name for name in BENCHMARK if name not in UNSEEN] if self.scenario == GENERALIST else [self.scenario]
         return {str(each): resolve_task(**{**self.environment, "scenario": each}) for each in scenarios}
 
     def identity(self) -> dict[str, Any]:

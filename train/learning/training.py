@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from beamenv.knowledge import on_training_bank as training_scenario
 from beamenv.simulation.blades import Blades
 from beamenv.task import Task
 from train.controllers.policies import Policy
@@ -61,8 +62,7 @@ class Training(Protocol):
 
 def on_training_bank(task: Task) -> Task:
     """The task with plants drawn from another bank than the one that controllers are judged on."""
-    plants = replace(task.scenario.plants, seed=task.scenario.plants.seed + 1)
-    return replace(task, scenario=replace(task.scenario, plants=plants))
+    return replace(task, scenario=training_scenario(task.scenario))
 
 
 def uncontrolled_cost(task: Task, episodes: int = 512) -> float:

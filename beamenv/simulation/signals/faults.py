@@ -11,12 +11,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beamenv.scenarios.drawing import whole_intervals
+from beamenv.scenarios.load_cases import NEVER
 from beamenv.scenarios.tables import Failures
 from beamenv.simulation.kernel import namespace
 from beamenv.simulation.signals.hysteresis import Hysteresis
 
 DRAWS = 6
 """Uniform numbers that faults take: plant, delay, actuator, sensor, dead or biased, bias."""
+
+ONSET_DRAWS = 3
+"""Further ones where faults may set in within the episode: when actuators do, when sensors do, which of both."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +31,7 @@ class Faults:
     delay: Any
     """(N,) control intervals."""
     actuator_gain: Any
-    """(N, m): 0 for a dead one."""
+    """(N, m): 0 for a dead one, 1 for a sound one."""
     sensor_gain: Any
     """(N, p): 0 for a dead one."""
     sensor_bias: Any
@@ -57,6 +62,30 @@ class Faults:
         return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Onsets:
+    """From which sampling instant on, a whole number of control intervals, each of N blades has its faults."""
+
+    actuators: NDArray[np.int64]
+    """(N,)"""
+    sensors: NDArray[np.int64]
+    """(N,)"""
+
+    def set_in(self, faults: Faults, elapsed: NDArray[np.int64]) -> Faults:
+        """Those of the faults that the blades have after ``elapsed`` (N,) control intervals."""
+        actuators, sensors = (self.actuators <= elapsed)[:, None], (self.sensors <= elapsed)[:, None]
+        return replace(
+            faults,
+            actuator_gain=np.where(actuators, faults.actuator_gain, 1.0),
+            sensor_gain=np.where(sensors, faults.sensor_gain, 1.0),
+            sensor_bias=np.where(sensors, faults.sensor_bias, 0.0),
+        )
+
+    def begins(self, elapsed: NDArray[np.int64]) -> bool:
+        """Whether a blade's fault sets in at this very instant."""
+        return bool(np.any((self.actuators == elapsed) | (self.sensors == elapsed)))
+
+
 class SignalMemory(NamedTuple):
     """What the electronics remember of the past."""
 
@@ -72,14 +101,31 @@ def draw_faults(failures: Failures, delay: tuple[int, int], uniforms: NDArray[np
     """Faults of N blades from uniform numbers (N, ``DRAWS``)."""
     count = len(uniforms)
     bias = failures.bias[0] + (failures.bias[1] - failures.bias[0]) * np.abs(2.0 * uniforms[:, 5] - 1.0)
+    low, high = failures.remaining
+    lost = 1.0 - low - (high - low) * (uniforms[:, 2] * actuators % 1.0)  # which one it is does not say what is left of it
     faulty = _drawn(uniforms[:, 3], failures.faulty_sensors, sensors)
     biased = (uniforms[:, 4] < failures.biased_share)[:, None]
     return Faults(
         delay=delay[0] + np.floor(uniforms[:, 1] * (delay[1] - delay[0] + 1)).astype(np.int64),
-        actuator_gain=1.0 - _drawn(uniforms[:, 2], failures.dead_actuators, actuators),
+        actuator_gain=1.0 - lost[:, None] * _drawn(uniforms[:, 2], failures.dead_actuators, actuators),
         sensor_gain=np.where(faulty & ~biased, 0.0, np.ones((count, sensors))),
         sensor_bias=np.where(faulty & biased, (np.sign(uniforms[:, 5] - 0.5) * bias)[:, None], 0.0),
     )
+
+
+def fault_draws(failures: Failures) -> int:
+    """How many uniform numbers the faults of an episode take."""
+    return DRAWS + (ONSET_DRAWS if failures.drawn_instants else 0)
+
+
+def draw_onsets(failures: Failures, interval: float, uniforms: NDArray[np.float64]) -> Onsets:
+    """When N blades break, from uniform numbers (N, ``ONSET_DRAWS``) and the control interval in s."""
+    low, high = failures.onset
+    actuators, sensors = whole_intervals(low + (high - low) * uniforms[:, :2], interval).T
+    if failures.either:
+        actuator = uniforms[:, 2] < 0.5
+        actuators, sensors = np.where(actuator, actuators, NEVER), np.where(actuator, NEVER, sensors)
+    return Onsets(actuators, sensors)
 
 
 def _drawn(uniform: NDArray[np.float64], count: int, among: int) -> NDArray[np.bool_]:

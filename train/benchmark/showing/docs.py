@@ -15,9 +15,9 @@ from train.figures.paper_heat_map import heat_map as drawn
 INTRODUCTION = """\
 # The benchmark
 
-Every controller in every scenario on the same held-out episodes. Controllers are built from the design plant and agents are used
-as shipped; neither knows what a scenario does to the true blade. The scenarios are the files in `beamenv/scenarios/named/`, the
-controllers those in `train/controllers/named/`: a further file there adds a column or a row.
+Every controller in every scenario on the same held-out episodes. Controllers are built from what their tier of information is told,
+and agents, which train on the scenario's distribution, are used as shipped. The scenarios are `beamenv.BENCHMARK_SCENARIOS`, files
+in `beamenv/scenarios/named/`, the controllers those in `train/controllers/named/`: a further file there adds a column or a row.
 """
 
 

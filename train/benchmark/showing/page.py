@@ -50,11 +50,11 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
 
 def page_table(table: BenchmarkTable) -> Table:
     """All rows, to be sorted by a click."""
-    headings = ("scenario", "controller", "kind", "runs", *(column.heading for column in COLUMNS))
+    headings = ("scenario", "controller", "tier", "kind", "runs", *(column.heading for column in COLUMNS))
     return Table(headings, tuple(_cells(row) for row in table.rows), legend(table))
 
 
 def _cells(row: Row) -> tuple[Cell, ...]:
-    about = (Cell(row.scenario), Cell(row.controller), Cell(row.kind), Cell(str(row.runs), row.runs))
+    about = (Cell(row.scenario), Cell(row.controller), Cell(str(row.tier), row.tier), Cell(row.kind), Cell(str(row.runs), row.runs))
     found = [(column, row.estimates.get(column.name)) for column in COLUMNS]
     return about + tuple(Cell(column.text(each), None if each is None else each.value) for column, each in found)

@@ -9,6 +9,7 @@ from typing import Any
 from baselines.evaluation.metrics import finite
 from baselines.evaluation.statistics import CONFIDENCE, RESAMPLES
 from beamenv.configuration.writing import write_whole
+from beamenv.knowledge import TIERS, TRUTH
 from train.benchmark.table import UNSTABLE, BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.shared.columns import Column, number, share
@@ -32,6 +33,10 @@ COLUMNS = (
 )
 
 
+ABOUT = ("scenario", "controller", "title", "tier", "kind", "runs", "seeds")
+"""Fields of a row besides its estimates."""
+
+
 def write_files(folder: Path, table: BenchmarkTable) -> None:
     """``table.csv``, ``table.md`` and ``benchmark.json``."""
     rows = [csv_row(row) for row in table.rows]
@@ -43,7 +48,7 @@ def write_files(folder: Path, table: BenchmarkTable) -> None:
 
 def csv_row(row: Row) -> dict[str, Any]:
     """One flat row in SI units: value, low and high of each estimate; infinite ones as "inf"."""
-    flat: dict[str, Any] = {name: getattr(row, name) for name in ("scenario", "controller", "title", "kind", "runs", "seeds")}
+    flat: dict[str, Any] = {name: getattr(row, name) for name in ABOUT}
     for name, estimate in row.estimates.items():
         flat |= {name: estimate.value, f"{name}_low": estimate.low, f"{name}_high": estimate.high}
     return flat | {"sentence": " ".join(row.sentences)}
@@ -53,7 +58,7 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
     """Configuration, findings and rows; None for what is infinite."""
     rows = []
     for row in table.rows:
-        about = {name: getattr(row, name) for name in ("scenario", "controller", "title", "kind", "runs", "seeds")}
+        about = {name: getattr(row, name) for name in ABOUT}
         found = {
             name: {"value": finite(each.value), "low": finite(each.low), "high": finite(each.high)}
             for name, each in row.estimates.items()
@@ -84,9 +89,9 @@ def overview(table: BenchmarkTable) -> str:
     rows = []
     for name in table.controllers:
         found = [table.row(scenario, name) for scenario in table.scenarios]
-        kind = next(row.kind for row in found if row is not None)
-        rows.append([name, kind, *(overview_cell(row) for row in found)])
-    return markdown_table(["controller", "kind", *table.scenarios], rows, words=2)
+        one = next(row for row in found if row is not None)
+        rows.append([name, str(one.tier), one.kind, *(overview_cell(row) for row in found)])
+    return markdown_table(["controller", "tier", "kind", *table.scenarios], rows, words=3)
 
 
 def overview_cell(row: Row | None) -> str:
@@ -104,8 +109,8 @@ def scenario_table(rows: Sequence[Row]) -> str:
     lines = []
     for row in sorted(rows, key=lambda each: each.mean_cost):
         cells = [column.text(row.estimates.get(column.name)) for column in COLUMNS]
-        lines.append([row.controller, row.kind, str(row.runs), *cells])
-    return markdown_table(["controller", "kind", "runs", *(column.heading for column in COLUMNS)], lines, words=2)
+        lines.append([row.controller, str(row.tier), row.kind, str(row.runs), *cells])
+    return markdown_table(["controller", "tier", "kind", "runs", *(column.heading for column in COLUMNS)], lines, words=3)
 
 
 def legend(table: BenchmarkTable) -> str:
@@ -118,6 +123,14 @@ def legend(table: BenchmarkTable) -> str:
         f"{100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
         "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails, which makes J infinite, "
         f"or J₀ where it fails without control too, or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort "
-        "are means over episodes. Controllers of the kind “bound” see the true state, which no sensor shows, or are told the true "
-        "plant."
+        f"are means over episodes. {tiers()}"
+    )
+
+
+def tiers() -> str:
+    """What the tiers are, and how they are compared."""
+    known = ", ".join(f"{tier} {what}" for tier, what in TIERS.items())
+    return (
+        f"Tiers say what a controller is told and sees, each what those below it are too: {known}. The best of a tier is that of "
+        f"all its kinds; tier {TRUTH}, which no real blade offers, is a reference and no rival."
     )

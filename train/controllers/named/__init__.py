@@ -1,9 +1,8 @@
 """The controllers that agents are compared with, a file each: a file put into this folder is a controller of its name.
 
-Such a module has a ``KIND``, one of ``KINDS``, and ``build(design)``, which returns the controller. A ``beamenv.Design`` is the
-design plant and its configuration: no controller knows what the true blade is like. ``lqg_load.py`` is called "lqg-load".
-
-A bound may say ``TOLD_THE_TRUTH = True``: its ``build`` is given the true plant and its configuration instead.
+Such a module has a ``KIND``, one of ``KINDS``, a ``TIER`` of information, and ``build(known)``, which returns the controller and is
+given what that tier knows and no more: a ``beamenv.Design`` at 0, a ``beamenv.Prior`` at 1 and 2, the ``Truth`` at 3
+(``beamenv.knowledge``). ``lqg_load.py`` is called "lqg-load".
 """
 
 from __future__ import annotations
@@ -13,37 +12,45 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType
+from typing import Any
 
 from baselines import Controller, Law
-from beamenv import Design
-from beamenv.configuration import Refused
+from baselines.design.controller import LEAST_TIER
+from beamenv.configuration import Count, Refused, checked
+from beamenv.knowledge import TIERS
 from beamenv.task import Task, checked_task
 
-KINDS = ("fixed", "scheduled", "predictive", "bound")
-"""Linear laws that stay as they were designed; laws that follow the rotor's speed; laws that solve a program at every instant;
-and those that see the true state or know the true plant, which no real blade offers: bounds, not rivals."""
+KINDS = ("fixed", "scheduled", "predictive")
+"""Linear laws that stay as they were designed; laws that follow the rotor's speed or the time; laws that solve a program at every
+instant."""
 
 
 @dataclass(frozen=True, slots=True)
 class NamedController:
-    """A controller by its short name. Raises ValueError for a kind that is not in ``KINDS`` and for a rival told the truth."""
+    """A controller by its short name. Raises ValueError for a kind that is not in ``KINDS`` and a tier that is none."""
 
     name: str
     kind: str
-    build: Callable[[Design], Controller]
-    told_the_truth: bool = False
-    """Whether it is built from the true plant."""
+    build: Callable[[Any], Controller]
+    """From what its tier is told."""
+    tier: int = 0
+    """Of information, in ``beamenv.knowledge.TIERS``."""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise Refused(f"{self.name}.KIND", self.kind, f"one of {', '.join(KINDS)}")
-        if self.told_the_truth and self.kind != "bound":
-            raise Refused(f"{self.name}.TOLD_THE_TRUTH", True, "False for what is no bound")
+        checked(f"{self.name}.TIER", self.tier, Count(0, max(TIERS)))
 
     def build_for(self, task: Task) -> Controller:
-        """The controller for a task, in its units: from its design, unless it is told the truth."""
-        checked_task(task)
-        law = self.build(task.true_design if self.told_the_truth else task.design)
+        """The controller for a task, in its units, built from what its tier is told.
+
+        Raises ``ValueError`` for one that observes what its tier does not see.
+        """
+        law = self.build(checked_task(task).told(self.tier))
+        observes = getattr(law, "observes", "observation")
+        least = LEAST_TIER.get(observes, 0)
+        if least > self.tier:
+            raise Refused(f"{self.name}.TIER", self.tier, f"at least {least} for what observes the {observes}")
         return law.in_physical_units() if task.physical_units and isinstance(law, Law) else law
 
 
@@ -53,9 +60,11 @@ def discover() -> Mapping[str, NamedController]:
     for module in sorted(pkgutil.iter_modules(__path__), key=lambda each: each.name):
         name = module.name.replace("_", "-")
         content = import_module(f"{__name__}.{module.name}")
-        if missing := [wanted for wanted in ("KIND", "build") if not hasattr(content, wanted)]:
-            raise ValueError(f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND and build(design).")
-        found[name] = NamedController(name, content.KIND, content.build, getattr(content, "TOLD_THE_TRUTH", False))
+        if missing := [wanted for wanted in ("KIND", "TIER", "build") if not hasattr(content, wanted)]:
+            raise ValueError(
+                f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND, TIER and build(known)."
+            )
+        found[name] = NamedController(name, content.KIND, content.build, content.TIER)
     return MappingProxyType(found)
 
 

@@ -5,6 +5,7 @@ from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Design
 
 KIND = "fixed"
+TIER = 0
 
 
 def build(design: Design) -> Controller:

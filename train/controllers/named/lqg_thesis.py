@@ -4,6 +4,7 @@ from baselines import Controller, lqg
 from beamenv import Design
 
 KIND = "fixed"
+TIER = 0
 
 
 def build(design: Design) -> Controller:

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 from baselines import Controller, lqg
-from beamenv import Design
+from beamenv.knowledge import Truth
 
-KIND = "bound"
-TOLD_THE_TRUTH = True
+KIND = "fixed"
+TIER = 3
 
 
-def build(truth: Design) -> Controller:
+def build(truth: Truth) -> Controller:
     """Filter and regulator from two discrete Riccati equations of the true plant."""
     return replace(lqg(truth.plant), name="LQG (told the truth)")

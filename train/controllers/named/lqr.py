@@ -1,11 +1,12 @@
 """LQR on the true state."""
 
 from baselines import Controller, lqr
-from beamenv import Design
+from beamenv.knowledge import Truth
 
-KIND = "bound"
+KIND = "fixed"
+TIER = 3
 
 
-def build(design: Design) -> Controller:
+def build(truth: Truth) -> Controller:
     """The regulator alone."""
-    return lqr(design.plant)
+    return lqr(truth.design.plant)

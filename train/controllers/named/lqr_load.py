@@ -1,11 +1,12 @@
 """LQR on the true state and an estimate of the load that lasts."""
 
 from baselines import Controller, PersistentLoad, lqr
-from beamenv import Design
+from beamenv.knowledge import Truth
 
-KIND = "bound"
+KIND = "fixed"
+TIER = 3
 
 
-def build(design: Design) -> Controller:
+def build(truth: Truth) -> Controller:
     """The regulator, with an observer for the load."""
-    return lqr(design.plant, persistent_load=PersistentLoad())
+    return lqr(truth.design.plant, persistent_load=PersistentLoad())

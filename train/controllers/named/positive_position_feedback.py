@@ -4,6 +4,7 @@ from baselines import Controller, positive_position_feedback
 from beamenv import Design
 
 KIND = "fixed"
+TIER = 0
 
 
 def build(design: Design) -> Controller:

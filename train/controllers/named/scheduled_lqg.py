@@ -4,15 +4,17 @@ import numpy as np
 
 from baselines import Controller, scheduled_lqg_for
 from baselines.laws.reference_lqg import RATE_WEIGHT
-from beamenv import Design
+from beamenv import Prior
 
 KIND = "scheduled"
+TIER = 2
 
 RANGE = np.linspace(0.5, 1.5, 7)
 """Speeds over that of the design: half of it either way. On the default blade, every 33 rad/s, the law costs 0.8 % more than each
 speed's own optimum at most."""
 
 
-def build(design: Design) -> Controller:
+def build(prior: Prior) -> Controller:
     """An LQG of all that is known of the blade for each of seven speeds, mixed in between."""
-    return scheduled_lqg_for(design.config, RANGE * design.config.speed, full=True, rate_weight=RATE_WEIGHT)
+    config = prior.design.config
+    return scheduled_lqg_for(config, RANGE * config.speed, full=True, rate_weight=RATE_WEIGHT)

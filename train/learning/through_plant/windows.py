@@ -124,14 +124,21 @@ class Windows:
             if signals is not None:
                 acting, signals = drive(self._faults, self._hysteresis, signals, voltages)
             state, output, _, increment = advance(self._now(), torch.cat([state, acting, loads], dim=1))
+            self._elapse()
             readings, signals = self._read(output, disturbance, signals)
             cost = cost + increment
-            self._blades.elapse()
         left = 0.5 * (state[:, : self._energetic] ** 2).sum(dim=1)
         self._keep(state, readings, memory, signals)
         self._phase = (self._phase + 1) % self.count
         self._begin(np.flatnonzero(self._phase == 0), actor)
         return cost, left
+
+    def _elapse(self) -> None:
+        """One control interval later: other plants may be on, and other faults at work."""
+        self._blades.elapse()
+        electronics = self._blades.electronics
+        if electronics is not None and electronics.changing:
+            self._convert_faults(electronics)
 
     def _now(self) -> Any:
         index = self._blades.index
