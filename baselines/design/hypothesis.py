@@ -20,6 +20,7 @@ from beamenv.configuration import Count, Flag, Number, Refused, checked
 from beamenv.configuration.read_only import ReadOnly, sealed
 from beamenv.plant.plant import Plant, SampledPlant, sample
 from beamenv.scenarios.load_cases import static_deflection
+from beamenv.scenarios.tables import STRONGEST
 
 BIAS_LASTS = 10.0
 """s: correlation time of a sensor's bias. A blade's episodes are much shorter, and the filter's equation has a solution."""
@@ -60,11 +61,11 @@ class Hypothesis(ReadOnly):
             "actuator_gain": _each("actuator_gain", self.actuator_gain, m, "voltage"),
             "sensor_gain": _each("sensor_gain", self.sensor_gain, p, "sensor"),
             "sensor_bias": _each("sensor_bias", self.sensor_bias, p, "sensor"),
-            "deflection": checked("deflection", self.deflection, Number(ge=0.0, unit="N/m")),
+            "load": checked_loads("load", self.load),
+            "deflection": checked("deflection", self.deflection, Number(ge=0.0, le=STRONGEST, unit="N/m")),
             "holds_lost_readings": checked("holds_lost_readings", self.holds_lost_readings, Flag()),
             "prior": checked("prior", self.prior, Number(gt=0.0)),
         }
-        checked_loads("load", self.load)
         for name, value in keep.items():
             object.__setattr__(self, name, value)
         ReadOnly.__post_init__(self)

@@ -111,8 +111,9 @@ class MultipleModel(Law):
         weights = np.exp(np.log(self.prior) + self.recall(rows).evidence)
         return np.asarray(weights if np.ndim(memory) == 2 else weights[0])
 
+    @np.errstate(over="ignore", invalid="ignore")
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
-        """Correct, weigh, drive, mix, predict: all hypotheses and blades at once."""
+        """Correct, weigh, drive, mix, predict: all hypotheses and blades at once; of a reading that is no number comes none."""
         reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(memory)
         following = np.empty(rows.shape)
         old, new = self.recall(rows), self.recall(following)
