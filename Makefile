@@ -3,6 +3,7 @@
 
 PYTHON ?= python3
 ARGS ?=
+JOBS ?= auto
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
@@ -38,8 +39,9 @@ help:
 compare benchmark reproduce speed: $(INSTALLED)
 	$(BIN)/beamenv $@ $(ARGS)
 
+# As many files of tests at a time as there are cores, each on one thread; JOBS=0 takes one after the other.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(ARGS)
 
 slow: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow $(ARGS)
@@ -68,14 +70,14 @@ lowest: $(INSTALLED)
 	@test -x $(APART)/lowest/bin/python || $(BIN)/python -m venv $(APART)/lowest
 	$(BIN)/python .ci/bounds.py > $(APART)/lowest.txt
 	$(APART)/lowest/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/lowest.txt '.[dev]'
-	$(APART)/lowest/bin/python -m pytest -W default $(ARGS)
+	OMP_NUM_THREADS=1 $(APART)/lowest/bin/python -m pytest -W default -n $(JOBS) --dist loadfile $(ARGS)
 
 newest: | $(BIN)/python
 	@mkdir -p $(APART)
 	@test -x $(APART)/newest/bin/python || $(BIN)/python -m venv $(APART)/newest
 	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
 	$(APART)/newest/bin/python -m pip install --quiet --disable-pip-version-check --upgrade -c $(APART)/torch.txt '.[dev]'
-	$(APART)/newest/bin/python -m pytest $(ARGS)
+	OMP_NUM_THREADS=1 $(APART)/newest/bin/python -m pytest -n $(JOBS) --dist loadfile $(ARGS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
