@@ -16,7 +16,7 @@ def plant():
     return build_plant(blade_config("thesis", {"modes": 3}))
 
 
-@pytest.fixture(params=LAWS, ids=lambda law: law.__name__)
+@pytest.fixture(scope="module", params=LAWS, ids=lambda law: law.__name__)
 def closed(request, plant):
     law, held = request.param(plant), sample(plant)
     system = held.to_control()
