@@ -3,12 +3,15 @@
 
 PYTHON ?= python3
 ARGS ?=
+JOBS ?= auto
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
 # Libraries of others, each installed into an environment of its own beside this package, and what that takes.
-CLIENTS := minari rllib sbx skrl tianshou torchrl zoo
+CLIENTS := cleanrl minari rllib sbx skrl tianshou torchrl zoo
 QUICK_CLIENTS := minari torchrl
+REQUIRES_cleanrl := tensorboard setuptools
+ALONE_cleanrl := cleanrl==1.2.0
 REQUIRES_minari := minari[create,hdf5]
 REQUIRES_rllib := ray[rllib]
 REQUIRES_sbx := sbx-rl
@@ -36,8 +39,9 @@ help:
 compare benchmark reproduce speed: $(INSTALLED)
 	$(BIN)/beamenv $@ $(ARGS)
 
+# As many files of tests at a time as there are cores, each on one thread; JOBS=0 takes one after the other.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(ARGS)
 
 slow: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow $(ARGS)
@@ -51,12 +55,13 @@ clients: quick-clients $(CLIENTS:%=client-%)
 quick-clients: $(INSTALLED) $(QUICK_CLIENTS:%=client-%)
 	$(BIN)/python -m pytest -m "slow or not slow" tests/clients tests/test_wings.py $(ARGS)
 
-# torch as in .venv; else whatever the library itself asks for.
+# torch as in .venv; else whatever the library itself asks for. cleanrl is scripts, whose release asks for a Gymnasium of long ago.
 client-%: | $(BIN)/python
 	@mkdir -p $(APART)
 	@test -x $(APART)/$*/bin/python || $(BIN)/python -m venv $(APART)/$*
 	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
 	$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/torch.txt torch pytest . $(foreach each,$(REQUIRES_$*),'$(each)')
+	$(if $(ALONE_$*),$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --ignore-requires-python $(ALONE_$*))
 	$(APART)/$*/bin/python -m pytest --confcutdir=tests/clients -m "slow or not slow" tests/clients/test_$*.py $(ARGS)
 
 # Tools at the versions of .venv, what the package itself runs on at the lowest that pyproject.toml declares.
@@ -65,14 +70,14 @@ lowest: $(INSTALLED)
 	@test -x $(APART)/lowest/bin/python || $(BIN)/python -m venv $(APART)/lowest
 	$(BIN)/python .ci/bounds.py > $(APART)/lowest.txt
 	$(APART)/lowest/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/lowest.txt '.[dev]'
-	$(APART)/lowest/bin/python -m pytest -W default $(ARGS)
+	OMP_NUM_THREADS=1 $(APART)/lowest/bin/python -m pytest -W default -n $(JOBS) --dist loadfile $(ARGS)
 
 newest: | $(BIN)/python
 	@mkdir -p $(APART)
 	@test -x $(APART)/newest/bin/python || $(BIN)/python -m venv $(APART)/newest
 	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
 	$(APART)/newest/bin/python -m pip install --quiet --disable-pip-version-check --upgrade -c $(APART)/torch.txt '.[dev]'
-	$(APART)/newest/bin/python -m pytest $(ARGS)
+	OMP_NUM_THREADS=1 $(APART)/newest/bin/python -m pytest -n $(JOBS) --dist loadfile $(ARGS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

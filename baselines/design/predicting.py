@@ -15,13 +15,15 @@ _DOUBLE = np.dtype(np.float64)
 
 
 def observed(observation: Any, name: str, reads: str = "observation", length: int | None = None) -> Array:
-    """An observation (p,) or a batch (N, p) as float64; ``ValueError`` unless it holds real numbers, ``length`` a blade."""
+    """An observation (p,) or a batch (N, p) as float64; ``ValueError`` unless it holds finite numbers, ``length`` a blade."""
     seen = observation
     if type(seen) is not np.ndarray or seen.dtype is not _DOUBLE:  # a blade alone has no time to look closer
         seen = _numbers("observation", observation)
     if seen.ndim not in (1, 2) or length not in (None, seen.shape[-1]):
         wanted = f"{reads} vectors" if length is None else f"{reads} vectors of length {length}"
         raise ValueError(f"observation has shape {seen.shape}, but {name} takes {wanted}, alone or in rows.")
+    if not np.isfinite(seen).all():  # a memory would never forget them
+        raise Refused("observation", observation, f"finite {reads} vectors")
     return seen
 
 

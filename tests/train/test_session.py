@@ -136,6 +136,16 @@ class Signalled(Counting):
 ENDING = [signal.SIGINT, *(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if os.name == "posix")]
 
 
+@pytest.fixture
+def not_ignored():
+    """Signals that end: under nohup, say, a hang-up is ignored, and whoever is told to ignore it goes on ignoring it."""
+    before = {each: signal.signal(each, signal.SIG_DFL) for each in ENDING if signal.getsignal(each) is signal.SIG_IGN}
+    yield
+    for each, handler in before.items():
+        signal.signal(each, handler)
+
+
+@pytest.mark.usefixtures("not_ignored")
 @pytest.mark.parametrize("number", ENDING)
 def test_a_signal_waits_for_the_end_of_an_update(number):
     training, kept = Signalled(number), []
