@@ -21,7 +21,7 @@ from beamenv.plant.plant import Plant, sample
 
 NAME = "positive position feedback"
 
-POSITIVE = Number(gt=0.0)
+POSITIVE = Number(gt=0.0, le=1e6)
 
 FILTER_DAMPING = 0.3
 """ζ_f of every filter: wide enough for a mode that is some per cent off."""

@@ -31,7 +31,7 @@ def test_the_loop_that_it_closes_answers_loads_as_ours(closed):
     loads = np.random.default_rng(3).uniform(-1.0, 1.0, (400, 2))
     states, voltages = linear_response(held, law, loads)
     assert np.abs(voltages / law.instruments.voltage_limits[1]).max() < 1.0  # no limit acts
-    found = control.forced_response(system, inputs=np.hstack([np.zeros((400, 4)), loads]).T).outputs
+    found = control.forced_response(system, None, np.hstack([np.zeros((400, 4)), loads]).T).outputs
     expected = held.C @ states[:-1].T
     assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
 
@@ -48,7 +48,7 @@ def test_the_loop_that_it_closes_has_our_poles(closed, plant):
 def test_a_law_that_it_simulates_drives_as_predict_does(closed):
     law = closed[0]
     readings = 1e-7 * np.random.default_rng(5).normal(size=(100, 4))
-    found = control.forced_response(law.to_control(), inputs=readings.T).outputs.T
+    found = control.forced_response(law.to_control(), None, readings.T).outputs.T
     memory, expected = None, []
     for reading in readings:
         action, memory = law.in_physical_units().predict(reading, memory)

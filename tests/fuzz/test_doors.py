@@ -82,7 +82,7 @@ def test_a_door_holds_for_three_hundred_examples(door, default_blade, tmp_path, 
     record_property("door", door.name)
     record_property("examples", counts)
     tried(door, SLOW, counts)
-    assert 50 < sum(counts.values()) <= 300  # a door with one argument has fewer wrong values
+    assert 20 < sum(counts.values()) <= 300  # a door with few arguments has fewer wrong values
     assert deeds() == default_blade
 
 
