@@ -179,7 +179,8 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     - `scenario`: a name in `beamenv.SCENARIOS`, the path of a `.toml` file, a dictionary of fields (with "preset" to depart from
       a named one), or a `Scenario`.
     - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
-      40 % of it.
+      40 % of it. An environment's spec holds its number of steps: `gym.make(env.spec, duration=1.0, max_episode_steps=-1)` lets
+      it be longer.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
     - `dtype`: of both spaces and the observations, `"float32"` or `"float64"`; default `"float32"`, which agents' networks
       have. What is stepped, and info, has 64 bits always.
