@@ -16,7 +16,9 @@ from baselines.evaluation.metrics import EpisodeMetrics
 from baselines.evaluation.statistics import Estimate
 from baselines.laws.clairvoyant_lqg import ClairvoyantLQG, clairvoyant_lqg
 from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
+from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.h_infinity import h_infinity
+from baselines.laws.informed_lqg import informed_lqg
 from baselines.laws.lqg import lqg
 from baselines.laws.lqr import lqr
 from baselines.laws.mpc import PredictiveController, mpc
@@ -32,6 +34,7 @@ __all__ = [
     "ClairvoyantLQG",
     "ClippedLQG",
     "Controller",
+    "Detuning",
     "Episodes",
     "EpisodeMetrics",
     "Estimate",
@@ -49,10 +52,12 @@ __all__ = [
     "clairvoyant_lqg",
     "clipped_lqg",
     "closed_loop_poles",
+    "detuned_lqg",
     "evaluate",
     "full_order_lqg",
     "h_infinity",
     "h_infinity_norm",
+    "informed_lqg",
     "lqg",
     "lqr",
     "mpc",

@@ -11,7 +11,7 @@ from baselines import placement
 from baselines.design.instruments import Instruments
 from baselines.design.linear import MATRICES
 from beamenv.blade import BladeConfig
-from beamenv.knowledge import Truth
+from beamenv.knowledge import Prior, Truth
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 from tests.fuzz import small
@@ -206,6 +206,30 @@ DOORS = [
         lambda: {"config": small.config(), "speeds": [180.0, 200.0], "persistent_load": None, "full": False, "rate_weight": 0.0},
         told=ABOUT,
         public="scheduled_lqg_for",
+    ),
+    Door(
+        "Detuning",
+        lambda **given: baselines.Detuning(**given),
+        of_fields(baselines.Detuning),
+        dict,
+        lambda made: made,
+        public="Detuning",
+    ),
+    Door(
+        "detuned_lqg",
+        lambda plant, detuning, load, name: baselines.detuned_lqg(plant, detuning, load, name=name),
+        {"plant": PLANT, "detuning": instance(baselines.Detuning), "load": ONE_LOAD, "name": TEXT},
+        lambda: {"plant": small.plant(), "detuning": baselines.Detuning(), "load": baselines.PersistentLoad(), "name": "mine"},
+        told=ABOUT,
+        public="detuned_lqg",
+    ),
+    Door(
+        "informed_lqg",
+        baselines.informed_lqg,
+        {"prior": instance(Prior)},
+        lambda: {"prior": small.env().unwrapped.task.prior},
+        told=("prior",),
+        public="informed_lqg",
     ),
     Door(
         "clairvoyant_lqg",

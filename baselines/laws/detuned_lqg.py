@@ -1,0 +1,59 @@
+"""LQG whose design is told other than the plant's own numbers: a delay, dearer voltages, noisier sensors, dearer changes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated
+
+from baselines.design.delay import with_delay
+from baselines.design.instruments import checked_plant
+from baselines.design.linear import LinearController
+from baselines.design.load_model import Load, checked_loads
+from baselines.design.objects import instance
+from baselines.design.rate_penalty import with_rate_penalty
+from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
+from baselines.design.verification import solvable, verified
+from baselines.laws.lqg import compensator, known_sensor_noise, sampled_with_loads
+from beamenv.configuration import Count, Flag, Number, Text, checked, configuration
+from beamenv.plant.plant import Plant
+
+MOST_LATE = 20
+"""Intervals of delay that a law keeps in mind at most: each adds as many numbers to its memory as there are voltages."""
+
+
+@configuration("detuning")
+class Detuning:
+    """What an LQG's design is told; by default the reference's rate penalty alone."""
+
+    delay: Annotated[int, Count(0, MOST_LATE)] = 0
+    """d, control intervals by which voltages come late."""
+    effort: Annotated[float, Number(gt=0.0, le=1e6)] = 1.0
+    """r, over the plant's own price of voltages."""
+    noise: Annotated[float, Number(gt=0.0, le=1e6)] = 1.0
+    """v, over the root mean square of the plant's own sensor noise."""
+    rate: Annotated[float, Number(ge=0.0, le=1e6)] = 1.0
+    """s, of changes of the voltage over the price of the voltage itself."""
+    foresees: Annotated[bool, Flag()] = False
+    """Whether the loads that can be foreseen are part of the state."""
+
+
+def detuned_lqg(plant: Plant, detuning: Detuning, *loads: Load, name: str = "detuned LQG") -> LinearController:
+    """The sampled optimum for a plant that is what its design is told, ``verified`` there; ``loads`` are those it may foresee.
+
+    Robustness by fictitious noise and weights is loop transfer recovery's idea (Doyle and Stein, IEEE Trans. Automatic Control 24,
+    1979; Anderson and Moore, Optimal Control, 1990, ch. 8). Raises ``ValueError`` as ``lqg`` does.
+    """
+    detuning = instance("detuning", detuning, Detuning, "a Detuning, such as Detuning(delay=2)")
+    loads = checked_loads("loads", list(loads))
+    told = replace(checked_plant(plant), sensor_noise=detuning.noise**2 * plant.sensor_noise)
+    told = replace(told, input_weight=detuning.effort * plant.input_weight)
+    held = sampled_with_loads(told, *(loads if detuning.foresees else ()))
+    if detuning.rate:
+        held = with_rate_penalty(held, detuning.rate)
+    held = with_delay(held, detuning.delay)
+    E, V = held.disturbance_input, known_sensor_noise(told) / held.interval
+    with solvable(plant):
+        regulated = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+        filtered = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, V)
+    law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
+    return verified(law, with_delay(sampled_with_loads(told), detuning.delay), regulated, filtered, instead="another detuning")
