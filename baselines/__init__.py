@@ -4,10 +4,12 @@ from baselines.analysis.frequency_response import h_infinity_norm
 from baselines.analysis.margins import StabilityMargins, stability_margins
 from baselines.analysis.stationary import closed_loop_poles, stationary_cost
 from baselines.design.controller import Controller
+from baselines.design.hypothesis import Hypothesis
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.persistent_load import PersistentLoad
+from baselines.design.weighing import MultipleModel
 from baselines.evaluation.episodes import Episodes, roll_out
 from baselines.evaluation.evaluate import Evaluation, evaluate
 from baselines.evaluation.metrics import EpisodeMetrics
@@ -17,6 +19,7 @@ from baselines.laws.h_infinity import h_infinity
 from baselines.laws.lqg import lqg
 from baselines.laws.lqr import lqr
 from baselines.laws.mpc import PredictiveController, mpc
+from baselines.laws.multiple_model import multiple_model
 from baselines.laws.no_control import no_control
 from baselines.laws.positive_position_feedback import positive_position_feedback
 from baselines.laws.reference_lqg import full_order_lqg, reference_lqg
@@ -31,9 +34,11 @@ __all__ = [
     "EpisodeMetrics",
     "Estimate",
     "Evaluation",
+    "Hypothesis",
     "Instruments",
     "Law",
     "LinearController",
+    "MultipleModel",
     "PersistentLoad",
     "PredictiveController",
     "RotorHarmonics",
@@ -48,6 +53,7 @@ __all__ = [
     "lqg",
     "lqr",
     "mpc",
+    "multiple_model",
     "no_control",
     "positive_position_feedback",
     "reference_lqg",

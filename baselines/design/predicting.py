@@ -36,7 +36,8 @@ def remembered(state: Any, episode_start: Any, batch: tuple[int, ...], order: in
         raise Refused("state", state, f"None, or what predict returned last, numbers of shape {(*batch, order)}")
     if episode_start is None:
         return state
-    return np.where(_begins(episode_start, batch)[..., None], 0.0, state)
+    begins = _begins(episode_start, batch)
+    return np.where(begins[..., None], 0.0, state) if begins.any() else state
 
 
 def _begins(episode_start: Any, batch: tuple[int, ...]) -> NDArray[np.bool_]:

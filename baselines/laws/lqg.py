@@ -89,11 +89,20 @@ def sampled_design(plant: Plant, *loads: Load | None, rate_weight: float = 0.0) 
     held = sampled_with_loads(plant, *loads)
     if checked("rate_weight", rate_weight, Number(ge=0.0)) > 0.0:
         held = with_rate_penalty(held, rate_weight)
+    return held, optimal_regulator(plant, held), optimal_filter(plant, held)
+
+
+def optimal_regulator(plant: Plant, held: SampledPlant) -> Solution:
+    """P and K for the sampled plant's cost; ``ValueError`` where there is none, which names the mode of ``plant`` in the way."""
+    with solvable(plant):
+        return sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
+
+
+def optimal_filter(plant: Plant, held: SampledPlant) -> Solution:
+    """S and L for the sampled plant's loads and the noise of ``plant``'s sensors; ``ValueError`` as ``optimal_regulator``."""
     E = held.disturbance_input
     with solvable(plant):
-        regulated = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-        filtered = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
-    return held, regulated, filtered
+        return sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, known_sensor_noise(plant) / held.interval)
 
 
 def _continuous(plant: Plant, verify: bool) -> LinearController:

@@ -25,6 +25,7 @@ DOORS = (
     "lqg",
     "lqr",
     "mpc",
+    "multiple_model",
     "no_control",
     "positive_position_feedback",
     "reference_lqg",
@@ -42,7 +43,14 @@ def _right(small_plant):
     plant = small_plant()
     family = speed_family(CONFIG, [190.0, 200.0])
     harmonics = baselines.RotorHarmonics(200.0)
-    return {"plant": plant, "config": CONFIG, "family": family, "harmonics": harmonics, "controller": lqg(plant)}
+    return {
+        "plant": plant,
+        "config": CONFIG,
+        "family": family,
+        "harmonics": harmonics,
+        "controller": lqg(plant),
+        "hypotheses": [baselines.Hypothesis(plant)],
+    }
 
 
 @pytest.mark.parametrize("door", DOORS)

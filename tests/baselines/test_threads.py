@@ -7,7 +7,17 @@ import numpy as np
 import pytest
 
 import beamenv
-from baselines import PersistentLoad, clipped_lqg, lqg, lqr, mpc, positive_position_feedback, reference_lqg
+from baselines import (
+    Hypothesis,
+    PersistentLoad,
+    clipped_lqg,
+    lqg,
+    lqr,
+    mpc,
+    multiple_model,
+    positive_position_feedback,
+    reference_lqg,
+)
 
 LAWS = {
     "lqg": lqg,
@@ -16,6 +26,7 @@ LAWS = {
     "clipped": clipped_lqg,
     "ppf": positive_position_feedback,
     "mpc": mpc,
+    "multiple model": lambda plant: multiple_model([Hypothesis(plant, delay=d) for d in (0, 1)], lqg(plant)),
     "mpc with load": lambda plant: mpc(plant, PersistentLoad()),
 }
 

@@ -52,6 +52,15 @@ LINEAR = Kind(
     lambda value: value if isinstance(value, baselines.LinearController) else NOTHING,
     st.sampled_from(["clipped", "true"]).map(lambda name: clipped() if name == "clipped" else small.law().__class__),
 )
+HYPOTHESES = Kind(
+    "hypotheses",
+    lambda value: (
+        value
+        if isinstance(value, (list, tuple)) and value and all(isinstance(each, baselines.Hypothesis) for each in value)
+        else NOTHING
+    ),
+    st.nothing(),
+)
 WEIGHTS = {"Q": maybe(ARRAY), "R": maybe(ARRAY)}
 ABOUT = ("plant", "gain", "Riccati")
 """What a law says of its numbers together."""
@@ -66,6 +75,16 @@ SPEEDS = Kind(
 @cache
 def clipped():
     return baselines.clipped_lqg(small.plant())
+
+
+@cache
+def hypotheses():
+    return [baselines.Hypothesis(small.plant()), baselines.Hypothesis(small.plant(), sensor_gain=[1.0, 0.0])]
+
+
+@cache
+def several():
+    return baselines.multiple_model(hypotheses(), small.law())
 
 
 @cache
@@ -186,6 +205,68 @@ DOORS = [
         lambda: {"config": small.config(), "speeds": [180.0, 200.0], "persistent_load": None, "full": False, "rate_weight": 0.0},
         told=ABOUT,
         public="scheduled_lqg_for",
+    ),
+    Door(
+        "Hypothesis",
+        baselines.Hypothesis,
+        {
+            "plant": PLANT,
+            "delay": COUNT,
+            "actuator_gain": ARRAY,
+            "sensor_gain": ARRAY,
+            "sensor_bias": ARRAY,
+            "load": maybe(LOADS),
+            "deflection": NUMBER,
+            "holds_lost_readings": FLAG,
+            "prior": NUMBER,
+        },
+        lambda: {
+            "plant": small.plant(),
+            "delay": 1,
+            "actuator_gain": [1.0, 0.0],
+            "sensor_gain": 1.0,
+            "sensor_bias": np.array([0.1, 0.0]),
+            "load": None,
+            "deflection": 10.0,
+            "holds_lost_readings": True,
+            "prior": 2.0,
+        },
+        public="Hypothesis",
+    ),
+    Door(
+        "multiple_model",
+        baselines.multiple_model,
+        {
+            "hypotheses": HYPOTHESES,
+            "fallback": maybe(LINEAR),
+            "transition": maybe(ARRAY),
+            "rate_weight": NUMBER,
+            "floor": NUMBER,
+            "window": COUNT,
+            "confidence": NUMBER,
+            "allowance": NUMBER,
+        },
+        lambda: {
+            "hypotheses": hypotheses(),
+            "fallback": small.law(),
+            "transition": [[0.9, 0.1], [0.0, 1.0]],
+            "rate_weight": 1.0,
+            "floor": 1e-6,
+            "window": 20,
+            "confidence": 0.999,
+            "allowance": 10.0,
+        },
+        told=(*ABOUT, "transition"),
+        public="multiple_model",
+    ),
+    Door(
+        "MultipleModel.predict",
+        lambda **given: several().predict(**given),
+        {"observation": MATRIX, "state": maybe(MATRIX)},
+        lambda: {"observation": np.array([[0.1, -0.2]]), "state": np.zeros((1, several().order))},
+        told=("state",),
+        check=finite,
+        public="MultipleModel",
     ),
     Door(
         "PersistentLoad",

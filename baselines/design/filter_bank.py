@@ -1,0 +1,189 @@
+"""Kalman filters of several hypotheses side by side, for a batch of blades: every product runs over hypotheses × blades at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.design.controller import Array
+from beamenv.configuration.read_only import ReadOnly
+
+SETTLED = 1e-3
+"""A filter's gain counts as that of the steady state when no correction, in standard deviations, differs by more than this."""
+
+LONGEST = 200
+"""Instants at most with gains of their own. Modes that are hardly seen take longer to settle than an episode lasts; on the default
+blade, what a reading that is off by a standard deviation does to the voltages is within 2 % of the steady state by then."""
+
+
+class Filter(NamedTuple):
+    """x⁺ = A x + B u + w, y = C x + v with covariances W and V, S₀ of x at the start, and S of its prediction in the long run."""
+
+    A: Array
+    B: Array
+    C: Array
+    W: Array
+    V: Array
+    at_start: Array
+    in_the_long_run: Array
+
+
+class Correction(NamedTuple):
+    """What readings say of H hypotheses' predictions for N blades."""
+
+    whitened: Array
+    """(H, N, p): covariance⁻¹ innovation, zero of what is lost."""
+    gains: Array
+    """(H, N, s): to be added to the predicted states."""
+    squared: Array
+    """(H, N): normalised innovation squared, χ² with as many degrees of freedom as there are readings."""
+    log_density: Array
+    """(H, N): of the readings, but for (2π)^(−p/2)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilterBank(ReadOnly):
+    """H filters of s states, shorter ones with zeros behind their own, with gains for K instants, of which the last stays."""
+
+    transition: Array
+    """(H, s, s): Aᵀ."""
+    voltage_input: Array
+    """(H, m (D + 1), s): Bᵀ, from this instant's voltages and the D before, newest first."""
+    output: Array
+    """(H, s, p): Cᵀ."""
+    cross: Array
+    """(K, H, p, s): covariance of readings and states, C S."""
+    covariance: Array
+    """(K, H, p, p): of innovations, C S Cᵀ + V."""
+    inverse: Array
+    """(K, H, p, p): of it."""
+    log_determinant: Array
+    """(K, H)."""
+    full_scale: Array
+    """(p,), A: where readings are clipped."""
+    holds: NDArray[np.bool_]
+    """(H,): whether lost readings show as the one before."""
+
+    @classmethod
+    def of(
+        cls, filters: Sequence[Filter], delays: Sequence[int], depth: int, full_scale: Array, holds: Sequence[bool]
+    ) -> FilterBank:
+        """From each hypothesis' filter and delay; ``depth`` D is how many voltages before are remembered."""
+        size = max(len(each.A) for each in filters)
+        same = [_padded(each, size) for each in filters]
+        cross, covariance = _recursion(*(np.stack(part) for part in zip(*same, strict=True)))
+        m = filters[0].B.shape[1]
+        voltage_input = np.zeros((len(same), (depth + 1) * m, size))
+        for row, each, delay in zip(voltage_input, same, delays, strict=True):
+            row[delay * m : (delay + 1) * m] = each.B.T
+        return cls(
+            transition=np.stack([each.A.T for each in same]),
+            voltage_input=voltage_input,
+            output=np.stack([each.C.T for each in same]),
+            cross=cross,
+            covariance=covariance,
+            inverse=np.asarray(np.linalg.inv(covariance), dtype=np.float64),
+            log_determinant=np.linalg.slogdet(covariance)[1],
+            full_scale=full_scale,
+            holds=np.array(holds, dtype=bool),
+        )
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Hypotheses H and states s."""
+        return self.transition.shape[0], self.transition.shape[1]
+
+    def lost(self, reading: Array, before: Array, first: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(N, p): readings that show the one before exactly, unless both are clipped, if any hypothesis says that lost ones do."""
+        again = (reading == before) & (np.abs(reading) < self.full_scale) & ~first[:, None]
+        return np.asarray(again & self.holds.any())
+
+    def corrections(self, instant: Array, predicted: Array, reading: Array, lost: NDArray[np.bool_]) -> Correction:
+        """From predicted states (H, N, s) and readings (N, p) in A, each blade at an ``instant`` (N,) of its own.
+
+        A reading is predicted as it will be taken, clipped. A lost one counts in no likelihood, nor for filters that know.
+        """
+        expected = np.matmul(predicted, self.output)
+        innovation = reading - np.minimum(np.maximum(expected, -self.full_scale), self.full_scale)
+        step = np.minimum(instant, len(self.cross) - 1).astype(np.int64)
+        code = lost @ (1 << np.arange(lost.shape[1])) if lost.any() else np.zeros(len(lost), dtype=np.int64)
+        keys = np.unique(np.stack([step, code], axis=1), axis=0)
+        if len(keys) == 1:
+            return self._correction(int(keys[0, 0]), innovation, lost[0])
+        H, N, p = innovation.shape
+        all_of_them = Correction(np.empty((H, N, p)), np.empty(predicted.shape), np.empty((H, N)), np.empty((H, N)))
+        for k, pattern in keys.tolist():
+            rows = np.flatnonzero((step == k) & (code == pattern))
+            for whole, part in zip(all_of_them, self._correction(k, innovation[:, rows], lost[rows[0]]), strict=True):
+                whole[:, rows] = part
+        return all_of_them
+
+    def _correction(self, k: int, innovation: Array, lost: NDArray[np.bool_]) -> Correction:
+        """Of blades at one instant that have lost the same readings (p,).
+
+        With z = covariance⁻¹ innovation of those that are left and zero of the others, S Cᵀ z is the optimum from them.
+        """
+        inverse, log_determinant = self.inverse[k], self.log_determinant[k]
+        if lost.any():
+            inverse, log_determinant = _without(self.covariance[k], lost)
+        whitened = np.matmul(innovation, inverse)
+        squared = np.einsum("hnp,hnp->hn", innovation, whitened)
+        log_density = -0.5 * (squared + log_determinant[:, None])
+        if lost.any() and not self.holds.all():
+            others = ~self.holds
+            whitened[others] = np.matmul(innovation[others], self.inverse[k, others])
+        return Correction(whitened, np.matmul(whitened, self.cross[k]), squared, log_density)
+
+    def predicted(self, estimate: Array, voltages: Array, out: Array | None = None) -> Array:
+        """States (H, N, s) of the next instant from this one's and voltages (N, m (D + 1)), V, newest first."""
+        following = np.matmul(estimate, self.transition, out=out)
+        following += np.matmul(voltages, self.voltage_input)
+        return following
+
+
+def _without(covariance: Array, lost: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Inverse (H, p, p), zero in rows and columns of what is lost, and logarithm of the determinant (H,) of what is left."""
+    left = np.flatnonzero(~lost)
+    inverse, log_determinant = np.zeros_like(covariance), np.zeros(len(covariance))
+    if len(left):
+        kept = covariance[:, left[:, None], left]
+        inverse[:, left[:, None], left], log_determinant = np.linalg.inv(kept), np.linalg.slogdet(kept)[1]
+    return inverse, log_determinant
+
+
+def _padded(each: Filter, size: int) -> Filter:
+    """The same filter with zeros behind its own states."""
+    more = size - len(each.A)
+    both, below, right = ((0, more), (0, more)), ((0, more), (0, 0)), ((0, 0), (0, more))
+    widths = (both, below, right, both, ((0, 0), (0, 0)), both, both)
+    return Filter(*(np.pad(part, width) for part, width in zip(each, widths, strict=True)))
+
+
+def _recursion(A: Array, B: Array, C: Array, W: Array, V: Array, S: Array, last: Array) -> tuple[Array, Array]:
+    """C S (K, H, p, s) and C S Cᵀ + V (K, H, p, p) of Riccati's recursion from ``S``, until they are those of ``last``.
+
+    S⁺ = A (S − S Cᵀ (C S Cᵀ + V)⁻¹ C S) Aᵀ + W for all H filters at once.
+    """
+
+    def seen(S: Array) -> tuple[Array, Array]:
+        cross = C @ S
+        return cross, cross @ C.swapaxes(-1, -2) + V
+
+    steady = seen(last)
+    spread = np.sqrt(np.maximum(np.diagonal(last, axis1=-2, axis2=-1), 0.0))[:, None]
+    size = np.sqrt(np.diagonal(steady[1], axis1=-2, axis2=-1))[..., None] * np.where(spread > 0.0, spread, np.inf)
+    found: list[tuple[Array, Array]] = []
+    for _ in range(LONGEST):
+        cross, covariance = seen(S)
+        if (np.abs(cross - steady[0]) / size).max(initial=0.0) < SETTLED:
+            break
+        found.append((cross, covariance))
+        S = S - cross.swapaxes(-1, -2) @ np.linalg.solve(covariance, cross)
+        S = A @ S @ A.swapaxes(-1, -2) + W
+        S = 0.5 * (S + S.swapaxes(-1, -2))
+    found.append(steady)
+    return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
