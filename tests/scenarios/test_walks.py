@@ -8,6 +8,7 @@ from scipy.stats import kstest
 
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
 from beamenv.blade.build import changed_blade
+from beamenv.rendering.deformation import Deformation
 from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.plants import walks
@@ -163,6 +164,20 @@ def test_a_batch_is_at_the_stations_of_its_blades_alone():
         np.testing.assert_allclose(rewards, expected, rtol=1e-9)
         met.update(batch._blades.index.tolist())
     assert len(met) > 8
+
+
+def test_pictures_follow_the_plant_that_moves():
+    """What is drawn is the tip displacement that info tells, whichever station the blade has come to."""
+    env = RotatingBeamEnv(scenario={"plants": {"mass_drift": 1.3, "drift_duration": 0.02, "bank": 8}}, duration=0.03)
+    env.reset(seed=0, options={"load": {"case": "deflection", "magnitude": 30.0, "direction_deg": 60.0}})
+    drawn, places = Deformation(env.task, np.array([env.task.config.beam.length])), set()
+    for _ in range(50):
+        *_, info = env.step(np.zeros(4))
+        place = int(env._blade.index[0])
+        places.add(place)
+        lag, flap, _ = drawn.displacement(env.state, place)[:, 0]
+        np.testing.assert_allclose([lag, flap], info["tip_displacement"], rtol=0.0, atol=1e-8)
+    assert len(places) == 8
 
 
 def test_no_tachometer_follows_a_speed_that_wanders():
