@@ -181,7 +181,8 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     - `scenario`: a name in `beamenv.SCENARIOS`, the path of a `.toml` file, a dictionary of fields (with "preset" to depart from
       a named one), or a `Scenario`.
     - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
-      40 % of it.
+      40 % of it. An environment's spec holds its number of steps: `gym.make(env.spec, duration=1.0, max_episode_steps=-1)` lets
+      it be longer.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
     - `dtype`: of both spaces and the observations, `"float32"` or `"float64"`; default `"float32"`, which agents' networks
       have. What is stepped, and info, has 64 bits always.
@@ -293,6 +294,11 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     def rotor_speed(self) -> Any:
         """() rad/s: what a tachometer shows now."""
         return self._blade.speed
+
+    @property
+    def episode_truth(self) -> Array:
+        """(2 + m + 2 p): which plant of the bank moves, and what is wrong now: see ``Blades.truth``."""
+        return self._blade.truth
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[NDArray[Any], dict[str, Any]]:
         """Begin an episode; ``options`` may fix its "load" or give its "initial_state" (see the class)."""

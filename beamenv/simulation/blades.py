@@ -153,6 +153,16 @@ class Blades:
         speeds = self.bank.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
 
+    @property
+    def truth(self) -> Array:
+        """(…, 2 + m + 2 p): which plant of the bank moves, delay in intervals, gains of actuators, gains of sensors, biases in full
+        scales, all of them as they are now: what only a law of tier 3 is told.
+        """
+        (p, _), m = self.plant.C.shape, self.plant.B.shape[1]
+        sound = np.tile(np.repeat([0.0, 1.0, 0.0], [1, m + p, p]), (self.count or 1, 1))
+        told = np.column_stack([self.plants.within_group, sound if self.electronics is None else self.electronics.told()])
+        return told if self._shape else told[0]
+
     def steady(self, rows: Rows | None = None) -> Array:
         """(…, 4): stretch, untwist, largest strain and its place of the blades, or of ``rows``, as their episodes begin and nothing
         vibrates.
