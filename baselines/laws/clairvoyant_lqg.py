@@ -140,8 +140,8 @@ def _each(matrices: Array, rows: Array) -> Array:
 def clairvoyant_lqg(truth: Truth) -> ClairvoyantLQG:
     """LQG with the loads that can be foreseen, for batches whose episodes may each have another truth.
 
-    Its gains are worked out when a truth is first met, those of a batch together. ``ValueError`` for what is no ``Truth``, and for
-    a bank of several blades.
+    Its gains are worked out when a truth is first met, those of a batch together. ``ValueError`` for what is no ``Truth``, for a
+    bank of several blades, and for plants that wander within an episode, as in `drift`: its gains are of plants that stay.
     """
     truth = instance("truth", truth, Truth, "a beamenv.knowledge.Truth, such as env.unwrapped.task.truth")
     return ClairvoyantLQG("clairvoyant LQG", Instruments.of(truth.plant, "observation and truth"), truth)

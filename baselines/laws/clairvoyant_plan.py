@@ -49,10 +49,12 @@ class Plan:
 
     @classmethod
     def of(cls, truth: Truth) -> Plan:
-        """Without any gains yet; ``ValueError`` for a bank of several blades."""
+        """Without any gains yet; ``ValueError`` for a bank of several blades, or of plants that wander."""
         bank, scenario, plant = truth.bank, truth.scenario, normalised(truth.plant)
         if bank.groups > 1:
             raise ValueError(f"truth has a bank of {bank.groups} blades, but must have that of a single one.")
+        if bank.walk is not None:
+            raise ValueError("truth has plants that wander within an episode, but allowed are one an episode, and a run-up's.")
         if not scenario.sensor_noise:
             plant = replace(plant, sensor_noise=np.zeros_like(plant.sensor_noise))
         models = {speed: _model(truth, speed) for speed in dict.fromkeys(bank.speeds.tolist())}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +21,7 @@ from beamenv.configuration import read
 from beamenv.configuration.cache import keep, kept_at, key_of
 from beamenv.knowledge import Prior
 from beamenv.plant.fingerprint import fingerprint
+from beamenv.scenarios.scenario import Scenario
 
 VERSION = 1
 """Of the rule: a new number discards what was kept."""
@@ -144,10 +145,16 @@ def _mean_cost(prior: Prior, law: LinearController | None, without: float) -> fl
 def _depends_on(prior: Prior) -> tuple[Any, ...]:
     return (
         (VERSION, EPISODES, TRIALS, prior.steps),
-        prior.scenario.to_dict(),
-        [to_dict(each.config) for each in (prior.blade, prior.design_blade)],
+        _departing(prior.scenario.to_dict(), Scenario().to_dict()),
+        to_dict(prior.blade.config),
         fingerprint(prior.blade.truth),
     )
+
+
+def _departing(table: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    """What of a table is not as usual: a field that is yet to come leaves the key of a scenario without it as it is."""
+    own = {name: value for name, value in table.items() if value != usual[name]}
+    return {name: _departing(value, usual[name]) if isinstance(value, dict) else value for name, value in own.items()}
 
 
 @lru_cache(maxsize=1)

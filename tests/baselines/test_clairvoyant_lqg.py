@@ -142,6 +142,11 @@ def test_foreseen_loads_are_of_the_sizes_that_are_drawn():
     assert foreseen_loads(scenario("overload"), 200.0)[0].magnitude == LARGEST
 
 
+def test_plants_that_wander_within_an_episode_are_refused():
+    with pytest.raises(ValueError, match="truth has plants that wander within an episode, but allowed are one an episode"):
+        law_for(made(1, "gust-speed", 0.02))
+
+
 def test_what_is_no_truth_is_refused():
     with pytest.raises(ValueError, match="truth is None, but must be a beamenv.knowledge.Truth"):
         clairvoyant_lqg(None)
