@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import product, repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from baselines.design.load_model import Load
 from beamenv.blade.build import Blade
 from beamenv.knowledge import Prior
 from beamenv.scenarios.scenario import Scenario
-from beamenv.scenarios.tables import Failures
+from beamenv.scenarios.tables import Failures, PlantVariation
 from beamenv.simulation.plants.banks import varied_blades
 
 Array = NDArray[np.float64]
@@ -24,6 +24,9 @@ PLANTS = 32
 
 SPEEDS = 13
 """Of a run-up."""
+
+SOONER = 1e-6
+"""How likely what breaks within the episode is broken already at its start."""
 
 MOST = 64
 """Hypotheses: of more, as many are drawn as episodes draw them."""
@@ -60,7 +63,7 @@ def switches(prior: Prior, hypotheses: Sequence[Hypothesis]) -> Array | None:
     From none to each by its share, once in the mean time until they set in; what is broken stays broken.
     """
     failures = prior.scenario.failures
-    if not failures.drawn_instants or len(hypotheses) == 1:
+    if failures.onset == (0.0, 0.0) or len(hypotheses) == 1:
         return None
     interval, shares = hypotheses[0].plant.control_interval, np.array([each.prior for each in hypotheses[1:]])
     breaks = interval / max(float(np.mean(failures.onset)), 2.0 * interval)
@@ -128,12 +131,13 @@ def _faults(failures: Failures, m: int, p: int) -> list[Fault]:
         for dead, share in ((1, 1.0 - failures.biased_share), (0, failures.biased_share))
         if share > 0.0
     ]
+    later = failures.onset != (0.0, 0.0)
     if failures.either:
         broken = [*actuators, *sensors]
     else:
-        pairs = product(actuators or [sound], sensors or [sound])
+        pairs = list(product([sound] * later + (actuators or [sound]), [sound] * later + (sensors or [sound])))[later:]
         broken = [replace(sensor, actuator_gain=each.actuator_gain, share=each.share * sensor.share) for each, sensor in pairs]
-    return [sound, *broken] if failures.drawn_instants else broken
+    return [sound, *(replace(each, share=SOONER * each.share) for each in broken)] if later else broken
 
 
 def _rings(count: int, among: int) -> list[Array]:
@@ -143,12 +147,14 @@ def _rings(count: int, among: int) -> list[Array]:
 
 
 def _drawn(prior: Prior) -> list[Hypothesis]:
-    """As the first episodes of tuning have them."""
-    drawn, scenario = prior.hypotheses(MOST), prior.scenario
-    varied = list(varied_blades(prior.blade, scenario.plants)) if scenario.plants.varies else [prior.blade]
-    faults = drawn.faults
-    each = zip(faults.actuator_gain, faults.sensor_gain, np.abs(faults.sensor_bias), strict=True)
+    """Faults of the first episodes of tuning, each with a plant of a Latin hypercube of as many."""
+    scenario = prior.scenario
+    faults = replace(prior, scenario=replace(scenario, plants=PlantVariation())).hypotheses(MOST).faults
+    varied = (
+        varied_blades(prior.blade, replace(scenario.plants, bank=MOST)) if scenario.plants.varies else repeat(prior.blade, MOST)
+    )
+    each = zip(faults.delay, faults.actuator_gain, faults.sensor_gain, np.abs(faults.sensor_bias), strict=True)
     return [
-        _hypothesis(scenario, varied[place], int(delay), Fault(actuators, sensors, bias, 1.0))
-        for place, delay, (actuators, sensors, bias) in zip(drawn.plant, faults.delay, each, strict=True)
+        _hypothesis(scenario, blade, int(delay), Fault(actuators, sensors, bias, 1.0))
+        for blade, (delay, actuators, sensors, bias) in zip(varied, each, strict=True)
     ]
