@@ -8,8 +8,10 @@ BIN := .venv/bin
 INSTALLED := .venv/.installed
 
 # Libraries of others, each installed into an environment of its own beside this package, and what that takes.
-CLIENTS := minari rllib sbx skrl tianshou torchrl zoo
+CLIENTS := cleanrl minari rllib sbx skrl tianshou torchrl zoo
 QUICK_CLIENTS := minari torchrl
+REQUIRES_cleanrl := tensorboard setuptools
+ALONE_cleanrl := cleanrl==1.2.0
 REQUIRES_minari := minari[create,hdf5]
 REQUIRES_rllib := ray[rllib]
 REQUIRES_sbx := sbx-rl
@@ -53,12 +55,13 @@ clients: quick-clients $(CLIENTS:%=client-%)
 quick-clients: $(INSTALLED) $(QUICK_CLIENTS:%=client-%)
 	$(BIN)/python -m pytest -m "slow or not slow" tests/clients tests/test_wings.py $(ARGS)
 
-# torch as in .venv; else whatever the library itself asks for.
+# torch as in .venv; else whatever the library itself asks for. cleanrl is scripts, whose release asks for a Gymnasium of long ago.
 client-%: | $(BIN)/python
 	@mkdir -p $(APART)
 	@test -x $(APART)/$*/bin/python || $(BIN)/python -m venv $(APART)/$*
 	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
 	$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/torch.txt torch pytest . $(foreach each,$(REQUIRES_$*),'$(each)')
+	$(if $(ALONE_$*),$(APART)/$*/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --ignore-requires-python $(ALONE_$*))
 	$(APART)/$*/bin/python -m pytest --confcutdir=tests/clients -m "slow or not slow" tests/clients/test_$*.py $(ARGS)
 
 # Tools at the versions of .venv, what the package itself runs on at the lowest that pyproject.toml declares.

@@ -14,6 +14,7 @@ from baselines.evaluation.episodes import Episodes, roll_out
 from baselines.evaluation.evaluate import Evaluation, evaluate
 from baselines.evaluation.metrics import EpisodeMetrics
 from baselines.evaluation.statistics import Estimate
+from baselines.laws.clairvoyant_lqg import ClairvoyantLQG, clairvoyant_lqg
 from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.h_infinity import h_infinity
 from baselines.laws.lqg import lqg
@@ -28,6 +29,7 @@ from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_
 from baselines.laws.velocity_feedback import velocity_feedback
 
 __all__ = [
+    "ClairvoyantLQG",
     "ClippedLQG",
     "Controller",
     "Episodes",
@@ -44,6 +46,7 @@ __all__ = [
     "RotorHarmonics",
     "ScheduledLQG",
     "StabilityMargins",
+    "clairvoyant_lqg",
     "clipped_lqg",
     "closed_loop_poles",
     "evaluate",

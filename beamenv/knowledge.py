@@ -43,7 +43,7 @@ class Hypotheses(NamedTuple):
     """What may be the case in an episode, H times, each as likely as any other."""
 
     plant: NDArray[np.int64]
-    """(H,) places in the bank."""
+    """(H,) places in the bank; of plants that change within an episode, those of its middle."""
     faults: Faults
     onsets: Onsets | None
     """When they set in; None where it is at the start."""
@@ -87,10 +87,14 @@ class Prior:
     def hypotheses(self, count: int) -> Hypotheses:
         """``count`` of them, drawn as the episodes of tuning draw theirs."""
         failures = self.scenario.failures
-        uniforms = np.stack([each.random(fault_draws(failures)) for each in self.generators(checked("count", count, Count()))])
+        generators, walk = self.generators(checked("count", count, Count())), self.bank.walk
+        uniforms = np.stack([each.random(fault_draws(failures)) for each in generators])
         m, p = self.blade.truth.B.shape[1], len(self.blade.truth.C)
         drawn = len(self.bank) > 1 and not self.bank.runs
         place = (uniforms[:, 0] * len(self.bank)).astype(np.int64) if drawn else np.zeros(len(uniforms), dtype=np.int64)
+        if walk is not None:
+            courses = walk.courses(np.stack([each.random(walk.draws) for each in generators]))
+            place = walk.places(courses, np.full(len(courses), self.steps // 2))
         begins = draw_onsets(failures, self.bank.plant.control_interval, uniforms[:, DRAWS:]) if failures.drawn_instants else None
         return Hypotheses(place, draw_faults(failures, self.scenario.drive.delay, uniforms, m, p), begins)
 

@@ -20,6 +20,7 @@ from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
+from beamenv.configuration.arrays import real_numbers
 from beamenv.configuration.numbers import UNBOUNDED
 from beamenv.knowledge import TIERS, TRUTH, Prior, Truth, kept_for_judging, on_training_bank, without_faults
 from beamenv.plant.files import load_plant
@@ -256,7 +257,8 @@ def checked_task(task: Any) -> Task:
 
 def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
     """The action as float64; ValueError unless it has the shape and all its numbers are finite."""
-    action = _numbers("action", action)
+    if type(action) is not np.ndarray or action.dtype is not _DOUBLE:  # a blade alone has no time to look closer
+        action = real_numbers("action", action)
     if action.shape != shape:
         raise ValueError(f"action has shape {action.shape}, but must have shape {shape}.")
     finite = np.isfinite(action)
@@ -264,20 +266,6 @@ def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
         wrong = np.argwhere(~finite)[0].tolist()
         raise ValueError(f"action{wrong} is {action[tuple(wrong)]}, but every number must be finite.")
     return action
-
-
-def _numbers(name: str, value: Any) -> Array:
-    if type(value) is np.ndarray and value.dtype is _DOUBLE:  # a blade alone has no time to look closer
-        return value
-    try:
-        given = np.asarray(value)
-        if given.dtype.kind not in "fiu" or isinstance(
-            value, (bytes, bytearray, memoryview)
-        ):  # complex numbers would lose a part, text would be read as numbers
-            raise TypeError
-        return np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError, RuntimeError):  # torch raises the last of a tensor that wants a gradient
-        raise Refused(name, value, "an array of numbers") from None
 
 
 def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> tuple[Scenario, Array | None]:
@@ -291,7 +279,7 @@ def reset_options(task: Task, options: Mapping[str, Any] | None, rows: int) -> t
 
 
 def _initial_state(task: Task, value: Any, rows: int) -> Array:
-    plant, state = task.plant, _numbers("options.initial_state", value)
+    plant, state = task.plant, real_numbers("options.initial_state", value)
     n, b = len(plant.A), plant.blade_states
     if state.shape not in ((n,), (rows, n), (b,), (rows, b)):
         alone = f", or ({b},) or ({rows}, {b}), the blade's own states" if b < n else ""

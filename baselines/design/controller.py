@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 from beamenv.configuration import shown
 
 Array = NDArray[np.float64]
-Observes = Literal["observation", "state", "observation and speed"]
-"""What ``predict`` wants: the sensors' readings, the true state, or the readings (p,) with the rotor speed in rad/s behind them."""
+Observes = Literal["observation", "state", "observation and speed", "observation and truth"]
+"""What ``predict`` wants: the sensors' readings, the true state, or the readings (p,) with the rotor speed in rad/s behind them, or
+with the episode's truth, ``env.unwrapped.episode_truth``."""
 
-LEAST_TIER: Mapping[str, int] = MappingProxyType({"observation": 0, "observation and speed": 2, "state": 3})
+LEAST_TIER: Mapping[str, int] = MappingProxyType(
+    {"observation": 0, "observation and speed": 2, "state": 3, "observation and truth": 3}
+)
 """The least tier of information (``beamenv.knowledge``) at which each of these may be seen."""
 
 

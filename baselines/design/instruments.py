@@ -43,7 +43,8 @@ class Instruments(ReadOnly):
         checked_plant(plant)
         observes = checked("observes", observes, Choice(get_args(Observes)))
         scale = np.ones(len(plant.A)) if observes == "state" else plant.sensor_full_scale
-        scale = np.append(scale, 1.0) if observes == "observation and speed" else scale
+        beside = {"observation and speed": 1, "observation and truth": 2 + plant.B.shape[1] + 2 * len(plant.C)}
+        scale = np.append(scale, np.ones(beside.get(observes, 0)))
         return cls(scale, drive_limit(plant), plant.voltage_limits, plant.control_interval, observes)
 
     @property

@@ -54,7 +54,7 @@ class Law(ABC):
         """Action (m,) or (N, m) in units of the drive limit, and the next memory (None for a law without memory).
 
         ``observation`` (p,) or (N, p) is normalised as the environment gives it, and what the law ``observes``; rows where
-        ``episode_start`` is true forget their memory. Raises ValueError for an observation of another length or of no numbers, and
+        ``episode_start`` is true forget their memory. ValueError for an observation of another length, not finite, and
         for a state or starts that are not of this law and this batch.
         """
         seen, order = observed(observation, self.name, self.observes, self.instruments.measurement_scale.size), self.order

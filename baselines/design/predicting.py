@@ -10,18 +10,21 @@ from numpy.typing import NDArray
 
 from baselines.design.controller import Array
 from beamenv.configuration import Refused
+from beamenv.configuration.arrays import real_numbers
 
 _DOUBLE = np.dtype(np.float64)
 
 
 def observed(observation: Any, name: str, reads: str = "observation", length: int | None = None) -> Array:
-    """An observation (p,) or a batch (N, p) as float64; ``ValueError`` unless it holds real numbers, ``length`` a blade."""
+    """An observation (p,) or a batch (N, p) as float64; ``ValueError`` unless it holds finite numbers, ``length`` a blade."""
     seen = observation
     if type(seen) is not np.ndarray or seen.dtype is not _DOUBLE:  # a blade alone has no time to look closer
-        seen = _numbers("observation", observation)
+        seen = real_numbers("observation", observation)
     if seen.ndim not in (1, 2) or length not in (None, seen.shape[-1]):
         wanted = f"{reads} vectors" if length is None else f"{reads} vectors of length {length}"
         raise ValueError(f"observation has shape {seen.shape}, but {name} takes {wanted}, alone or in rows.")
+    if not np.isfinite(seen).all():  # a memory would never forget them
+        raise Refused("observation", observation, f"finite {reads} vectors")
     return seen
 
 
@@ -49,13 +52,3 @@ def _begins(episode_start: Any, batch: tuple[int, ...]) -> NDArray[np.bool_]:
     if begins.dtype.kind not in "biuf" or begins.size != math.prod(batch):
         raise Refused("episode_start", episode_start, f"None, or {math.prod(batch)} of True and False, one a blade")
     return np.asarray(begins.reshape(batch), dtype=bool)
-
-
-def _numbers(name: str, value: Any) -> Array:
-    try:
-        given = np.asarray(value)
-        if given.dtype.kind not in "fiu":  # complex numbers would lose a part, text would be read as numbers
-            raise TypeError
-        return np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError, RuntimeError):  # torch raises the last of a tensor that wants a gradient
-        raise Refused(name, value, "an array of real numbers") from None

@@ -36,8 +36,8 @@ def instants(
     """The reset, then every control interval of one episode for each seed, until the last of them has ended.
 
     There is one seed for each blade of ``env``, one environment or a batch, which is reset with them and ``options`` but not
-    closed. A controller is shown what it ``observes``: the readings, the readings with the rotor speed behind them, or the true
-    state in the coordinates of the design plant. Raises ValueError for what is no controller.
+    closed. A controller is shown what it ``observes``: the readings, these with the rotor speed or the episode's truth behind them,
+    or the true state in the coordinates of the design plant. Raises ValueError for what is no controller.
     """
     controller = as_controller(controller)
     observes = getattr(controller, "observes", "observation")
@@ -60,11 +60,13 @@ def attribute(env: Environment, name: str) -> Sequence[Any]:
 
 
 def _seen(observes: str, observation: Any, env: Environment) -> Any:
-    """What a controller is shown (N, …): the observation, with the rotor speed (rad/s) behind it, or the true state instead."""
+    """What a controller is shown (N, …): the observation, with rotor speed (rad/s) or truth behind it, or the true state."""
     if observes == "state":
         return np.vstack(attribute(env, "design_state"))
     if observes == "observation and speed":
         return np.hstack([observation, np.hstack(attribute(env, "rotor_speed")).reshape(-1, 1)])
+    if observes == "observation and truth":
+        return np.hstack([observation, np.vstack(attribute(env, "episode_truth"))])
     return observation
 
 

@@ -21,7 +21,7 @@ from beamenv.plant.plant import Plant, sample
 
 NAME = "positive position feedback"
 
-POSITIVE = Number(gt=0.0)
+POSITIVE, LARGEST = Number(gt=0.0), Number(le=1e6)
 
 FILTER_DAMPING = 0.3
 """ζ_f of every filter: wide enough for a mode that is some per cent off."""
@@ -59,7 +59,10 @@ def positive_position_feedback(
     """
     known = len(checked_plant(plant).natural_frequencies)
     count = min(3, known) if modes is None else checked("modes", modes, Count(1, known))
-    filter_damping, leak = (checked(name, value, POSITIVE) for name, value in (("filter_damping", filter_damping), ("leak", leak)))
+    filter_damping, leak = (
+        checked(name, checked(name, value, POSITIVE), LARGEST)
+        for name, value in (("filter_damping", filter_damping), ("leak", leak))
+    )
     frequencies = plant.natural_frequencies[:count]
     pairs = pairing(plant, NAME)
     filters = _held_filters(frequencies, filter_damping, leak * frequencies[0], plant.control_interval)

@@ -28,6 +28,11 @@ def shown(value: Any) -> str:
         text = " ".join(repr(value).split())
     except Exception:  # noqa: BLE001 - an object that cannot even be shown is refused all the same
         text = f"an object of type {type(value).__name__}"
+    return cut(text)
+
+
+def cut(text: str) -> str:
+    """Text of no more than ``LONGEST`` characters and a sign that there were more."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
 
 

@@ -172,6 +172,11 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
         """(N,) rad/s: what a tachometer shows now."""
         return self._blades.speed
 
+    @property
+    def episode_truth(self) -> Array:
+        """(N, 2 + m + 2 p): which plant of the bank moves, and what is wrong now: see ``Blades.truth``."""
+        return self._blades.truth
+
     def reset(self, *, seed: Seeds = None, options: dict[str, Any] | None = None) -> tuple[NDArray[Any], dict[str, Any]]:
         """Begin an episode of every blade. ``seed``: one for the batch, or a sequence of one for each blade.
 

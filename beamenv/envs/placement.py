@@ -16,7 +16,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
 from beamenv.configuration import Count, Refused, Table, checked, checked_table
-from beamenv.envs.seeds import checked_seed
+from beamenv.envs.seeds import checked_seed, checked_seeds
 from beamenv.envs.specification import plain
 from beamenv.envs.within import task_within
 from beamenv.task import Task, reset_options
@@ -126,6 +126,7 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
             self._resolved("options['layout']", options.pop("layout"), self._positions[0]) if "layout" in options else self._layouts
         )
         self.env.unwrapped.check_options(options)  # type: ignore[attr-defined]
+        checked_seeds(seed, self.num_envs)  # what reset refuses must be refused before anything has moved
         drawn = any(isinstance(layout[side], Drawn) for layout in layouts for side in SIDES)
         if drawn:
             self.env.reset(seed=seed)
@@ -154,6 +155,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
 
     def _resolved(self, name: str, given: Any, like: Mapping[Side, Positions] | None = None) -> list[Layout]:
         """One layout for all blades, or one for each."""
+        if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind == "O":  # what an array of mappings is
+            given = given.tolist()
         if isinstance(given, (str, Mapping)):
             return [_resolved(self._home.config, given, like, name)]
         if not isinstance(given, Sequence) or len(given) != self.num_envs:

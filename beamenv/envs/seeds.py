@@ -85,6 +85,14 @@ class SeededVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return super().np_random_seed if self._own is None else tuple(seed for _, seed in self._own)
 
 
+def checked_seeds(seed: Any, count: int) -> None:
+    """``ValueError`` unless it is what a batch of ``count`` may be reset with: None, one seed, or one for each."""
+    if seed is None or _is_number(seed):
+        checked_seed(seed, _batch_allows(count))
+    else:
+        own_seeds(seed, count)
+
+
 def own_seeds(seed: Any, count: int) -> list[int | None]:
     """One seed for each blade, None for one that goes on with the generator that it has."""
     try:

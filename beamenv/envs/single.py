@@ -137,6 +137,8 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     | `solid`      | the blade is a solid of three dimensions (finite elements, 11 modes), the design plant is the beam's   |
     | `solid-20`   | the same solid with 20 modes                                                                           |
     | `mid-failure` | an actuator or a sensor dies, 0.05 … 0.3 s into the episode                                         |
+    | `gust-speed` | rotor speed wanders by 5 % (one standard deviation), up to 4 Hz; `rotor_speed` does not show it          |
+    | `drift`      | up to 15 % heavier and 20 % softer within the episode, from a drawn instant on                         |
     | `unknown-everything` | speed, plies, mass, hysteresis, delay, lost readings, a weak actuator, a bias, rotor loads: all mild |
     | `off-speed-failure`, `delay-off-model`, `delay-failure`, `hysteresis-rotor` | both of what the name says               |
     | `long-delay`, `two-dead-actuators`, `biased-sensor` | voltages 4 control intervals late; two dead; by 30 % of full scale |
@@ -179,7 +181,8 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     - `scenario`: a name in `beamenv.SCENARIOS`, the path of a `.toml` file, a dictionary of fields (with "preset" to depart from
       a named one), or a `Scenario`.
     - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
-      40 % of it.
+      40 % of it. An environment's spec holds its number of steps: `gym.make(env.spec, duration=1.0, max_episode_steps=-1)` lets
+      it be longer.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
     - `dtype`: of both spaces and the observations, `"float32"` or `"float64"`; default `"float32"`, which agents' networks
       have. What is stepped, and info, has 64 bits always.
@@ -291,6 +294,11 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     def rotor_speed(self) -> Any:
         """() rad/s: what a tachometer shows now."""
         return self._blade.speed
+
+    @property
+    def episode_truth(self) -> Array:
+        """(2 + m + 2 p): which plant of the bank moves, and what is wrong now: see ``Blades.truth``."""
+        return self._blade.truth
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[NDArray[Any], dict[str, Any]]:
         """Begin an episode; ``options`` may fix its "load" or give its "initial_state" (see the class)."""

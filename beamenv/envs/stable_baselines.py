@@ -43,10 +43,15 @@ class BladeVecEnv(VecEnv):
 
     def reset(self) -> Array:
         """Begin an episode of every blade; observations (N, p)."""
+        return np.asarray(self._begin({})[0])
+
+    def _begin(self, common: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode of every blade with its own options, which go before the ``common`` ones; observations and info."""
         alike: dict[bytes, list[int]] = {}
-        for row, options in enumerate(self._options):
+        for row, own in enumerate(self._options):
+            options = {**common, **own}
             alike.setdefault(pickle.dumps(options), []).append(row)
-        groups = [(self._options[rows[0]], rows) for rows in alike.values()]
+        groups = [({**common, **self._options[rows[0]]}, rows) for rows in alike.values()]
         for options, _ in groups:
             self.envs.unwrapped.check_options(options)
         observations, info = self.envs.reset(seed=self._seed, options=groups[0][0])
@@ -57,14 +62,11 @@ class BladeVecEnv(VecEnv):
         self.reset_infos = [{name: values[row] for name, values in info.items() if name[0] != "_"} for row in range(self.num_envs)]
         self._seed = None
         self._reset_options()
-        return np.asarray(observations)
+        return observations, info
 
     def set_options(self, options: list[dict[str, Any]] | dict[str, Any] | None = None) -> None:
         """Options of the next reset: one dictionary for all blades, or a list of one for each."""
-        each = options if isinstance(options, list) else [{} if options is None else options] * self.num_envs
-        if len(each) != self.num_envs or not all(isinstance(one, dict) for one in each):
-            raise Refused("options", options, f"a dictionary, or a list of {self.num_envs} of them")
-        super().set_options(each)
+        super().set_options(options_of_each(options, self.num_envs))
 
     def get_images(self) -> Sequence[Array]:
         """Pictures of the blades that are drawn."""
@@ -107,6 +109,14 @@ class BladeVecEnv(VecEnv):
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """No blade has wrappers of its own."""
         return [False] * len(list(self._get_indices(indices)))
+
+
+def options_of_each(options: Any, count: int) -> list[dict[str, Any]]:
+    """The options of each blade's next reset; ``ValueError`` unless one dictionary, ``count`` of them, or None."""
+    each = options if isinstance(options, list) else [{} if options is None else options] * count
+    if len(each) != count or not all(isinstance(one, dict) for one in each):
+        raise Refused("options", options, f"a dictionary, or a list of {count} of them")
+    return each
 
 
 def _merged(values: Array, new: Array, mask: Array) -> Array:

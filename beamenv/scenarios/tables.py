@@ -51,12 +51,34 @@ class PlantVariation:
     spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s", falls=True)] = None
     """rad/s: Ω(t) runs up or down from the first to the second over the episode (``spin_up`` of the simulation); nothing else
     varies then."""
+    speed_wander: Annotated[float, Number(ge=0.0, le=0.1)] = 0.0
+    """σ over the configured speed: Ω(t) wanders about it within the episode (``Wander`` of the simulation), and no tachometer
+    follows; nothing else varies then."""
+    wander_frequency: Annotated[float, Number(ge=1e-3, le=20.0, unit="Hz")] = 4.0
+    """Up to which the speed wanders: far below the first mode, so that it does not shake the blade."""
+    modulus_drift: Ratio = SAME
+    """Of every modulus of the laminate, over what it was at the start, when it no longer changes; nothing else varies then."""
+    mass_drift: Ratio = SAME
+    """Of the laminate's density likewise."""
+    drift_onset: Annotated[Pair, Range(0.0, 1e6, unit="s")] = (0.0, 0.0)
+    """s: when modulus and mass begin to change, evenly in time (``Drift`` of the simulation)."""
+    drift_duration: Annotated[Pair, Range(0.0, 1e6, unit="s")] = (0.4, 0.4)
+    """s: for how long they do."""
     bank: Annotated[int, Count(1, MOST_PLANTS)] = 128
-    """Plants in the bank: a Latin hypercube of what varies."""
+    """Plants in the bank: a Latin hypercube of what varies, or the stations of what changes within an episode: of speeds all of
+    them, of modulus and mass 16 on each of as many courses."""
     seed: Natural = 0
     """Of the bank. Agents train on a bank of another seed than the one they are judged on."""
 
     def __post_init__(self) -> None:
+        drawn = self._drawn
+        if self.speed_wander and (drawn or self.drifts):
+            raise Refused("speed_wander", self.speed_wander, "0 where other plants are drawn or drift")
+        if self.drifts and drawn:
+            named = "modulus_drift" if self.modulus_drift != SAME else "mass_drift"
+            raise Refused(named, list(getattr(self, named)), "1 where other plants are drawn")
+        if (self.speed_wander or self.drifts) and self.bank < 2:
+            raise Refused("bank", self.bank, "at least 2 where the blade changes within an episode")
         if self.spin_up is not None and self.varies:
             raise Refused("spin_up", self.spin_up, "None where other plants are drawn")
         if self.truth is not None and (self.varies or self.spin_up is not None):
@@ -64,7 +86,16 @@ class PlantVariation:
 
     @property
     def varies(self) -> bool:
-        """Whether plants are drawn."""
+        """Whether there are other plants than the configured one, drawn or on the way."""
+        return self._drawn or self.drifts or self.speed_wander > 0.0
+
+    @property
+    def drifts(self) -> bool:
+        """Whether modulus or mass change within the episode."""
+        return (self.modulus_drift, self.mass_drift) != (SAME, SAME)
+
+    @property
+    def _drawn(self) -> bool:
         ratios = (self.speed_ratio, self.ply_angle_ratio, self.modulus_ratio, self.mass_ratio)
         return any(ratio != SAME for ratio in ratios) or self.damping_ratio is not None
 

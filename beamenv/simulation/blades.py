@@ -13,11 +13,11 @@ from beamenv.plant.reduction import REFERENCE_LOAD
 from beamenv.scenarios.drawing import load_cases
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
-from beamenv.simulation.chance import Generators, draw
+from beamenv.simulation.chance import Generators, Numbers, draw
 from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
 from beamenv.simulation.memory import Arrangement, Instant
 from beamenv.simulation.motion import Motion
-from beamenv.simulation.plants.allotment import Allotment
+from beamenv.simulation.plants.allotment import Allotment, Passage
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 from beamenv.simulation.signals.electronics import Electronics
@@ -75,7 +75,9 @@ class Blades:
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
         self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
         self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
-        self._changing = self.bank.runs or (self.electronics is not None and self.electronics.changing)
+        self._changing = (
+            self.bank.runs or self.bank.walk is not None or (self.electronics is not None and self.electronics.changing)
+        )
         own = self.plant, *self.bank.others
         self._lowest_frequency = np.array([plant.natural_frequencies[0] for plant in own])
         per_cost = np.array([-1.0 / reward_scale(plant) for plant in own])
@@ -97,17 +99,17 @@ class Blades:
         self._now, self._then = (Instant.of(each, n, m, b, width) for each in memories)
 
     def __getstate__(self) -> tuple[Any, ...]:
-        moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.index.copy()
+        moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.state_dict()
         return self.bank, self.scenario, self._sizes, self._physical, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
-        *arguments, joined, disturbances, electronics, index = state
+        *arguments, joined, disturbances, electronics, plants = state
         self.__init__(*arguments)  # type: ignore[misc]
         self._now.joined[...] = joined
         np.square(self._now.energetic, out=self._squares)
         self._disturbances, self.electronics = disturbances, electronics
-        self.plants.load_state_dict({"index": index})
+        self.plants.load_state_dict(plants)
 
     @property
     def state(self) -> Array:
@@ -151,6 +153,16 @@ class Blades:
         speeds = self.bank.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
 
+    @property
+    def truth(self) -> Array:
+        """(…, 2 + m + 2 p): which plant of the bank moves, delay in intervals, gains of actuators, gains of sensors, biases in full
+        scales, all of them as they are now: what only a law of tier 3 is told.
+        """
+        (p, _), m = self.plant.C.shape, self.plant.B.shape[1]
+        sound = np.tile(np.repeat([0.0, 1.0, 0.0], [1, m + p, p]), (self.count or 1, 1))
+        told = np.column_stack([self.plants.within_group, sound if self.electronics is None else self.electronics.told()])
+        return told if self._shape else told[0]
+
     def steady(self, rows: Rows | None = None) -> Array:
         """(…, 4): stretch, untwist, largest strain and its place of the blades, or of ``rows``, as their episodes begin and nothing
         vibrates.
@@ -176,8 +188,10 @@ class Blades:
             turbulence = Turbulence.of(self.plant, scenario)
             self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence)
         assert self._disturbances is not None
-        numbers = draw(scenario, generators, rows, self.plants.group, self._disturbances.columns, self._fault_draws)
-        self._begin_plants_and_faults(rows, numbers.faults)
+        numbers = draw(
+            scenario, generators, rows, self.plants.group, self._disturbances.columns, self._fault_draws, self.plants.draws
+        )
+        self._begin_plants_and_faults(rows, numbers)
         index = self.plants.index[rows]
         lowest = self._lowest_frequency[self.plants.group[rows]]
         interval, speeds = self.plant.control_interval, self.bank.speeds[index]
@@ -196,14 +210,16 @@ class Blades:
         motion = self._undriven(state, noise, rows)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
-    def _begin_plants_and_faults(self, rows: Rows, uniforms: Array) -> None:
+    def _begin_plants_and_faults(self, rows: Rows, numbers: Numbers) -> None:
         """Which plant each blade has, and what is wrong with it."""
-        if self.plants.drawn:
-            self.plants.draw(rows, uniforms[:, 0])
+        if self.bank.walk is not None:
+            self.plants.set_out(rows, numbers.course)
+        elif self.plants.drawn:
+            self.plants.draw(rows, numbers.faults[:, 0])
         else:
             self.plants.begin(rows)
         if self.electronics is not None:
-            self.electronics.begin(rows, uniforms)
+            self.electronics.begin(rows, numbers.faults)
 
     def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
         """Motion at the start of an episode, one row for each state (rows, n)."""
@@ -242,8 +258,8 @@ class Blades:
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
         energy = weighted(np.square(then.energetic, out=self._squares), self._halves)
         effort = row_dot(self._multiply(now.voltages, self.plants.effort_weight, self._weighted), now.voltages)
-        if self._changing:
-            self.elapse()
+        if self._changing and (passage := self.elapse()) is not None:
+            self._carry(passage)
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
         return Motion(
@@ -257,12 +273,24 @@ class Blades:
             increment,
         )
 
-    def elapse(self) -> None:
-        """One control interval later: where plants follow one another, the next is on; what breaks then is broken."""
+    def elapse(self) -> Passage | None:
+        """One control interval later: where plants follow one another, the next is on; what breaks then is broken.
+
+        Where blades come to another plant, their states are to be carried to its coordinates.
+        """
         if self.bank.runs:
             self.plants.follow()
         if self.electronics is not None:
             self.electronics.elapse()
+        return self.plants.walk_on() if self.bank.walk is not None else None
+
+    def _carry(self, passage: Passage) -> None:
+        """The states of some blades in the coordinates of the plants that they have come to."""
+        rows, change = passage
+        at = self._lie.rows_of(rows) or ...
+        state = row_product(np.atleast_2d(self._now.state[at]), change)
+        self._now.state[at] = state if self._shape else state[0]
+        self._squares[at] = self._now.energetic[at] ** 2
 
     def state_dict(self) -> dict[str, Any]:
         """What moves, from the first ``begin`` on: copies of arrays, in dictionaries; the generators are the caller's.

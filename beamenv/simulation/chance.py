@@ -22,6 +22,8 @@ class Numbers(NamedTuple):
 
     faults: Array
     """(k, f) uniform: plant and faults."""
+    course: Array
+    """(k, w) uniform: on what course a blade changes within the episode."""
     load: Array
     """(k, ``LOAD_DRAWS``) uniform: load case."""
     turns: Array
@@ -30,16 +32,16 @@ class Numbers(NamedTuple):
     """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
 
 
-def draw(scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: int) -> Numbers:
+def draw(scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: int, course: int) -> Numbers:
     """The numbers of the episodes of ``rows``: one generator for all serves one group of blades after the other.
 
-    ``group`` (N,) is each blade's, ``columns`` is c and ``faults`` f, 0 where nothing is drawn for plants and faults.
+    ``group`` (N,) is each blade's, ``columns`` is c and ``faults`` f, 0 where nothing is drawn for plants and faults, ``course`` w.
     """
-    widths = faults, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
+    widths = faults, course, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
     if not isinstance(generators, np.random.Generator):
         own = [generators[row] for row in rows]
-        first, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)
-        return Numbers(first, load, turns, np.empty(0))
+        faulty, way, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)
+        return Numbers(faulty, way, load, turns, np.empty(0))
     drawn = []
     for count in np.bincount(group[rows]).tolist():
         if count:

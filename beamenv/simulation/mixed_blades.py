@@ -60,6 +60,11 @@ class MixedBlades:
         """(N,) rad/s."""
         return _in_order([blades.speed for blades in self._parts], self._order)
 
+    @property
+    def truth(self) -> Array:
+        """(N, 2 + m + 2 p): as ``Blades.truth``."""
+        return _in_order([blades.truth for blades in self._parts], self._order)
+
     def steady(self, rows: Rows | None = None) -> Array:
         """(…, 4): as ``Blades.steady``."""
         steady = _in_order([blades.steady() for blades in self._parts], self._order)

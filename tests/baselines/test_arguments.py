@@ -121,8 +121,8 @@ def test_a_law_in_the_other_units_is_refused_and_not_measured(plant, physical):
 @pytest.mark.parametrize(
     ("function", "words"),
     [
-        (lambda seen: seen * 1j, "action is .*, but must be an array of numbers"),
-        (lambda seen: np.full(seen.shape, "1"), "action is .*, but must be an array of numbers"),
+        (lambda seen: seen * 1j, "action is .*, but must be an array of real numbers"),
+        (lambda seen: np.full(seen.shape, "1"), "action is .*, but must be an array of real numbers"),
         (lambda seen: torch.as_tensor(seen).requires_grad_() * 1.0, "controller = function gives what is no array"),
         (lambda seen: seen[:, :2], r"action has shape \(2, 2\)"),
         (lambda seen: seen * np.nan, r"action\[0, 0\] is nan"),

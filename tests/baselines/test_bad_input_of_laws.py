@@ -144,3 +144,10 @@ def test_parts_of_a_scheduled_law_that_do_not_fit_are_told(right, speeds, laws, 
     each = None if laws is None else (no_control(plant),) * laws
     with pytest.raises(ValueError, match=f"^{words}"):
         ScheduledLQG("mine", Instruments.of(plant, "observation and speed"), np.array(speeds), each)
+
+
+@pytest.mark.parametrize("reading", [np.inf, -np.inf, np.nan])
+@pytest.mark.parametrize("law", [clipped_lqg, lqg, mpc, no_control, baselines.velocity_feedback])
+def test_a_reading_that_is_not_finite_is_refused_and_not_remembered(law, reading):
+    with pytest.raises(ValueError, match="^observation is .*, but must be finite observation vectors"):
+        law(beamenv.build_plant(beamenv.blade_config())).predict(np.array([0.0, reading, 0.0, 0.0]))

@@ -62,7 +62,7 @@ def test_the_response_of_python_control_is_that_of_predict(small_plant):
     plant = small_plant()
     law = lqg(plant)
     readings = 1e-8 * np.random.default_rng(5).normal(size=(2, 30))
-    answered = control.forced_response(law.to_control(), inputs=readings).outputs
+    answered = control.forced_response(law.to_control(), None, readings).outputs
     memory, expected = None, []
     for reading in readings.T:
         action, memory = law.in_physical_units().predict(reading, memory)

@@ -91,7 +91,7 @@ def test_what_cannot_be_scheduled_is_refused_by_name(family):
     law = scheduled_lqg(family)
     with pytest.raises(ValueError, match=r"observation has shape \(4,\).*observation and speed vectors of length 5"):
         law.predict(np.zeros(4))
-    with pytest.raises(ValueError, match="rotor speed nan"):
+    with pytest.raises(ValueError, match="must be finite observation and speed vectors"):
         law.predict(np.append(np.zeros(4), np.nan))
     with pytest.raises(ValueError, match=r"speeds = \[200, 100\] must be"):
         speed_family(THESIS, [200, 100])

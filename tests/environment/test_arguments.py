@@ -64,9 +64,9 @@ ACTIONS = [
     (lambda shape: 0.0, r"action has shape \(\), but must have shape"),
     (lambda shape: np.full(shape, np.nan), r"action\[0.*\] is nan, but every number must be finite"),
     (lambda shape: np.full(shape, -np.inf), r"action\[0.*\] is -inf, but every number must be finite"),
-    (lambda shape: "full", "action is 'full', but must be an array of numbers"),
+    (lambda shape: "full", "action is 'full', but must be an array of real numbers"),
     (lambda shape: None, "action"),
-    (lambda shape: [[1.0], [1.0, 2.0]], r"action is \[\[1.0\], \[1.0, 2.0\]\], but must be an array of numbers"),
+    (lambda shape: [[1.0], [1.0, 2.0]], r"action is \[\[1.0\], \[1.0, 2.0\]\], but must be an array of real numbers"),
 ]
 
 
@@ -116,7 +116,7 @@ def test_a_huge_but_finite_action_only_saturates():
         ({"initial_state": np.zeros(5)}, r"options.initial_state has shape \(5,\), but must have shape \(" + str(STATES)),
         ({"initial_state": np.full(STATES, np.nan)}, r"options.initial_state strains the blade by nan, but must be finite"),
         ({"initial_state": np.full(STATES, 1e3)}, r"options.initial_state strains the blade by"),
-        ({"initial_state": "rest"}, r"options.initial_state is 'rest', but must be an array of numbers"),
+        ({"initial_state": "rest"}, r"options.initial_state is 'rest', but must be an array of real numbers"),
     ],
 )
 def test_a_bad_reset_option_is_named_and_changes_nothing(options, sentence):
@@ -223,6 +223,6 @@ def test_a_task_whose_bank_cannot_be_built_leaves_the_environment_as_it_was():
 
 @pytest.mark.parametrize("wrong", [1j * np.ones(22), ["1"] * 22, [b"1"] * 22])
 def test_numbers_are_neither_complex_nor_text(wrong):
-    with pytest.raises(ValueError, match="^options.initial_state is .*, but must be an array of numbers[.]$") as told:
+    with pytest.raises(ValueError, match="^options.initial_state is .*, but must be an array of real numbers[.]$") as told:
         RotatingBeamEnv().reset(options={"initial_state": wrong})
     assert "\n" not in str(told.value)

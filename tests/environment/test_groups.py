@@ -15,7 +15,14 @@ from beamenv.task import resolve_task
 SIZES = (3, 3, 2, 70)
 POSITIONS = ((0.1, 0.4, 0.7, 1.0), (0.1, 0.4, 0.8, 1.0), (0.2, 0.4, 0.7, 1.1), (0.2, 0.5, 0.7, 1.1))
 STARTS = np.cumsum((0, *SIZES))
-SCENARIOS = ("default", "rotor", {"preset": "off-speed", "plants": {"bank": 3}}, "spin-up", "hysteresis")
+SCENARIOS = (
+    "default",
+    "rotor",
+    {"preset": "off-speed", "plants": {"bank": 3}},
+    "spin-up",
+    "hysteresis",
+    {"plants": {"mass_drift": 1.2, "drift_duration": 0.03, "bank": 3}},
+)
 
 
 @pytest.fixture(scope="module", params=SCENARIOS, ids=str)

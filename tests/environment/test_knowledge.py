@@ -62,6 +62,16 @@ def test_hypotheses_are_plants_of_the_bank_as_often_as_episodes_draw_them():
     assert set(drawn) == set(range(6))
 
 
+def test_hypotheses_of_a_blade_that_changes_are_what_it_is_in_the_middle_of_an_episode():
+    given = task({"plants": {"mass_drift": 1.2, "drift_duration": [0.01, 0.02], "bank": 6}})
+    blades, generators = given.prior.blades(8), given.prior.generators(8)
+    blades.begin(generators)
+    for _ in range(given.steps // 2):
+        blades.step(np.zeros((8, 4)), generators)
+    assert np.array_equal(given.prior.hypotheses(8).plant, blades.index)
+    assert len(set(blades.index)) > 1
+
+
 def test_each_tier_is_told_what_lower_ones_are():
     given = task({"plants": {"speed_ratio": [0.9, 1.1], "bank": 2}})
     for told in (given.told(1), given.told(2), given.told(3)):

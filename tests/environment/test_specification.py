@@ -54,6 +54,16 @@ def test_the_spec_tells_how_long_an_episode_is(arguments, steps):
     assert longer.spec.max_episode_steps == 20
 
 
+def test_episodes_made_from_a_spec_may_be_longer_once_its_limit_is_lifted():
+    spec = gymnasium.make(beamenv.ENV_ID, **SHORT).spec
+    env = gymnasium.make(spec, duration=0.02, max_episode_steps=-1)
+    env.reset(seed=1)
+    steps = 1
+    while not env.step(np.zeros(env.action_space.shape))[3]:
+        steps += 1
+    assert steps == env.spec.max_episode_steps == 40
+
+
 def test_an_observation_of_time_ends_at_one():
     env = gymnasium.wrappers.TimeAwareObservation(gymnasium.make(beamenv.ENV_ID, **SHORT))
     env.reset(seed=0)

@@ -17,8 +17,9 @@ SCENARIOS = [
     {"acquisition": {"dropout": 0.2}, "rotor": {"turbulence": 5.0}},
     {"plants": {"spin_up": [100.0, 150.0]}},
     {"plants": {"speed_ratio": [0.7, 1.3], "bank": 3}},
+    {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 8}},
 ]
-IDS = [*SCENARIOS[:3], "failure on the way", *SCENARIOS[4:6], "dropout and turbulence", "run-up", "drawn plants"]
+IDS = [*SCENARIOS[:3], "failure on the way", *SCENARIOS[4:6], "dropout and turbulence", "run-up", "drawn plants", "wandering speed"]
 
 
 def batch_of(scenario, count):

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 
+import plotly.graph_objects
 import pytest
 import torch
 from hypothesis import strategies as st
@@ -16,8 +17,20 @@ from tests.fuzz.meaning import Kind
 from tests.fuzz.oracle import Door
 from train.cli.app import app
 
-for _room in ("comparison.page", "comparison.compare", "explore.server", "learning.job", "benchmark.campaign", "placement.picture"):
+for _room in (
+    "comparison.page",
+    "comparison.compare",
+    "explore.server",
+    "learning.job",
+    "benchmark.campaign",
+    "benchmark.showing.heat_map",
+    "benchmark.showing.page",
+    "figures.paper_heat_map",
+    "figures.screen_heat_map",
+    "placement.picture",
+):
     import_module(f"train.{_room}")  # what they import sets itself up, once
+plotly.graph_objects.Figure()  # and this when the first figure is made
 
 BLADE = 'model = "thesis"\nmodes = 3\n[beam]\nterms = 4\n[patches]\nactuators = 2\nsensors = 2\n'
 WORDS = (
@@ -151,11 +164,13 @@ def invoked(command):
         Path("broken.toml").write_text("[")
         Path("broken.json").write_text("{")
         Path("folder").mkdir(exist_ok=True)
+        before = files()
         with work_left_out(left_out):
             result = CliRunner().invoke(app, [command, *given])
+        untouched = files() == before
         for each in Path.cwd().iterdir():
             shutil.rmtree(each) if each.is_dir() else each.unlink()
-        return judged(result)
+        return judged(result, untouched)
 
     kinds = {
         **{f"argument {k}": WORD for k in range(len(positional))},
@@ -167,8 +182,13 @@ def invoked(command):
     return Door(f"beamenv {command}", call, kinds, lambda: dict(valid), junk=st.nothing(), plain=False, told=OTHER_NAMES)
 
 
-def judged(result):
-    """Raises what the command line said, if it refused; AssertionError for a traceback and any other noise."""
+def files():
+    """What is in the folder: the bytes of each file."""
+    return {str(path): path.read_bytes() if path.is_file() else None for path in Path.cwd().rglob("*")}
+
+
+def judged(result, untouched):
+    """Raises what the command line said, if it refused; AssertionError for a traceback, files that a refusal leaves, and noise."""
     error = result.exception
     if isinstance(error, Reached):
         return str(error)
@@ -182,6 +202,7 @@ def judged(result):
     said = lines[0].removeprefix("beamenv: ")
     if said == "the work begins.":
         return said
+    assert untouched, f"files are not as they were after {said!r}"
     raise ValueError(said)
 
 

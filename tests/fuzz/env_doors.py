@@ -1,5 +1,6 @@
 """Doors of the environments: making, resetting, stepping and wrapping them, plant files."""
 
+import warnings
 from functools import cache
 from pathlib import Path
 
@@ -219,11 +220,17 @@ def cartpole():
     return gym.make("CartPole-v1")
 
 
+def rescaled():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Gymnasium's, about its own casting
+        return gym.wrappers.RescaleObservation(new_env(), np.float64(-2.0), np.float64(3.0))
+
+
 OTHERS = {
     "cartpole": cartpole,
     "history": cache(lambda: beamenv.SensorHistory(new_env(), 2)),
     "frames": cache(lambda: gym.wrappers.FrameStackObservation(new_env(), 2)),
-    "rescaled": cache(lambda: gym.wrappers.RescaleObservation(new_env(), np.float64(-2.0), np.float64(3.0))),
+    "rescaled": cache(rescaled),
     "physical": cache(lambda: gym.make(beamenv.ENV_ID, blade=small.BLADE, duration=small.DURATION, physical_units=True)),
     "batch": cache(new_envs),
 }

@@ -11,6 +11,7 @@ from baselines import placement
 from baselines.design.instruments import Instruments
 from baselines.design.linear import MATRICES
 from beamenv.blade import BladeConfig
+from beamenv.knowledge import Truth
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 from tests.fuzz import small
@@ -205,6 +206,15 @@ DOORS = [
         lambda: {"config": small.config(), "speeds": [180.0, 200.0], "persistent_load": None, "full": False, "rate_weight": 0.0},
         told=ABOUT,
         public="scheduled_lqg_for",
+    ),
+    Door(
+        "clairvoyant_lqg",
+        baselines.clairvoyant_lqg,
+        {"truth": instance(Truth)},
+        lambda: {"truth": small.env().unwrapped.task.truth},
+        told=("truth",),
+        plain=False,
+        public="clairvoyant_lqg",
     ),
     Door(
         "Hypothesis",

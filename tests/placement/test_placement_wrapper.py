@@ -265,3 +265,23 @@ def test_a_copied_mixed_batch_goes_on_from_where_it_was():
     for _ in range(5):
         here, there = envs.step(np.full((3, 4), -0.2)), copied.step(np.full((3, 4), -0.2))
         assert np.array_equal(here[0], there[0])
+
+
+@pytest.mark.parametrize("seed", [-1, "a", 1.5, True, [1], [1, -2]])
+def test_a_seed_that_is_refused_moves_no_patch_of_a_batch(seed):
+    envs = VectorPlacementWrapper(gymnasium.make_vec(ENV_ID, num_envs=2))
+    before, plant = envs.reset(seed=0)[1]["layout"]["actuators"], envs.unwrapped.plant
+    with pytest.raises(ValueError, match="^seed is"):
+        envs.reset(seed=seed, options={"layout": {"actuators": [0.2, 0.5, 0.9, 1.2]}})
+    assert envs.unwrapped.plant is plant
+    np.testing.assert_array_equal(envs.reset(seed=0)[1]["layout"]["actuators"], before)
+
+
+def test_layouts_of_a_batch_are_one_for_each_blade_in_an_array_or_a_list():
+    layouts = [{"actuators": [0.3, 0.9], "sensors": [0.4]}, {"actuators": [0.5, 1.1], "sensors": [0.6]}]
+    envs = VectorPlacementWrapper(gymnasium.make_vec(ENV_ID, num_envs=2), layouts=np.array(layouts))
+    np.testing.assert_array_equal(envs.reset(seed=0)[1]["layout"]["actuators"], [[0.3, 0.9], [0.5, 1.1]])
+    for numbers in (np.zeros((2, 4)), np.zeros((10**6, 4))):
+        with pytest.raises(ValueError, match="^layouts is array.{1,250}, but must be one layout, or a sequence of 2") as refused:
+            VectorPlacementWrapper(gymnasium.make_vec(ENV_ID, num_envs=2), layouts=numbers)
+        assert len(str(refused.value)) < 400

@@ -31,7 +31,7 @@ def test_python_control_simulates_the_sampled_plant(plant):
     system = held.to_control()
     assert system.dt == held.interval
     assert system.input_labels[3:5] == ["voltage3", "load_lag"]
-    response = control.forced_response(system, inputs=inputs)
+    response = control.forced_response(system, None, inputs)
     state, states = np.zeros(22), []
     for column in inputs.T:
         states.append(state)

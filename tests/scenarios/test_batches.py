@@ -18,6 +18,8 @@ SEEDS = [3, 4, 5, 6, 7]
 DRAWN = [name for name in NAMES if SCENARIOS[name].plants.varies]
 SMALL = {
     **{name: {"preset": name, "plants": {"bank": 6}} for name in DRAWN},
+    "gust-speed": {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 8}},
+    "drift": {"plants": {"mass_drift": [1.0, 1.15], "modulus_drift": [0.8, 1.0], "drift_duration": [0.01, 0.02], "bank": 12}},
     "mid-failure": {"preset": "mid-failure", "failures": {"onset": [0.0, 0.02]}},
     "spin-up": {"preset": "spin-up", "plants": {"spin_up": [199.9, 200.1]}},  # in 20 ms more would break the blade
 }

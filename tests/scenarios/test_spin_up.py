@@ -184,8 +184,8 @@ def test_a_run_up_beyond_what_the_blade_bears_is_told():
 
 
 def test_a_rotor_that_keeps_its_speed_is_the_nominal_plant():
-    steady = RotatingBeamEnv(scenario=QUIET | {"plants": {"spin_up": [200.0, 200.0]}})
-    nominal = RotatingBeamEnv(scenario="quiet")
+    steady = RotatingBeamEnv(scenario=QUIET | {"plants": {"spin_up": [200.0, 200.0]}}, dtype="float64")
+    nominal = RotatingBeamEnv(scenario="quiet", dtype="float64")
     load = {"load": {"case": "step", "magnitude": 30.0, "direction_deg": 60.0, "onset": 0.0}}
     for env in (steady, nominal):
         env.reset(seed=0, options=load)

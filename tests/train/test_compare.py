@@ -11,12 +11,13 @@ import beamenv
 import train.comparison.compare
 import train.learning.job
 from beamenv.task import resolve_task
-from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, read_curve, trained
+from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, trained
 from train.comparison.page import shown_pair
 from train.controllers.named import named
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.session import follow
+from train.shared.curve import read_curve
 from train.shared.interruption import Interrupted
 
 SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
@@ -89,7 +90,7 @@ def test_training_reports_its_cost_and_steps(finished):
     folder, _, notes = finished
     for agent in SMALL.budget:
         told = [progress for name, progress in notes.trained if name == agent]
-        curve = read_curve(folder, agent)
+        curve = read_curve(folder / "agents" / agent)
         assert len(curve) == len(told) > 0
         assert (curve[:, 2] > 0.0).all()
         assert (curve[1:, 1] > curve[:-1, 1]).all()
@@ -172,7 +173,7 @@ def test_an_agent_that_says_it_is_unfinished_is_trained_on(tmp_path, ticking):
 @pytest.mark.parametrize("content", ["", "{", "[1]", "\0"])
 def test_a_damaged_configuration_is_told_with_its_name(content, tmp_path):
     (tmp_path / "configuration.json").write_text(content)
-    with pytest.raises(ValueError, match=r"configuration.json' cannot be read|holds another comparison"):
+    with pytest.raises(ValueError, match=r"configuration.json' cannot be read|is no configuration of a comparison"):
         compare(Comparison({"duration": 0.05}, {}, seeds=2), tmp_path)
     assert (tmp_path / "configuration.json").read_text() == content
 
@@ -201,3 +202,78 @@ def test_a_comparison_that_makes_no_sense_is_refused(arguments, sentence):
 def test_unknown_names_are_refused():
     with pytest.raises(ValueError, match="controller is 'pid', but must be one of .*lqg, lqg-load"):
         named("pid")
+
+
+def tree(folder):
+    return {path.relative_to(folder): path.read_bytes() if path.is_file() else None for path in folder.rglob("*")}
+
+
+def test_a_comparison_without_loads_leaves_no_folder(tmp_path):
+    with pytest.raises(ValueError, match="zero|rest|quiet"):
+        compare(Comparison({"duration": 0.05, "scenario": "quiet"}, {"gradient": 1.0}, seeds=2), tmp_path / "new")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_is_refused_while_the_first_agent_is_trained_leaves_no_configuration(tmp_path, monkeypatch):
+    def refuse(*arguments, **named):
+        raise ValueError("nothing can be learnt here.")
+
+    monkeypatch.setattr(train.comparison.compare, "run", refuse)
+    with pytest.raises(ValueError, match="nothing can be learnt"):
+        compare(Comparison({"duration": 0.05}, {"gradient": 1.0}, seeds=2), tmp_path / "new")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("table.csv", "mine", "holds table.csv, which no comparison there tells of: name another folder"),
+        ("agents/mine.txt", "mine", "holds agents, which no comparison there tells of"),
+        ("configuration.json", '{"seeds": [1, 2]}', "is no configuration of a comparison: name another folder"),
+    ],
+)
+def test_what_no_comparison_made_is_not_replaced(name, content, words, tmp_path):
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(content)
+    before = tree(tmp_path)
+    with pytest.raises(ValueError, match=words):
+        compare(Comparison({"duration": 0.05}, {}, seeds=2), tmp_path)
+    assert tree(tmp_path) == before
+
+
+def test_files_of_a_training_and_of_others_stay_as_they_are(tmp_path):
+    for name in ("agent.json", "weights.npz", "learning.csv", CHECKPOINT, "notes.txt", "0/agent.json"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(name)
+    before = tree(tmp_path)
+    compare(Comparison({"duration": 0.05}, {}, seeds=2), tmp_path)
+    after = tree(tmp_path)
+    assert {name: after.get(name) for name in before} == before and len(after) > len(before)
+
+
+CURVES = {
+    "line 1 '', but must have the columns elapsed,steps,updates,cost": "",
+    "line 1 'a,b', but must have the columns": "a,b\n1,2\n",
+    "line 3 '2,x,2,1', but must have numbers of elapsed,steps,updates,cost": "elapsed,steps,updates,cost\n1,1,1,nan\n2,x,2,1\n",
+    "line 2 '1,1,1', but must have numbers": "elapsed,steps,updates,cost\n1,1,1\n",
+    "line 2 '1,1,1,1,1', but must": "elapsed,steps,updates,cost\n1,1,1,1,1\n",
+    "line 2 'inf,1,1,1', but must": "elapsed,steps,updates,cost\ninf,1,1,1\n",
+    "cannot be read as the CSV file of a learning curve": 'elapsed,steps,updates,cost\n"1,1,1,1\n',
+}
+
+
+@pytest.mark.parametrize("words", CURVES)
+def test_a_damaged_learning_curve_is_told_with_its_file_and_line(words, tmp_path):
+    (tmp_path / "learning.csv").write_text(CURVES[words])
+    with pytest.raises(ValueError, match=f"^file .*learning.csv' .*{words}") as told:
+        read_curve(tmp_path)
+    assert "\n" not in str(told.value)
+
+
+def test_a_learning_curve_that_is_no_text_or_not_there_is_told(tmp_path):
+    with pytest.raises(ValueError, match="learning.csv' cannot be read: No such file"):
+        read_curve(tmp_path)
+    (tmp_path / "learning.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ValueError, match="learning.csv' cannot be read as the CSV file of a learning curve"):
+        read_curve(tmp_path)

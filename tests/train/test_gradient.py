@@ -80,8 +80,10 @@ def steady(**changes):
         {"plants": {"spin_up": [100.0, 300.0]}},
         {"drive": {"hysteresis": 0.2, "voltage_limits": [-500.0, 1500.0], "delay": [2, 2]}},
         {"plants": {"speed_ratio": [0.7, 1.3], "bank": 2}},
+        {"plants": {"mass_drift": 1.3, "drift_duration": 0.04, "bank": 8}},
+        {"failures": {"dead_actuators": 4, "onset": 0.02}},
     ],
-    ids=["nominal", "spin-up", "hysteresis and delay", "two speeds"],
+    ids=["nominal", "spin-up", "hysteresis and delay", "two speeds", "drift", "failure on the way"],
 )
 def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, changes):
     """Under one load and a constant voltage, once every blade has begun an episode of its own."""

@@ -109,11 +109,16 @@ def test_the_run_that_ended_at_the_least_cost_teaches(folder, tmp_path):
     assert best_run(folder) == folder / "2"  # 1 − 0.04
     assert teacher_for(folder, {"nominal": resolve_task()}).name == "biased by -0.02"
     assert best_run(folder / "1") == folder / "1"
-    for name, curve in (("0", None), ("1", "elapsed,steps,updates,cost\n1.0,1,1,nan\n"), ("2", "nonsense\n")):
+    for name, curve in (("0", None), ("1", "elapsed,steps,updates,cost\n1.0,1,1,nan\n"), ("2", "elapsed,steps,updates,cost\n")):
         save_policy(agent(0.0), tmp_path / name)
         if curve is not None:
             (tmp_path / name / "learning.csv").write_text(curve)
     assert best_run(tmp_path) == tmp_path / "0"
+    (tmp_path / "2" / "learning.csv").write_text("nonsense\n")
+    with pytest.raises(
+        ValueError, match="^file .*learning.csv' has in line 1 'nonsense', but must have the columns elapsed,steps,"
+    ):
+        best_run(tmp_path)
 
 
 def test_a_run_that_does_not_fit_is_named(folder, tmp_path):

@@ -8,6 +8,7 @@ from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
 
 import beamenv
 from beamenv.simulation.blades import reward_scale
+from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import REWARD_UNIT, TrainingVecEnv
 
 SHORT = {"duration": 0.01}  # 20 control intervals
@@ -223,3 +224,29 @@ def test_the_plain_vec_env_steps_as_the_batch_it_wraps():
     np.testing.assert_allclose(rewards, expected[1], rtol=1e-6)
     np.testing.assert_array_equal(infos[1]["terminal_observation"], expected[0][1])
     assert infos[0]["TimeLimit.truncated"]
+
+
+def test_options_reach_the_next_reset_and_no_other():
+    envs = batch()
+    state = np.zeros(envs.blades.state.shape[1])
+    state[0] = 1e-4
+    envs.set_options([{}, {"initial_state": state}, {}, {}])
+    envs.reset()
+    np.testing.assert_allclose(envs.blades.state[1], state, atol=1e-12)
+    assert envs.reset_infos[1]["energy"] == pytest.approx(0.5e-8)
+    ends = [envs.step(actions(step))[2] for step in range(5)]
+    assert ends[-1].tolist() == [False, False, False, True]  # still out of step with one another
+    envs.seed(5)
+    np.testing.assert_array_equal(envs.reset(), batch().reset())
+
+
+def test_options_reach_every_batch_side_by_side():
+    envs = SideBySide([batch(), TrainingVecEnv(2, SHORT, seed=6, history=3)])
+    state = np.zeros(envs.batches[1].blades.state.shape[1])
+    state[0] = 1e-4
+    envs.set_options([{}] * (COUNT + 1) + [{"initial_state": state}])
+    envs.reset()
+    np.testing.assert_allclose(envs.batches[1].blades.state[1], state, atol=1e-12)
+    assert envs.reset_infos[-1]["energy"] == pytest.approx(0.5e-8)
+    with pytest.raises(ValueError, match=f"^options is .*, or a list of {COUNT + 2} of them"):
+        envs.set_options([{}])

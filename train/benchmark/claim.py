@@ -9,9 +9,8 @@ from typing import Any
 
 from beamenv.configuration import checked_table
 from beamenv.configuration.files import of_file
+from train.shared.claim import NAME, check_nothing_replaced
 from train.shared.files import read_json, write_json
-
-NAME = "configuration.json"
 
 KEYS = ("seeds", "environment", "scenarios", "controllers", "versions")
 """What a benchmark's configuration holds."""
@@ -39,8 +38,7 @@ def _told(folder: Path) -> dict[str, Any] | None:
             with of_file(path):
                 told = content.get("configuration") if within and isinstance(content, dict) else content
                 return checked_table("the configuration of a benchmark", told, KEYS)
-    if found := [name for name in RESULTS if (folder / name).exists()]:
-        raise ValueError(f"folder = {str(folder)!r} holds {found[0]}, which no benchmark there tells of: name another folder.")
+    check_nothing_replaced(folder, RESULTS, "benchmark")
     return None
 
 

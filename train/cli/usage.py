@@ -8,6 +8,8 @@ from typing import Any
 
 from typer.core import TyperGroup
 
+from beamenv.configuration.sentence import cut
+
 
 class OneSentence(TyperGroup):
     """The commands, of which a wrong use is told as any other bad input is."""
@@ -28,7 +30,7 @@ class OneSentence(TyperGroup):
 
 def _told(error: Any) -> int:
     """Say what is wrong, or help where nothing was asked; the status."""
-    words = " ".join(error.format_message().split())
+    words = " ".join(map(cut, error.format_message().split()))
     if type(error).__name__ == "NoArgsIsHelpError":
         error.show()
     else:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, field
 from pathlib import Path
 from typing import Annotated, Any
 
 import gymnasium as gym
-import numpy as np
-from numpy.typing import NDArray
 
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
@@ -29,15 +27,27 @@ from train.learning.job import Job, run
 from train.learning.recipe import Recipe
 from train.learning.session import Budget
 from train.learning.training import Progress
+from train.shared.claim import NAME, check_nothing_replaced
+from train.shared.curve import read_curve
 from train.shared.files import as_path, read_json, write_json
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
 from train.shared.interruption import ending_as_interrupted
 from train.shared.lock import alone_in
 
-Array = NDArray[np.float64]
-
 CLASSICAL = ("none", "velocity", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
 """The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
+
+RESULTS = (
+    "agents",
+    "evaluations",
+    "table.csv",
+    "table.md",
+    "episode.png",
+    "poles.png",
+    "learning.png",
+    "report.html",
+)
+"""What a comparison writes beside its configuration."""
 
 
 @configuration("comparison")
@@ -78,7 +88,8 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     """Train, evaluate, write tables, models, configuration, figures and a page to ``folder``, and return the evaluations.
 
     Each piece is written as soon as it is there. A folder of the same comparison is resumed: agents that it holds
-    are not trained again. ``ValueError`` if it holds another comparison, or another process is at work in it. An interruption ends
+    are not trained again. ``ValueError`` if it holds another comparison or what this one would replace, and
+    if another process is at work in it; whatever is refused before any result leaves it as it was. An interruption ends
     all of it at once, as ``Interrupted`` where an agent is being trained: its checkpoint is kept, and no half-trained agent.
     """
     instance("comparison", comparison, Comparison, "a Comparison")
@@ -94,26 +105,29 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
     envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **{"dtype": "float64", **comparison.environment})
     try:
         plant = envs.unwrapped.plant
-        claim(folder, comparison, envs.unwrapped.task)
-        agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
+        content = described(comparison, envs.unwrapped.task)
+        check_claim(folder, content)
         laws: dict[str, Any] = {name: named(name).build_for(envs.unwrapped.task) for name in CLASSICAL}
-        evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener)
+        alone = evaluate(
+            laws["none"], envs, held_out(comparison.seeds)
+        )  # what cannot be compared is refused before anything is written
+        with claimed(folder, content):
+            agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
+            curves = {name: read_curve(folder / "agents" / name) for name in agents}
+            evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener, alone)
     finally:
         envs.close()
     write_tables(folder, evaluations)
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
     levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
     drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "positive-position-feedback", "lqg")]
-    curves = {name: read_curve(folder, name) for name in agents}
     write_figures(folder, plant, evaluations, drawn, curves, levels)
-    configuration = read_json(folder / "configuration.json")
-    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, configuration)
+    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, content)
     return evaluations
 
 
-def claim(folder: Path, comparison: Comparison, task: Any) -> None:
-    """Write the configuration, or see that the folder already holds this very one."""
-    path = folder / "configuration.json"
+def described(comparison: Comparison, task: Any) -> dict[str, Any]:
+    """The configuration of a comparison, as JSON holds it."""
     content = {
         "comparison": {**asdict(comparison), "held_out_seeds": [HELD_OUT, HELD_OUT + comparison.seeds - 1]},
         "blade": to_dict(task.config),
@@ -121,10 +135,36 @@ def claim(folder: Path, comparison: Comparison, task: Any) -> None:
         "scenario": task.scenario.to_dict(),
         "agents": {name: asdict(AGENTS[name].settings()) for name in comparison.budget},
     }
-    content = json.loads(json.dumps(content))
-    if path.exists() and read_json(path) != content:
+    whole: dict[str, Any] = json.loads(json.dumps(content))
+    return whole
+
+
+def check_claim(folder: Path, content: Mapping[str, Any]) -> None:
+    """``ValueError`` unless the folder holds this very comparison, or nothing that it would replace."""
+    path = folder / NAME
+    if not path.exists():
+        check_nothing_replaced(folder, RESULTS, "comparison")
+        return
+    told = read_json(path)
+    if not isinstance(told, dict) or "comparison" not in told:
+        raise ValueError(f"file {str(path)!r} is no configuration of a comparison: name another folder, or empty this one.")
+    if told != content:
         raise ValueError(f"folder = {str(folder)!r} holds another comparison: name another folder, or empty this one.")
-    write_json(path, content)
+
+
+@contextmanager
+def claimed(folder: Path, content: Mapping[str, Any]) -> Iterator[None]:
+    """The configuration is in the folder, and goes again where bad input is told before there is any result."""
+    path = folder / NAME
+    fresh = not path.exists()
+    if fresh:
+        write_json(path, content)
+    try:
+        yield
+    except ValueError:
+        if fresh and not any((folder / name).exists() for name in RESULTS):
+            path.unlink()
+        raise
 
 
 def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, listener: Listener) -> Controller:
@@ -142,22 +182,14 @@ def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, liste
     return load_policy(home, plant)
 
 
-def read_curve(folder: Path, name: str) -> Array:
-    """(k, 3): seconds, steps, running cost relative to no control."""
-    with (folder / "agents" / name / "learning.csv").open(encoding="utf-8", newline="") as file:
-        rows = [[float(row[column]) for column in ("elapsed", "steps", "cost")] for row in csv.DictReader(file)]
-    return np.array(rows, dtype=np.float64).reshape(-1, 3)
-
-
 def evaluate_all(
-    controllers: Mapping[str, Controller], envs: Any, comparison: Comparison, folder: Path, listener: Listener
+    controllers: Mapping[str, Controller], envs: Any, comparison: Comparison, folder: Path, listener: Listener, alone: Evaluation
 ) -> list[Evaluation]:
-    """Every controller on the same held-out seeds, each written as it is finished."""
+    """Every controller on the same held-out seeds, each written as it is finished; ``alone`` is that of no control, the first."""
     seeds = held_out(comparison.seeds)
     evaluations: list[Evaluation] = []
     for name, controller in controllers.items():
-        reference = evaluations[0].reference if evaluations else None
-        evaluation = evaluate(controller, envs, seeds, reference=reference)
+        evaluation = evaluate(controller, envs, seeds, reference=alone.reference) if evaluations else alone
         write_json(folder / "evaluations" / f"{name}.json", evaluation.to_dict())
         evaluations.append(evaluation)
         listener.evaluated(evaluation)

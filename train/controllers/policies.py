@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from baselines.design.predicting import observed, remembered
+from beamenv.configuration import Refused
 
+_LARGEST = float(np.finfo(np.float32).max)
 Array = NDArray[np.floating[Any]]
 
 
@@ -44,7 +46,10 @@ class Policy:
 
         Raises ValueError as a ``Law`` does.
         """
-        readings = observed(observation, self.name).astype(np.float32)
+        readings = observed(observation, self.name)
+        if np.abs(readings).max(initial=0.0) > _LARGEST:
+            raise Refused("observation", observation, f"no larger than {_LARGEST:.0e}, which single precision can hold")
+        readings = readings.astype(np.float32)
         single = readings.ndim == 1
         rows = np.atleast_2d(readings)
         memory: Array = remembered(state, episode_start, (len(rows),), self.memory_size)

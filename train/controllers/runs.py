@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
+from train.shared import curve
 from train.shared.files import as_path
 
 AGENT = "agent.json"
@@ -21,16 +21,15 @@ def runs_in(folder: Path) -> Mapping[str, Path]:
 
 
 def best_run(folder: Path) -> Path:
-    """The folder of the run that ended its training at the least cost, by its learning curve; the first where none tells."""
+    """The folder of the run that ended its training at the least cost, by its learning curve; the first where there is none.
+
+    ``ValueError`` names a curve that is damaged.
+    """
     places = list(runs_in(folder).values())
     return min(places, key=_last_cost) if len(places) > 1 else places[0]
 
 
 def _last_cost(folder: Path) -> float:
-    """Infinite where no curve can be read."""
-    try:
-        with (folder / "learning.csv").open(encoding="utf-8", newline="") as file:
-            costs = [float(row["cost"]) for row in csv.DictReader(file)]
-    except (OSError, ValueError, KeyError, TypeError, csv.Error):
-        return float("inf")
+    """Infinite where there is no curve, or none that ends with a number."""
+    costs = curve.read_curve(folder)[:, 2].tolist() if (folder / curve.NAME).exists() else []
     return costs[-1] if costs and costs[-1] == costs[-1] else float("inf")

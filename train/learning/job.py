@@ -21,7 +21,8 @@ from train.learning.recipe import Recipe
 from train.learning.scalars import Scalars
 from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
-from train.shared.files import write_csv
+from train.shared.curve import NAME as CURVE
+from train.shared.curve import write_curve
 from train.shared.interruption import Interrupted, ending_as_interrupted
 from train.shared.lock import alone_in
 from train.shared.threads import one_torch_thread
@@ -109,8 +110,8 @@ def _begun(folder: Path, resume: bool, overwrite: bool) -> Mapping[str, Any] | N
 
 def held_in(folder: Path) -> list[str]:
     """Files of a training or of trained agents in a folder, by their paths there."""
-    runs = [f"{each.parent.name}/" for each in folder.glob("*/agent.json") if each.parent.name.isdigit()]
-    held = [f"{place}{name}" for place in ("", *runs) for name in ("agent.json", "weights.npz", "learning.csv")]
+    runs = [f"{each.name}/" for each in folder.glob("*/") if each.name.isdecimal()]
+    held = [f"{place}{name}" for place in ("", *runs) for name in ("agent.json", "weights.npz", CURVE)]
     return [name for name in (NAME, *held) if (folder / name).is_file()]
 
 
@@ -204,9 +205,7 @@ class Journal:
 
     def write_curve(self, folder: Path, run: int) -> None:
         """``learning.csv`` of one of the runs."""
-        columns = ("elapsed", "steps", "updates", "cost")
-        rows = [dict(zip(columns, (each.elapsed, each.steps, each.updates, each.costs[run]), strict=True)) for each in self.curve]
-        write_csv(folder / "learning.csv", rows, columns)
+        write_curve(folder, [(each.elapsed, each.steps, each.updates, each.costs[run]) for each in self.curve])
 
 
 def save_all(

@@ -52,7 +52,7 @@ def _standing(path: Path, name: str) -> Path:
         except (FileNotFoundError, NotADirectoryError):
             continue
         except (OSError, ValueError) as error:  # too long a name, a zero byte, no right to look
-            raise ValueError(f"{name} = {str(path)!r} cannot be looked at: {getattr(error, 'strerror', error)}.") from None
+            raise ValueError(f"{name} = {shown(str(path))} cannot be looked at: {getattr(error, 'strerror', error)}.") from None
         return place
     return Path(whole.anchor)
 

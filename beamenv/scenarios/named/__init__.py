@@ -6,7 +6,7 @@ NAMES: tuple[str, ...] = tuple(
     sorted(entry.name.removesuffix(".toml") for entry in files(__name__).iterdir() if entry.name.endswith(".toml"))
 )
 
-OPEN: tuple[str, ...] = ("mid-failure", "unknown-everything")
+OPEN: tuple[str, ...] = ("drift", "gust-speed", "mid-failure", "unknown-everything")
 """Those in which the blade changes within the episode, or everything is wrong at once: agents and rules may learn on them."""
 
 SOLIDS = ("solid", "solid-20")

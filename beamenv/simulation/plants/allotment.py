@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,15 @@ from beamenv.simulation.plants.bank import Bank
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
+
+
+class Passage(NamedTuple):
+    """Blades that come from one plant to another."""
+
+    rows: Rows
+    """(k,)"""
+    change: Array
+    """(k, n, n): states, as rows, times this are those of the next plant."""
 
 
 class Allotment:
@@ -31,6 +40,11 @@ class Allotment:
         """(N,) places in the bank."""
         self.drawn = self._each > 1 and not bank.runs
         """Whether each episode has a plant of its own, drawn from those of its group."""
+        walk = bank.walk
+        self.draws = 0 if walk is None else walk.draws
+        """Uniform numbers that the course of an episode takes."""
+        self._courses = np.zeros((len(self.group), 0 if walk is None else walk.courses(np.zeros((1, walk.draws))).shape[1]))
+        self._elapsed: Rows = np.zeros(len(self.group), dtype=np.int64)
         self.operators: Operators
         """Of the one plant that all blades have now, of each group's (groups, …), or of each blade's (*shape, …)."""
         self.effort_weight: Array
@@ -41,6 +55,24 @@ class Allotment:
     def within_group(self) -> Rows:
         """(N,) places among the plants of each blade's group."""
         return self.index - self._first
+
+    def set_out(self, rows: Rows, uniform: Array) -> None:
+        """Put ``rows`` on the courses that uniform numbers (len(rows), draws) say."""
+        assert self._bank.walk is not None
+        self._courses[rows], self._elapsed[rows] = self._bank.walk.courses(uniform), 0
+        self._allot(rows, self._first[rows] + self._bank.walk.places(self._courses[rows], self._elapsed[rows]))
+
+    def walk_on(self) -> Passage | None:
+        """One control interval further on their courses; which blades so come to another plant, None if none does."""
+        assert self._bank.walk is not None and self._bank.to_common is not None and self._bank.from_common is not None
+        self._elapsed += 1
+        index = self._first + self._bank.walk.places(self._courses, self._elapsed)
+        rows = np.flatnonzero(index != self.index)
+        if not len(rows):
+            return None
+        passage = Passage(rows, self._bank.to_common[self.index[rows]] @ self._bank.from_common[index[rows]])
+        self._allot(rows, index[rows])
+        return passage
 
     def draw(self, rows: Rows, uniform: Array) -> None:
         """Give ``rows`` the plants that uniform numbers (len(rows),) say."""
@@ -65,13 +97,16 @@ class Allotment:
         self.index = np.minimum(self.index + 1, self._first + (self._each - 1))
         self._gather()
 
-    def state_dict(self) -> dict[str, Rows]:
-        """Which plant each blade has."""
-        return {"index": self.index.copy()}
+    def state_dict(self) -> dict[str, Any]:
+        """Which plant each blade has, and on what course it is."""
+        index = {"index": self.index.copy()}
+        return index | {"courses": self._courses.copy(), "elapsed": self._elapsed.copy()} if self._bank.walk else index
 
     def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
         """Go back to a ``state_dict`` of an allotment of the same bank and batch."""
         self.index = np.asarray(state["index"]).copy()
+        if self._bank.walk is not None:
+            self._courses, self._elapsed = (np.asarray(state[name]).copy() for name in ("courses", "elapsed"))
         self._gather()
 
     def _gather(self) -> None:

@@ -13,6 +13,7 @@ from beamenv.plant.plant import Plant, normalised
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
 from beamenv.simulation.plants.cost_axes import cost_axes, in_axes
+from beamenv.simulation.plants.walks import Walk
 
 Array = NDArray[np.float64]
 
@@ -56,6 +57,12 @@ class Bank(ReadOnly):
     """(groups, n): what a blade's state at the start of an episode is increased by."""
     runs: bool = False
     """Whether a group's plants follow one another, one each control interval, instead of being drawn."""
+    walk: Walk | None = None
+    """How blades go from plant to plant within an episode, each on its own course; None: they do not."""
+    to_common: Array | None = None
+    """(K, n, n) where they do: a plant's states to coordinates that all have in common."""
+    from_common: Array | None = None
+    """(K, n, n): back."""
     others: tuple[Plant, ...] = ()
     """What ``plant`` is to the first group, for each further one."""
 
@@ -78,7 +85,9 @@ class Bank(ReadOnly):
 
     def is_like(self, other: Bank) -> bool:
         """Whether another blade's bank has equally many plants, of as many states, behind the same electronics."""
-        sizes = [(len(bank), bank.runs, bank.operators.fused.shape, bank.plant.control_interval) for bank in (self, other)]
+        sizes = [
+            (len(bank), bank.runs, bank.walk, bank.operators.fused.shape, bank.plant.control_interval) for bank in (self, other)
+        ]
         return sizes[0] == sizes[1] and all(
             np.array_equal(getattr(self.plant, name), getattr(other.plant, name)) for name in _ELECTRONICS
         )
@@ -124,6 +133,8 @@ class Bank(ReadOnly):
             strain=sealed(self.strain @ back),
             release=sealed(self.release @ back),
             to_design=None if self.to_design is None else sealed(axes @ self.to_design),
+            to_common=None if self.to_common is None else sealed(axes @ self.to_common),
+            from_common=None if self.from_common is None else sealed(self.from_common @ back),
             start=None if self.start is None else sealed(np.einsum("gn,gmn->gm", self.start, axes[:: len(axes) // self.groups])),
         )
 
@@ -133,7 +144,7 @@ class Bank(ReadOnly):
         first = banks[0]
         if len(banks) == 1:
             return first
-        views, starts = [bank.to_design for bank in banks], [bank.start for bank in banks]
+        starts = [bank.start for bank in banks]
         fused = [bank.operators.fused.reshape(len(bank), *bank.operators.fused.shape[-2:]) for bank in banks]
         weights = [bank.operators.weights.reshape(len(bank), -1) for bank in banks]
         whole = {name: sealed(np.concatenate([getattr(bank, name) for bank in banks])) for name in BY_PLANT}
@@ -141,11 +152,20 @@ class Bank(ReadOnly):
             plant=first.plant,
             others=tuple(bank.plant for bank in banks[1:]),
             operators=replace(first.operators, fused=sealed(np.concatenate(fused)), weights=sealed(np.concatenate(weights))),
-            to_design=None if any(view is None for view in views) else np.concatenate(views),  # type: ignore[arg-type]
+            to_design=_one_after_the_other([bank.to_design for bank in banks]),
+            to_common=_one_after_the_other([bank.to_common for bank in banks]),
+            from_common=_one_after_the_other([bank.from_common for bank in banks]),
             start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
             runs=first.runs,
+            walk=first.walk,
             **whole,
         )
+
+
+def _one_after_the_other(parts: Sequence[Array | None]) -> Array | None:
+    """None where one is."""
+    there = [part for part in parts if part is not None]
+    return np.concatenate(there) if len(there) == len(parts) else None
 
 
 BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")

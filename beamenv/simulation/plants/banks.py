@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from beamenv.blade.build import Blade, changed_blade
 from beamenv.blade.config import BeamConfig, BladeConfig
@@ -16,6 +18,7 @@ from beamenv.simulation.plants.run_up import Cycloid
 from beamenv.simulation.plants.run_ups import run_up_of
 from beamenv.simulation.plants.spin_up import spin_up_bank
 from beamenv.simulation.plants.standing import about_moving_equilibrium, about_steady_states
+from beamenv.simulation.plants.walks import stations_of, walk_of
 
 Array = NDArray[np.float64]
 
@@ -36,7 +39,35 @@ def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
     views = [seen_from(each, design) for each in blades]
     to_design = None if any(view is None for view in views) else np.stack(views)  # type: ignore[arg-type]
     plants, speeds = [each.truth for each in blades], np.array([each.config.speed for each in blades])
-    return about_steady_states(Bank.gather(blade.truth, plants, speeds, to_design).in_cost_axes(), blades)
+    bank = Bank.gather(blade.truth, plants, speeds, to_design)
+    walk = walk_of(variation, blade.config.control_interval)
+    if walk is not None:  # no tachometer follows
+        passage = passage_between(blades, blade)
+        bank = replace(
+            bank, speeds=np.full(len(blades), blade.config.speed), walk=walk, to_common=passage[0], from_common=passage[1]
+        )
+    return about_steady_states(bank.in_cost_axes(), blades)
+
+
+def passage_between(blades: Sequence[Blade], reference: Blade) -> tuple[Array, Array]:
+    """(K, n, n) twice: from the states of each blade's true plant to those that all have in common, and back.
+
+    Displacements and velocities go on: with modes ΨᵀMΨ = 1 of one blade and Ψ₀ of the reference, η = ΨᵀMΨ₀ η₀. States are rows.
+    """
+    forth, back = [], []
+    for blade in blades:
+        modal, electronics = blade.true_modal, np.eye(blade.truth.electronic_states)
+        seen = modal.mode_shapes.T @ blade.beam.at(blade.config.speed).mass @ reference.true_modal.mode_shapes
+        omega, inverse = modal.natural_frequencies, np.linalg.inv(seen).T
+        forth.append(block_diag(inverse / omega[:, None], inverse, electronics))
+        back.append(block_diag(seen.T * omega, seen.T, electronics))
+    return np.stack(forth), np.stack(back)
+
+
+def _on_the_way(stations: Array, config: BladeConfig) -> Array:
+    """(K, 5) as ``varied`` has them, from ratios (K, 3) of speed, modulus and mass."""
+    speed, modulus, mass = stations.T
+    return np.stack([speed, np.ones(len(speed)), modulus, mass, np.full(len(speed), config.damping_ratio)], axis=1)
 
 
 def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:
@@ -51,7 +82,12 @@ def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:
 
 
 def varied(variation: PlantVariation, config: BladeConfig) -> Array:
-    """(bank, 5): speed, ply angle, modulus and mass ratios, and damping ratio, by Latin hypercube (McKay et al. 1979)."""
+    """(bank, 5): speed, ply angle, modulus and mass ratios, and damping ratio, by Latin hypercube (McKay et al. 1979), or at the
+    stations of what changes within an episode.
+    """
+    walk = walk_of(variation, config.control_interval)
+    if walk is not None:
+        return _on_the_way(stations_of(walk, variation), config)
     generator = np.random.default_rng(variation.seed)
     damping = variation.damping_ratio or (config.damping_ratio, config.damping_ratio)
     ranges = (variation.speed_ratio, variation.ply_angle_ratio, variation.modulus_ratio, variation.mass_ratio)

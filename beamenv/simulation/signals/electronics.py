@@ -24,7 +24,7 @@ class Electronics:
     def __init__(self, plant: Plant, scenario: Scenario, count: int) -> None:
         m, p = plant.B.shape[1], len(plant.C)
         self._scenario, self._interval = scenario, plant.control_interval
-        self.hysteresis = _hysteresis(plant, scenario.drive.hysteresis)
+        self.hysteresis = hysteresis_of(plant, scenario.drive.hysteresis)
         self.threshold = float(ndtri(scenario.acquisition.dropout)) if scenario.acquisition.dropout else None
         """A reading is lost where its standard normal is below."""
         self.faults = Faults(np.zeros(count, dtype=np.int64), np.ones((count, m)), np.ones((count, p)), np.zeros((count, p)))
@@ -79,6 +79,11 @@ class Electronics:
         readings, self.memory = acquire(self.faults, self.memory, output, disturbance[:, :p], lost)
         return np.array(readings)
 
+    def told(self) -> Array:
+        """(N, 1 + m + 2 p): delay, gains of actuators, gains of sensors, biases of sensors: what is wrong now."""
+        faults = self.faults
+        return np.hstack([faults.delay[:, None], faults.actuator_gain, faults.sensor_gain, faults.sensor_bias])
+
     def state_dict(self) -> dict[str, dict[str, Any]]:
         """Copies of what moves: the faults of the episodes under way, when they set in, and what is remembered."""
         moving: dict[str, dict[str, Any]] = {
@@ -100,6 +105,7 @@ class Electronics:
         self.memory = SignalMemory(**{name: np.asarray(values).copy() for name, values in state["memory"].items()})
 
 
-def _hysteresis(plant: Plant, loop: float) -> Hysteresis | None:
+def hysteresis_of(plant: Plant, loop: float) -> Hysteresis | None:
+    """That of a loop, for voltages normalised to the drive of a plant; None without one."""
     lowest, highest = normalised(plant).voltage_limits
     return prandtl_ishlinskii(loop, float(lowest.min()), float(highest.max())) if loop else None

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from beamenv.simulation.kernel import namespace
 
 PLAYS = 8
+_HALVINGS = 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +42,19 @@ class Hysteresis:
         upper, lower = voltages[..., None] + self.radii, voltages[..., None] - self.radii
         plays = array.maximum(lower, array.minimum(upper, plays))
         return self.direct * voltages + self.weight * plays.sum(-1), plays
+
+    def inverse(self, effective: Any, plays: Any, lowest: Any, highest: Any) -> Any:
+        """Voltages (N, m) within the limits (m,) that act as ``effective`` ones (N, m) after these plays, or come nearest.
+
+        By bisection, for what acts rises with the voltage: to 2⁻⁴⁰ of the range.
+        """
+        array = namespace(effective)
+        low, high = lowest + 0.0 * effective, highest + 0.0 * effective
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            more = self.step(middle, plays)[0] < effective
+            low, high = array.where(more, middle, low), array.where(more, high, middle)
+        return 0.5 * (low + high)
 
 
 def prandtl_ishlinskii(loop: float, lowest: float, highest: float, plays: int = PLAYS) -> Hysteresis:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
-
-import numpy as np
 
 from train.benchmark.showing.episode import shown_episode
 from train.benchmark.showing.heat_map import heat_map
@@ -14,6 +11,7 @@ from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
 from train.page import Cell, LearningCurves, PageContent, Table, write_page
+from train.shared.curve import read_curve
 
 
 def write_report(path: Path, table: BenchmarkTable) -> None:
@@ -40,9 +38,7 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
     curves = {}
     for each in shipped():
         if each.agent in own and each.scenario == "nominal" and each.agent not in curves:
-            with (each.folder / "learning.csv").open(encoding="utf-8", newline="") as file:
-                rows = [[row[name] for name in ("elapsed", "steps", "cost")] for row in csv.DictReader(file)]
-            curves[each.agent] = np.array(rows, dtype=np.float64)
+            curves[each.agent] = read_curve(each.folder)
     if level is None or not curves:
         return None
     return LearningCurves(curves, {level.title: level.estimates["relative_cost"].value})

@@ -10,6 +10,7 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
+from beamenv.envs.stable_baselines import options_of_each
 from train.learning.sb3.vec_env import TrainingVecEnv
 
 Array = NDArray[Any]
@@ -46,7 +47,15 @@ class SideBySide(VecEnv):
 
     def reset(self) -> Array:
         """Begin episodes in every batch."""
-        return np.concatenate([self._widened(k, batch.reset()) for k, batch in enumerate(self.batches)])
+        observations = np.concatenate([self._widened(k, batch.reset()) for k, batch in enumerate(self.batches)])
+        self.reset_infos = [info for batch in self.batches for info in batch.reset_infos]
+        return observations
+
+    def set_options(self, options: list[dict[str, Any]] | dict[str, Any] | None = None) -> None:
+        """Options of the next reset: one dictionary for all blades, or a list of one for each."""
+        each = options_of_each(options, self.num_envs)
+        for batch, first in zip(self.batches, (0, *self._bounds.tolist()), strict=True):
+            batch.set_options(each[first : first + batch.num_envs])
 
     def state_dict(self) -> dict[str, Any]:
         """Where the episodes are, batch by batch."""

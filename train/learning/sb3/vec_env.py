@@ -82,11 +82,10 @@ class TrainingVecEnv(BladeVecEnv):
         return self.last_cost * self._per_step
 
     def reset(self) -> Array:
-        """Begin episodes, out of step with one another."""
+        """Begin episodes, out of step with one another unless the options say how much is ``elapsed``."""
         steps = self.blades.task.steps
         elapsed = np.arange(self.num_envs) * steps // self.num_envs // self.held * self.held
-        observations, info = self.envs.reset(seed=self._seed, options={"elapsed": elapsed})
-        self._seed = None
+        observations, info = self._begin({"elapsed": elapsed})
         self._energy = info["energy"]
         return self._with_state(observations)
 

@@ -124,7 +124,7 @@ class Windows:
             if signals is not None:
                 acting, signals = drive(self._faults, self._hysteresis, signals, voltages)
             state, output, _, increment = advance(self._now(), torch.cat([state, acting, loads], dim=1))
-            self._elapse()
+            state = self._elapse(state)
             readings, signals = self._read(output, disturbance, signals)
             cost = cost + increment
         left = 0.5 * (state[:, : self._energetic] ** 2).sum(dim=1)
@@ -133,12 +133,16 @@ class Windows:
         self._begin(np.flatnonzero(self._phase == 0), actor)
         return cost, left
 
-    def _elapse(self) -> None:
-        """One control interval later: other plants may be on, and other faults at work."""
-        self._blades.elapse()
+    def _elapse(self, state: Tensor) -> Tensor:
+        """One control interval later: other plants may be on, to whose coordinates states go over, and other faults at work."""
+        passage = self._blades.elapse()
         electronics = self._blades.electronics
         if electronics is not None and electronics.changing:
             self._convert_faults(electronics)
+        if passage is None:
+            return state
+        rows = torch.as_tensor(passage.rows)
+        return state.index_copy(0, rows, (state[rows, None] @ _float(passage.change))[:, 0])
 
     def _now(self) -> Any:
         index = self._blades.index

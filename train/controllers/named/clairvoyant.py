@@ -1,0 +1,12 @@
+"""LQG that is told each episode's plant, delay and faults: what there is to be gained from knowing them."""
+
+from baselines import Controller, clairvoyant_lqg
+from beamenv.knowledge import Truth
+
+KIND = "scheduled"
+TIER = 3
+
+
+def build(truth: Truth) -> Controller:
+    """With a filter that estimates the loads that the scenario lets foresee, and gains that vary with time."""
+    return clairvoyant_lqg(truth)
