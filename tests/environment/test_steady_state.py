@@ -152,7 +152,7 @@ def test_a_run_up_strains_the_blade_by_each_speed_s_steady_state_and_by_euler_s_
 
 @pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("solid")])
 def test_the_sound_blade_survives_every_scenario(name):
-    few = {"plants": {"bank": 8}} if SCENARIOS[name].plants.varies else {}
+    few = {"plants": {"bank": 3}} if SCENARIOS[name].plants.varies else {}
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, preset="sound-blade", scenario={"preset": name, **few})
     envs.reset(seed=0)
     assert not any(envs.step(np.zeros((8, 4)))[2].any() for _ in range(999))

@@ -50,7 +50,7 @@ def test_what_is_kept_for_judging_is_not_what_is_learnt_on():
 
 def _few(name):
     """Fewer plants than a scenario has, for they take long to build."""
-    return {"scenario": {"preset": name, "plants": {"bank": 8}}} if SCENARIOS[name].plants.varies else {}
+    return {"scenario": {"preset": name, "plants": {"bank": 3}}} if SCENARIOS[name].plants.varies else {}
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -20,9 +20,9 @@ from beamenv.configuration import Count, Refused, checked
 from beamenv.knowledge import TIERS
 from beamenv.task import Task, checked_task
 
-KINDS = ("fixed", "scheduled", "predictive")
-"""Linear laws that stay as they were designed; laws that follow the rotor's speed or the time; laws that solve a program at every
-instant."""
+KINDS = ("fixed", "scheduled", "adaptive", "predictive")
+"""Linear laws that stay as they were designed; laws that follow the rotor's speed or the time; laws that find out what is the case;
+laws that solve a program at every instant."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,160 @@
+"""What may be the case in a scenario, as hypotheses of a multiple-model law: by one rule from what tier 1 is told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product, repeat
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines import Hypothesis, PersistentLoad, RotorHarmonics
+from baselines.design.load_model import Load
+from beamenv.blade.build import Blade
+from beamenv.knowledge import Prior
+from beamenv.scenarios.scenario import Scenario
+from beamenv.scenarios.tables import Failures, PlantVariation
+from beamenv.simulation.plants.banks import varied_blades
+
+Array = NDArray[np.float64]
+
+PLANTS = 32
+"""Of what varies: a Latin hypercube with the seed of the training bank."""
+
+SPEEDS = 13
+"""Of a run-up."""
+
+SOONER = 1e-6
+"""How likely what breaks within the episode is broken already at its start."""
+
+MOST = 64
+"""Hypotheses: of more, as many are drawn as episodes draw them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fault:
+    """Actuators and sensors that are broken together, and the share of episodes in which they are."""
+
+    actuator_gain: Array
+    sensor_gain: Array
+    sensor_bias: Array
+    share: float
+
+
+def hypotheses_of(prior: Prior) -> list[Hypothesis]:
+    """Every plant, delay and fault that a scenario may draw, with every other; from more than ``MOST``, so many drawn ones.
+
+    Where faults set in within the episode the first hypothesis is that there is none. Hysteresis is left to the fallback.
+    """
+    scenario, count = prior.scenario, len(_delays(prior.scenario))
+    m, p = prior.blade.truth.B.shape[1], len(prior.blade.truth.C)
+    faults = _faults(scenario.failures, m, p)
+    if count * len(faults) * _how_many_plants(scenario) > MOST:
+        return _drawn(prior)
+    return [
+        _hypothesis(scenario, blade, delay, fault) for blade, delay, fault in product(_blades(prior), _delays(scenario), faults)
+    ]
+
+
+def switches(prior: Prior, hypotheses: Sequence[Hypothesis]) -> Array | None:
+    """Markov matrix (H, H) of faults that set in within the episode; None where all are there from the start.
+
+    From none to each by its share, once in the mean time until they set in; what is broken stays broken.
+    """
+    failures = prior.scenario.failures
+    if failures.onset == (0.0, 0.0) or len(hypotheses) == 1:
+        return None
+    interval, shares = hypotheses[0].plant.control_interval, np.array([each.prior for each in hypotheses[1:]])
+    breaks = interval / max(float(np.mean(failures.onset)), 2.0 * interval)
+    matrix = np.eye(len(hypotheses))
+    matrix[0, 0], matrix[0, 1:] = 1.0 - breaks, breaks * shares / shares.sum()
+    return matrix
+
+
+def _hypothesis(scenario: Scenario, blade: Blade, delay: int, fault: Fault) -> Hypothesis:
+    return Hypothesis(
+        blade.truth,
+        delay=delay,
+        actuator_gain=fault.actuator_gain,
+        sensor_gain=fault.sensor_gain,
+        sensor_bias=fault.sensor_bias,
+        load=_loads(scenario, blade),
+        deflection=float(np.sqrt(0.5 * scenario.deflection * _mean_square(scenario.magnitude))),
+        holds_lost_readings=scenario.acquisition.dropout > 0.0,
+        prior=fault.share,
+    )
+
+
+def _loads(scenario: Scenario, blade: Blade) -> list[Load]:
+    """A load that lasts, and the rotor's harmonics where there are any."""
+    orders = tuple(order for order, amplitude in enumerate(scenario.rotor.harmonics, start=1) if amplitude)
+    harmonics: list[Load] = [RotorHarmonics(blade.config.speed, orders)] if orders else []
+    return [*harmonics, PersistentLoad()]
+
+
+def _mean_square(ends: tuple[float, float]) -> float:
+    """Of what is drawn uniformly between them."""
+    low, high = ends
+    return (low**2 + low * high + high**2) / 3.0
+
+
+def _delays(scenario: Scenario) -> range:
+    return range(scenario.drive.delay[0], scenario.drive.delay[1] + 1)
+
+
+def _how_many_plants(scenario: Scenario) -> int:
+    return PLANTS if scenario.plants.varies else SPEEDS if scenario.plants.spin_up is not None else 1
+
+
+def _blades(prior: Prior) -> list[Blade]:
+    plants = prior.scenario.plants
+    if plants.varies:
+        return list(varied_blades(prior.blade, replace(plants, bank=PLANTS)))
+    if plants.spin_up is None:
+        return [prior.blade]
+    of = prior.blade.with_fixed_range().with_fixed_order()
+    return [of.changed(replace(of.config, speed=float(speed))) for speed in np.linspace(*plants.spin_up, SPEEDS)]
+
+
+def _faults(failures: Failures, m: int, p: int) -> list[Fault]:
+    """Each that may be drawn: neighbours in a ring, as ``draw_faults`` has them."""
+    sound = Fault(np.ones(m), np.ones(p), np.zeros(p), 1.0)
+    weak = float(np.mean(failures.remaining))
+    actuators = [
+        replace(sound, actuator_gain=1.0 - (1.0 - weak) * ring, share=1.0 / m) for ring in _rings(failures.dead_actuators, m)
+    ]
+    bias = float(np.sqrt(_mean_square(failures.bias)))
+    sensors = [
+        replace(sound, sensor_gain=1.0 - dead * ring, sensor_bias=(1 - dead) * bias * ring, share=share / p)
+        for ring in _rings(failures.faulty_sensors, p)
+        for dead, share in ((1, 1.0 - failures.biased_share), (0, failures.biased_share))
+        if share > 0.0
+    ]
+    later = failures.onset != (0.0, 0.0)
+    if failures.either:
+        broken = [*actuators, *sensors]
+    else:
+        pairs = list(product([sound] * later + (actuators or [sound]), [sound] * later + (sensors or [sound])))[later:]
+        broken = [replace(sensor, actuator_gain=each.actuator_gain, share=each.share * sensor.share) for each, sensor in pairs]
+    return [sound, *(replace(each, share=SOONER * each.share) for each in broken)] if later else broken
+
+
+def _rings(count: int, among: int) -> list[Array]:
+    """1 for ``count`` neighbours in a ring, from each of them on."""
+    places = np.arange(among)
+    return [((places - first) % among < count).astype(float) for first in range(among)] if count else []
+
+
+def _drawn(prior: Prior) -> list[Hypothesis]:
+    """Faults of the first episodes of tuning, each with a plant of a Latin hypercube of as many."""
+    scenario = prior.scenario
+    faults = replace(prior, scenario=replace(scenario, plants=PlantVariation())).hypotheses(MOST).faults
+    varied = (
+        varied_blades(prior.blade, replace(scenario.plants, bank=MOST)) if scenario.plants.varies else repeat(prior.blade, MOST)
+    )
+    each = zip(faults.delay, faults.actuator_gain, faults.sensor_gain, np.abs(faults.sensor_bias), strict=True)
+    return [
+        _hypothesis(scenario, blade, int(delay), Fault(actuators, sensors, bias, 1.0))
+        for blade, (delay, actuators, sensors, bias) in zip(varied, each, strict=True)
+    ]
