@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import chi2
+from scipy.special import chdtri  # scipy.stats would look for torch
 
 from baselines.design.controller import Array
 from baselines.design.filter_bank import Filter, FilterBank
@@ -80,7 +80,7 @@ def multiple_model(
         _check_fallback(fallback, first)
     window, allowance = checked("window", window, Count(1, 10**6)), checked("allowance", allowance, Number(gt=0.0))
     degrees = (2 * window - 1) * len(first.C)
-    quantile = float(chi2.ppf(checked("confidence", confidence, Number(gt=0.0, lt=1.0)), degrees)) / degrees
+    quantile = float(chdtri(degrees, 1.0 - checked("confidence", confidence, Number(gt=0.0, lt=1.0)))) / degrees
     floor = checked("floor", floor, Number(ge=0.0, lt=1.0))
     rate_weight, verify = checked("rate_weight", rate_weight, Number(ge=0.0)), checked("verify", verify, Flag())
     depth = max(int(rate_weight > 0.0), *(each.delay for each in those))
