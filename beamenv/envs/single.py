@@ -137,7 +137,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     | `solid`      | the blade is a solid of three dimensions (finite elements, 11 modes), the design plant is the beam's   |
     | `solid-20`   | the same solid with 20 modes                                                                           |
     | `mid-failure` | an actuator or a sensor dies, 0.05 … 0.3 s into the episode                                         |
-    | `gust-speed` | rotor speed wanders by 5 % (one standard deviation), up to 4 Hz; `rotor_speed` does not show it          |
+    | `gust-speed` | rotor speed wanders by 5 % (one standard deviation), up to 2 Hz; `rotor_speed` does not show it          |
     | `drift`      | up to 15 % heavier and 20 % softer within the episode, from a drawn instant on                         |
     | `unknown-everything` | speed, plies, mass, hysteresis, delay, lost readings, a weak actuator, a bias, rotor loads: all mild |
     | `off-speed-failure`, `delay-off-model`, `delay-failure`, `hysteresis-rotor` | both of what the name says               |

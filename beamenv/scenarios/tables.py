@@ -54,8 +54,8 @@ class PlantVariation:
     speed_wander: Annotated[float, Number(ge=0.0, le=0.1)] = 0.0
     """σ over the configured speed: Ω(t) wanders about it within the episode (``Wander`` of the simulation), and no tachometer
     follows; nothing else varies then."""
-    wander_frequency: Annotated[float, Number(ge=1e-3, le=20.0, unit="Hz")] = 4.0
-    """Up to which the speed wanders: far below the first mode, so that it does not shake the blade."""
+    wander_frequency: Annotated[float, Number(ge=1e-3, le=20.0, unit="Hz")] = 2.0
+    """Up to which the speed wanders: far below the first mode, so that the steady state follows and sensors do not show it."""
     modulus_drift: Ratio = SAME
     """Of every modulus of the laminate, over what it was at the start, when it no longer changes; nothing else varies then."""
     mass_drift: Ratio = SAME

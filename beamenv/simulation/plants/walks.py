@@ -7,7 +7,8 @@ distance of two, range/2(K − 1): in the scenarios that ship 0.14 % of the spee
 twice as many stations change J by less than 1 % (``tests/scenarios/test_walks.py``).
 
 What so slow a change does to the steady state is not vibration, as in a run-up (``run_up``): with it, and with what Euler's force
-displaces, moves the equilibrium that vibration is about.
+displaces, moves the equilibrium that vibration is about. Unlike there, the start of an episode excites nothing, for the change was
+under way before; and of the strains that the total limit counts, those of Euler's force are left out.
 """
 
 from __future__ import annotations
