@@ -25,10 +25,20 @@ def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observati
         raise Refused("env", env, "a batch of blades" if of_batch else "an environment with a blade")
     for what in unchanged:
         name = f"single_{what}_space" if of_batch else f"{what}_space"
-        if not _alike(getattr(env, name), getattr(env.unwrapped, name)):
+        unlike = not _alike(getattr(env, name), getattr(env.unwrapped, name))
+        if unlike or (what == "observation" and _is_normalised(env)):
             shows = "shows the sensors' readings as they are" if what == "observation" else "takes voltages as the blade does"
             raise Refused("env", env, f"one that {shows}: put what changes its {what}s around this wrapper, not into it")
     return task
+
+
+def _is_normalised(env: Any) -> bool:
+    """Whether one of its wrappers normalises what it shows, which up to Gymnasium 1.2 spaces of batches do not tell."""
+    while env is not env.unwrapped:
+        if isinstance(env, (gymnasium.wrappers.NormalizeObservation, gymnasium.wrappers.vector.NormalizeObservation)):
+            return True
+        env = env.env
+    return False
 
 
 def _alike(space: Any, own: Any) -> bool:

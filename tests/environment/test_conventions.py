@@ -51,6 +51,8 @@ def test_normalised_rewards_have_the_sign_of_the_plain_ones():
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
 def test_vector_wrappers_take_the_native_batch(mode):
+    if mode == "SameStep" and gymnasium.__version__.startswith("1.2."):
+        pytest.skip("RecordEpisodeStatistics counts a step too few in SameStep before Gymnasium 1.3")
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, autoreset_mode=mode, **SHORT)
     envs = vector_wrappers.RecordEpisodeStatistics(envs)
     envs = vector_wrappers.NormalizeReward(vector_wrappers.ClipReward(envs, -10.0, 0.0))

@@ -89,7 +89,7 @@ def refusal(error, words) -> Outcome:
         return Outcome("fault", f"{type(error).__name__}: {text[:200]} {where}")
     if "\n" in text or len(text) > LONGEST or not text.endswith("."):
         return Outcome("fault", f"no sentence: {text[:300]!r} {where}")
-    if not any(word in text for word in words if word):
+    if not any(word.casefold() in text.casefold() for word in words if word):
         return Outcome("fault", f"names none of {', '.join(words)}: {text[:200]!r} {where}")
     return Outcome("refused", text)
 
