@@ -19,7 +19,7 @@ from baselines.evaluation.loop import INFO, Environment, attribute, instants
 from beamenv.configuration import Count, Number, Numbers, Refused, checked, shown
 
 MOST_SEEDS = 10**6
-SEEDS = Numbers(Count(0, 2**63 - 1), least=1, most=MOST_SEEDS, of="seeds")
+SEEDS = Numbers(Count(0, 2**63 - 1), least=1, of="seeds")
 _NO_LOAD = {"load": {"case": "none"}}
 Progress = Callable[[int, int], None]
 
@@ -78,8 +78,8 @@ class Episodes:
 
 def checked_seeds(seeds: Any) -> tuple[int, ...]:
     """Seeds of episodes; ``ValueError`` unless they are a range or a list of one or more whole numbers, a million at most."""
-    if isinstance(seeds, range) and seeds[MOST_SEEDS:]:
-        raise Refused("seeds", seeds, SEEDS.allowed)
+    if isinstance(seeds, (range, list, tuple)) and seeds[MOST_SEEDS:]:
+        raise Refused("seeds", seeds, f"a list of one or more seeds, at most {MOST_SEEDS}")
     checked_list: tuple[int, ...] = checked("seeds", list(seeds) if isinstance(seeds, range) else seeds, SEEDS)
     return checked_list
 

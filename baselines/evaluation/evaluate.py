@@ -118,8 +118,8 @@ def evaluate(
     the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id of one.
     ``reference`` spares the run without control: the ``reference`` of an evaluation of the very same episodes.
     ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no controller or does
-    not fit the environment, an environment whose wrappers act otherwise than the blade, no seeds or equal ones, a confidence outside
-    (0, 1), a reference of other episodes, and where nothing moves without control: no cost is relative to that.
+    not fit the environment, wrappers that act otherwise than the blade, no seeds or equal ones, a confidence outside (0, 1), a
+    reference of other episodes, and where nothing moves without control: no cost is relative to that.
     """
     confidence, seeds = checked("confidence", confidence, Number(gt=0.0, lt=1.0)), _unlike(checked_seeds(seeds))
     controller, progress = as_controller(controller), checked_progress(progress)

@@ -76,7 +76,7 @@ def test_wrappers_that_change_no_number_are_let_through(env, law):
     plain = evaluate(law, env, range(2)).cost.value
     for wrapped in (
         wrappers.ClipAction(single()),
-        wrappers.DtypeObservation(single(dtype="float64"), np.float32),
+        wrappers.DtypeObservation(single(), np.float32),
         wrappers.TimeLimit(single(), 40),
         SyncVectorEnv([single] * 2),
         SyncVectorEnv([lambda: wrappers.ClipAction(single())] * 2),
