@@ -7,6 +7,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium import wrappers
 from gymnasium.spaces import Box
 from gymnasium.vector import VectorEnv
 
@@ -26,19 +27,29 @@ def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observati
     for what in unchanged:
         name = f"single_{what}_space" if of_batch else f"{what}_space"
         unlike = not _alike(getattr(env, name), getattr(env.unwrapped, name))
-        if unlike or (what == "observation" and _is_normalised(env)):
+        if unlike or (what == "observation" and _shows_otherwise(env)):
             shows = "shows the sensors' readings as they are" if what == "observation" else "takes voltages as the blade does"
             raise Refused("env", env, f"one that {shows}: put what changes its {what}s around this wrapper, not into it")
     return task
 
 
-def _is_normalised(env: Any) -> bool:
-    """Whether one of its wrappers normalises what it shows, which up to Gymnasium 1.2 spaces of batches do not tell."""
+def _shows_otherwise(env: Any) -> bool:
+    """Whether one of its wrappers changes what is shown, or when, though its space may tell nothing of it."""
     while env is not env.unwrapped:
-        if isinstance(env, (gymnasium.wrappers.NormalizeObservation, gymnasium.wrappers.vector.NormalizeObservation)):
+        if isinstance(env, _OTHERWISE) and not isinstance(env, _AS_THEY_ARE):
             return True
         env = env.env
     return False
+
+
+_OTHERWISE = (
+    gymnasium.ObservationWrapper,
+    gymnasium.vector.VectorObservationWrapper,
+    wrappers.Autoreset,
+    wrappers.MaxAndSkipObservation,
+    wrappers.StickyAction,
+)
+_AS_THEY_ARE = (wrappers.DtypeObservation, wrappers.vector.DtypeObservation)
 
 
 def _alike(space: Any, own: Any) -> bool:
