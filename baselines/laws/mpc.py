@@ -21,7 +21,6 @@ from baselines.laws.lqg import compensator, sampled_design
 from beamenv.configuration import Count, Numbers, Refused, checked
 from beamenv.plant.plant import Plant, SampledPlant
 
-
 LONGEST = 1000
 """Control intervals of a horizon that is given: half a second at 0.5 ms, an episode as it is by default."""
 
@@ -160,7 +159,8 @@ def doubling_blocks(plant: Plant) -> list[int]:
 def _checked(blocks: Sequence[int]) -> list[int]:
     counts = checked("move_blocks", blocks, Numbers(Count(le=LONGEST), least=1, of="counts"))
     if len(counts) > MOVES or sum(counts) > LONGEST:
-        raise Refused("move_blocks", blocks, f"at most {MOVES} counts of control intervals whose sum, the horizon, is at most {LONGEST}")
+        allowed = f"at most {MOVES} counts of control intervals whose sum, the horizon, is at most {LONGEST}"
+        raise Refused("move_blocks", blocks, allowed)
     return list(counts)
 
 

@@ -20,7 +20,7 @@ from baselines.design.persistent_load import PersistentLoad, checked_persistent_
 from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import Flag, Refused, checked
+from beamenv.configuration import Flag, Number, Refused, checked
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 
