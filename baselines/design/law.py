@@ -31,8 +31,8 @@ class Law(ABC):
     """What it reads and drives; its matrices are in A and V whatever units they use."""
 
     def __post_init__(self) -> None:
-        """``ValueError`` for a name that is no text and for instruments that are none."""
-        checked("name", self.name, Text())
+        """``ValueError`` for a name that is no text of one line and for instruments that are none."""
+        checked("name", self.name, Text(line=True))
         checked_instruments(self.instruments)
 
     @property

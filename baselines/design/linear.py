@@ -13,6 +13,7 @@ from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.law import Law
 from baselines.design.matrix import keep_matrices, real_matrix, rows
 from baselines.design.verification import verified
+from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant
 
 if TYPE_CHECKING:
@@ -152,9 +153,8 @@ def linear(controller: object) -> LinearController:
 def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any]:
     """Of a system of python-control, or one like it."""
     if not hasattr(system, "dt"):
-        raise ValueError(
-            f"A alone is of type {type(system).__name__}, but must be a discrete-time control.StateSpace, or have B, C, D."
-        )
+        allowed = "a discrete-time control.StateSpace where it is given alone, or else one of four arguments A, B, C, D"
+        raise Refused("A", system, allowed)
     if not hasattr(system, "A"):
         import control
 

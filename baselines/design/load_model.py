@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Any, Protocol
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from baselines.design.riccati import Array
-from beamenv.configuration import Refused
+from beamenv.configuration import Number, Refused
 from beamenv.plant.plant import SampledPlant
+
+MAGNITUDE = Number(ge=1e-6, le=1e6, unit="N/m")
+"""Root mean square of a load: far beyond what a blade stands, and far from where squares leave the numbers."""
+
+DURATION = Number(ge=1e-6, le=1e3, unit="s")
+"""Time in which a load forgets itself."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,9 +51,11 @@ class Load(Protocol):
 def checked_loads(name: str, load: Any) -> tuple[Load, ...]:
     """The loads, of one or of a list of them, none for None; ``ValueError`` for what has no model."""
     loads = () if load is None else tuple(load) if isinstance(load, (list, tuple)) else (load,)
-    if all(callable(getattr(each, "model", None)) and not isinstance(each, type) for each in loads):
-        return loads
-    raise Refused(name, load, "None, a load that can be foreseen, such as PersistentLoad(), or a list of them")
+    if not all(callable(getattr(each, "model", None)) and not isinstance(each, type) for each in loads):
+        raise Refused(name, load, "None, a load that can be foreseen, such as PersistentLoad(), or a list of them")
+    if any(each == other for each, other in combinations(loads, 2)):
+        raise Refused(name, load, "a list of loads that differ from each other: no reading tells two equal ones apart")
+    return loads
 
 
 def with_load(held: SampledPlant, load: LoadModel) -> SampledPlant:

@@ -13,6 +13,9 @@ from beamenv.configuration import shown
 _ROUNDING = 1e-9
 """Of the largest entry: what an asymmetry or a negative eigenvalue may come to by rounding."""
 
+_HEAVIEST = 1e100
+"""Of a weight: squares of what is solved for leave the numbers beyond."""
+
 
 def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     """A copy as float64; ``ValueError`` for what is not of finite real numbers in this shape: complex ones, text, masks, flags."""
@@ -31,7 +34,9 @@ def real_matrix(name: str, value: Any, shape: tuple[int, ...]) -> Array:
 def definite_matrix(name: str, value: Any, size: int, definite: Literal["semidefinite", "definite"]) -> Array:
     """As ``real_matrix``, (size, size), symmetric and positive definite or semidefinite; ``ValueError`` otherwise."""
     weight = real_matrix(name, value, (size, size))
-    rounding = _ROUNDING * np.abs(weight).max()
+    if (largest := np.abs(weight).max()) > _HEAVIEST:
+        raise ValueError(f"{name} has the entry {largest:.3g}, but must hold numbers from -{_HEAVIEST:g} to {_HEAVIEST:g}.")
+    rounding = _ROUNDING * largest
     if np.abs(weight - weight.T).max() > rounding:
         raise ValueError(f"{name} differs from its transpose by {np.abs(weight - weight.T).max():.3g}, but must be symmetric.")
     lowest = float(np.linalg.eigvalsh(weight).min())

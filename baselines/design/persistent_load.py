@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from baselines.design.load_model import LoadModel, with_load
+from baselines.design.load_model import DURATION, MAGNITUDE, LoadModel, with_load
 from baselines.design.objects import optional_instance
-from beamenv.configuration import Number, configuration
+from beamenv.configuration import configuration
 from beamenv.plant.plant import SampledPlant
 
 
@@ -21,9 +21,9 @@ class PersistentLoad:
     needs care: on the default blade from 5 to 20 N/m and from 0.2 to 0.5 s J moves by less than 2 %.
     """
 
-    magnitude: Annotated[float, Number(gt=0.0, unit="N/m")] = 10.0
+    magnitude: Annotated[float, MAGNITUDE] = 10.0
     """N/m, root mean square."""
-    duration: Annotated[float, Number(gt=0.0, unit="s")] = 0.25
+    duration: Annotated[float, DURATION] = 0.25
     """s, correlation time."""
 
     def model(self, interval: float) -> LoadModel:

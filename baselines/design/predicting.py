@@ -14,6 +14,9 @@ from beamenv.configuration.arrays import real_numbers
 
 _DOUBLE = np.dtype(np.float64)
 
+_LARGEST = 1e100
+"""Of an observation: products of larger numbers leave the range of 64 bits, and a memory would never forget that."""
+
 
 def observed(observation: Any, name: str, reads: str = "observation", length: int | None = None) -> Array:
     """An observation (p,) or a batch (N, p) as float64; ``ValueError`` unless it holds finite numbers, ``length`` a blade."""
@@ -23,8 +26,8 @@ def observed(observation: Any, name: str, reads: str = "observation", length: in
     if seen.ndim not in (1, 2) or length not in (None, seen.shape[-1]):
         wanted = f"{reads} vectors" if length is None else f"{reads} vectors of length {length}"
         raise ValueError(f"observation has shape {seen.shape}, but {name} takes {wanted}, alone or in rows.")
-    if not np.isfinite(seen).all():  # a memory would never forget them
-        raise Refused("observation", observation, f"finite {reads} vectors")
+    if not (np.abs(seen) <= _LARGEST).all():  # nor what is no number
+        raise Refused("observation", observation, f"finite {reads} vectors of numbers not beyond {_LARGEST:g}")
     return seen
 
 

@@ -53,6 +53,28 @@ def conditions(env: Environment, seeds: int) -> Conditions | None:
     return Conditions(tuple(task.config for task in each), tasks[0].scenario, steps(env), tasks[0].physical_units)
 
 
+def check_alike(env: Environment) -> None:
+    """``ValueError`` says in what the blades of a batch differ that must be equal in one evaluation."""
+    tasks = tasks_of(env)
+    if len(tasks) < 2:
+        return
+    specs: Sequence[Any] = attribute(env, "spec")
+    limits = [spec.max_episode_steps for spec in specs if spec is not None] if len(specs) == len(tasks) else []
+    for what, values in (
+        ("scenario", [task.scenario for task in tasks]),
+        ("duration", [task.steps for task in tasks]),
+        ("max_episode_steps", limits),
+        ("physical_units", [task.physical_units for task in tasks]),
+        ("control_interval", [task.config.control_interval for task in tasks]),
+        ("voltage_limits", [task.plant.voltage_limits.tolist() for task in tasks]),
+    ):
+        if other := next((k for k, value in enumerate(values) if value != values[0]), 0):
+            raise ValueError(
+                f"env has blades that differ in their {what}: blade {other} has another than blade 0, but one evaluation is of "
+                "one kind of episode; evaluate each kind in an environment of its own."
+            )
+
+
 def steps(env: Environment) -> int:
     """Control intervals in a whole episode: the task's, or fewer by a time limit; 0 where no task tells."""
     if not (tasks := tasks_of(env)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
@@ -15,8 +16,9 @@ from baselines.design.controller import Array, Controller, ControllerArgument, a
 from baselines.evaluation.conditions import Conditions, conditions, steps
 from baselines.evaluation.fit import check_fit
 from baselines.evaluation.loop import INFO, Environment, attribute, instants
-from beamenv.configuration import Count, Numbers, Refused, checked
+from beamenv.configuration import Count, Number, Numbers, Refused, checked, shown
 
+MOST_SEEDS = 10**6
 SEEDS = Numbers(Count(0, 2**63 - 1), least=1, of="seeds")
 _NO_LOAD = {"load": {"case": "none"}}
 Progress = Callable[[int, int], None]
@@ -47,6 +49,27 @@ class Episodes:
     conditions: Conditions | None = field(default=None, repr=False)
     """What decided them besides; None of an environment that does not tell."""
 
+    def __post_init__(self) -> None:
+        """``ValueError`` for series whose shapes are not those of N seeds, T control intervals and m voltages."""
+        seeds, intervals, actuators = len(self.seeds), len(np.atleast_1d(self.cost)), np.shape(self.voltage_limits)[-1:]
+        of_blades = (intervals, seeds)
+        for name, shape in (
+            ("cost", of_blades),
+            ("effort", of_blades),
+            ("tip_displacement", (*of_blades, 2)),
+            ("load_response", (*of_blades, 2)),
+            ("voltage_limits", (2, *actuators)),
+            ("voltages", (*of_blades, *actuators)),
+            ("failed", (seeds,)),
+        ):
+            series = getattr(self, name)
+            if not isinstance(series, np.ndarray) or series.shape != shape or series.dtype.kind not in "bf":
+                form = f"has shape {series.shape}" if isinstance(series, np.ndarray) else f"is {shown(series)}"
+                raise ValueError(f"episodes.{name} {form}, but must be an array of numbers in shape {shape}.")
+        if self.failed.dtype != np.bool_:
+            raise Refused("episodes.failed", self.failed, "an array of True and False")
+        checked("episodes.interval", self.interval, Number(gt=0.0, unit="s"))
+
     @property
     def time(self) -> Array:
         """(T,), s, since the reset."""
@@ -54,16 +77,31 @@ class Episodes:
 
 
 def checked_seeds(seeds: Any) -> tuple[int, ...]:
-    """Seeds of episodes; ``ValueError`` unless they are a range or a list of one or more whole numbers."""
+    """Seeds of episodes; ``ValueError`` unless they are a range or a list of one or more whole numbers, a million at most."""
+    if isinstance(seeds, (range, list, tuple)) and seeds[MOST_SEEDS:]:
+        raise Refused("seeds", seeds, f"a list of one or more seeds, at most {MOST_SEEDS}")
     checked_list: tuple[int, ...] = checked("seeds", list(seeds) if isinstance(seeds, range) else seeds, SEEDS)
     return checked_list
 
 
 def checked_progress(progress: Any) -> Progress | None:
     """What is called as episodes finish, or None; ``ValueError`` for what cannot be called."""
-    if progress is None or callable(progress):
+    if progress is None or (callable(progress) and _takes_two(progress)):
         return progress
     raise Refused("progress", progress, "None, or a function of the number done and their total")
+
+
+def _takes_two(function: Callable[..., Any]) -> bool:
+    """Whether a function can be called with two arguments, as far as it tells."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # some that are written in C
+        return True
+    try:
+        signature.bind(0, 0)
+    except TypeError:
+        return False
+    return True
 
 
 def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[int], progress: Progress | None = None) -> Episodes:
@@ -103,6 +141,12 @@ def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[i
         interval=plant.control_interval,
         conditions=under,
     )
+
+
+def recorded_to_the_end(series: Array) -> bool:
+    """Whether a series (T, N) of each blade begins with a number and has no gaps: NaN only once its episode is over."""
+    known = ~np.isnan(series)
+    return bool(known[0].all() and not (known[1:] & ~known[:-1]).any())
 
 
 def _run(controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None) -> tuple[Array, ...]:

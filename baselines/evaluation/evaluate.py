@@ -11,7 +11,7 @@ from gymnasium.vector import VectorEnv
 
 from baselines.design.controller import Array, ControllerArgument, as_controller, name_of
 from baselines.design.objects import instance
-from baselines.evaluation.episodes import Episodes, Progress, checked_progress, checked_seeds, roll_out
+from baselines.evaluation.episodes import Episodes, Progress, checked_progress, checked_seeds, recorded_to_the_end, roll_out
 from baselines.evaluation.fit import check_fit, made
 from baselines.evaluation.loop import Environment
 from baselines.evaluation.metrics import EpisodeMetrics, cost_without_control, finite, judged, measure, settling_band
@@ -118,10 +118,10 @@ def evaluate(
     the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id of one.
     ``reference`` spares the run without control: the ``reference`` of an evaluation of the very same episodes.
     ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no controller or does
-    not fit the environment, no seeds, a confidence outside (0, 1), a reference of other episodes, and where nothing moves without
-    control: no cost is relative to that.
+    not fit the environment, wrappers that act otherwise than the blade, no seeds or equal ones, a confidence outside (0, 1), a
+    reference of other episodes, and where nothing moves without control: no cost is relative to that.
     """
-    confidence, seeds = checked("confidence", confidence, Number(gt=0.0, lt=1.0)), checked_seeds(seeds)
+    confidence, seeds = checked("confidence", confidence, Number(gt=0.0, lt=1.0)), _unlike(checked_seeds(seeds))
     controller, progress = as_controller(controller), checked_progress(progress)
     if isinstance(env, str):
         batch = made(env, max(1, min(len(seeds), WIDEST_BATCH)))
@@ -141,9 +141,19 @@ def evaluate(
     return Evaluation(name_of(controller), confidence, **about, **estimates)  # type: ignore[arg-type]
 
 
+def _unlike(seeds: tuple[int, ...]) -> tuple[int, ...]:
+    """The seeds; ``ValueError`` where one comes twice, for an interval takes its episodes to be independent."""
+    if len(set(seeds)) < len(seeds):
+        twice = next(seed for k, seed in enumerate(seeds) if seed in seeds[:k])
+        raise ValueError(f"seeds has {twice} more than once, but must be unlike each other: equal ones are one episode.")
+    return seeds
+
+
 def checked_uncontrolled(reference: Episodes) -> Array:
     """J₀ (N,), J s; ``ValueError`` where no cost can be relative to it, for nothing moves, or without bounds."""
     cost = cost_without_control(reference)
+    if not recorded_to_the_end(reference.cost):
+        raise ValueError("reference has costs that are no numbers (NaN) before an episode's end: no cost is relative to them.")
     if not np.isfinite(cost).all():
         raise ValueError("scenario moves the blade without bounds, and J without control is infinite: no cost is relative to it.")
     if not cost.any():

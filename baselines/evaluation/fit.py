@@ -11,7 +11,9 @@ from gymnasium.vector import VectorEnv
 
 from baselines.design.controller import Controller, name_of
 from baselines.design.law import Law
+from baselines.evaluation.conditions import check_alike
 from baselines.evaluation.loop import Environment, attribute
+from baselines.evaluation.spaces import check_spaces
 from beamenv.configuration import Refused, shown
 from beamenv.task import Task
 
@@ -27,18 +29,28 @@ def made(env: Any, count: int) -> Environment:
 
 
 def check_fit(controller: Controller, env: Any) -> None:
-    """``ValueError`` for what is no environment with blades, and for a controller in other units or with another clock.
+    """``ValueError`` for what is no environment with blades, or with unlike ones, and for a controller in other units, with another
+    clock, or within wrappers that change what it reads or drives.
 
     A law or an agent of this package says what it reads and drives, a model of Stable-Baselines3 tells its spaces. Of a plain
     function nothing is known.
     """
     check_environment(env)
+    check_alike(env)
     task = getattr(env.unwrapped, "task", None)
     if isinstance(task, Task):
         _check_units(controller, task.physical_units)
     if isinstance(controller, Law):
         _check_clock(controller, attribute(env, "plant")[0].control_interval)
-    _check_spaces(controller, env)
+    _check_model(controller, env)
+    check_spaces(env, ("action", "observation") if _reads_the_sensors(controller) else ("action",))
+
+
+def _reads_the_sensors(controller: Controller) -> bool:
+    """Whether it is a law or an agent of this package that wants the sensors' readings as the blade gives them."""
+    if isinstance(controller, Law):
+        return controller.observes != "state"
+    return hasattr(controller, "physical_units")
 
 
 def check_environment(env: Any) -> None:
@@ -73,7 +85,7 @@ def _check_clock(law: Law, interval: float) -> None:
         )
 
 
-def _check_spaces(controller: Controller, env: Environment) -> None:
+def _check_model(controller: Controller, env: Environment) -> None:
     """Of a model that tells its spaces: their shapes, and that both or neither count in drive limits."""
     batch = isinstance(env, VectorEnv)
     for name in ("observation", "action"):

@@ -18,8 +18,14 @@ from baselines.design.persistent_load import PersistentLoad, checked_persistent_
 from baselines.design.verification import verified
 from baselines.design.weights import weighted
 from baselines.laws.lqg import compensator, sampled_design
-from beamenv.configuration import Count, Numbers, checked
+from beamenv.configuration import Count, Numbers, Refused, checked
 from beamenv.plant.plant import Plant, SampledPlant
+
+LONGEST = 1000
+"""Control intervals of a horizon that is given: half a second at 0.5 ms, an episode as it is by default."""
+
+MOVES = 200
+"""Of one plan: the time that a program takes grows as the cube of their number."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -106,7 +112,7 @@ def mpc(
     exactly sampled, and beyond the horizon that of LQG (Scokaert and Rawlings, IEEE Trans. Automatic Control 43, 1998). As long as
     no limit is in sight the law is therefore LQG itself.
 
-    The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h; by default they are
+    The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h, at most 1000; by default they are
     ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike;
     ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``; ``Q`` and ``R`` are other weights than the plant's, as in
     ``lqg``. What it is while no limit is in sight, LQG, is ``verified`` on ``plant`` unless ``verify=False``. One law may serve
@@ -151,7 +157,11 @@ def doubling_blocks(plant: Plant) -> list[int]:
 
 
 def _checked(blocks: Sequence[int]) -> list[int]:
-    return list(checked("move_blocks", blocks, Numbers(Count(), least=1, of="counts")))
+    counts = checked("move_blocks", blocks, Numbers(Count(le=LONGEST), least=1, of="counts"))
+    if len(counts) > MOVES or sum(counts) > LONGEST:
+        allowed = f"at most {MOVES} counts of control intervals whose sum, the horizon, is at most {LONGEST}"
+        raise Refused("move_blocks", blocks, allowed)
+    return list(counts)
 
 
 def _deviation(held: SampledPlant, P: Array, K: Array, blocks: Sequence[int]) -> Array:

@@ -43,7 +43,7 @@ def full_order_lqg(
     """
     loads = checked_loads("load", load)
     held, regulated, filtered = sampled_design(checked_plant(plant), *loads, rate_weight=rate_weight)
-    law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
+    law = compensator(plant, checked("name", name, Text(line=True)), held, regulated.gain, filtered.gain)
     return verified(law, plant, regulated, filtered, instead="another rate_weight", verify=verify)
 
 

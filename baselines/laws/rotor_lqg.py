@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
 from baselines.design.linear import LinearController
-from baselines.design.load_model import LoadModel
+from baselines.design.load_model import DURATION, MAGNITUDE, LoadModel
 from baselines.design.objects import instance, optional_instance
 from baselines.design.persistent_load import PersistentLoad
 from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_lqg
-from beamenv.configuration import Count, Number, Numbers, configuration
+from beamenv.configuration import Count, Number, Numbers, Refused, configuration
 from beamenv.plant.plant import Plant
 
 
@@ -32,10 +32,15 @@ class RotorHarmonics:
     """rad/s, of the rotor."""
     orders: Annotated[tuple[int, ...], Numbers(Count(), least=1, of="orders")] = (1, 2, 3, 4)
     """Loads per revolution."""
-    magnitude: Annotated[float, Number(gt=0.0, unit="N/m")] = 1.5
+    magnitude: Annotated[float, MAGNITUDE] = 1.5
     """N/m, root mean square, of each harmonic in each direction."""
-    duration: Annotated[float, Number(gt=0.0, unit="s")] = 0.5
+    duration: Annotated[float, DURATION] = 0.5
     """s: time in which a harmonic forgets its amplitude and phase."""
+
+    def __post_init__(self) -> None:
+        """``ValueError`` for an order that is there twice: no reading tells two such loads apart."""
+        if len(set(self.orders)) < len(self.orders):
+            raise Refused("orders", self.orders, "orders that differ from each other")
 
     def model(self, interval: float) -> LoadModel:
         """Four states for each order, an in-phase and a quadrature part (N/m) in lag and in flap, over an interval in s.

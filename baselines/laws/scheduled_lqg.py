@@ -20,7 +20,7 @@ from baselines.design.persistent_load import PersistentLoad, checked_persistent_
 from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import Flag, Refused, checked
+from beamenv.configuration import Flag, Number, Refused, checked
 from beamenv.plant.plant import Plant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 
@@ -68,8 +68,9 @@ class ScheduledLQG(Law):
         return action, product[..., : self.order] + _mixed(weights, action, feedback)
 
     def at(self, speed: float) -> LinearController:
-        """The linear law that this one is at a constant speed in rad/s."""
-        weights = self._weights(np.asarray(speed, dtype=np.float64))
+        """The linear law that this one is at a constant speed in rad/s; ``ValueError`` for what is no such number."""
+        speed = checked("speed", speed, Number(unit="rad/s"))
+        weights = self._weights(np.asarray(speed))
         mixed: dict[str, Any] = {
             name: np.tensordot(weights, np.stack([getattr(law, name) for law in self.laws]), axes=1) for name in _MATRICES
         }

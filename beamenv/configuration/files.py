@@ -5,15 +5,16 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamenv.configuration.sentence import Refused
+from beamenv.configuration.sentence import Refused, cut, shown
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -25,48 +26,88 @@ ENDINGS = (".toml", ".json")
 SCHEMA = "$schema"
 """What an editor reads of a JSON file, and nobody else."""
 
+LARGEST = 1_000_000
+"""Bytes of a table's file: a blade or a scenario has some thousand."""
+
+DEEPEST = 100
+"""Parts of a dotted key, more than any table here has: reading TOML takes time and memory as the square of their number."""
+
+_PART = r"""(?:(?<![\w-])[\w-]+|"[^"\n]*"|'[^'\n]*')"""
+_TOO_DEEP = re.compile(rf"{_PART}(?:[ \t]*\.[ \t]*{_PART}){{{DEEPEST}}}")
+
 
 def read_table(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The table in a .toml or .json file.
 
-    Raises ``ValueError`` of one sentence for a name that ends otherwise, for a file that cannot be read, with the position of
-    what is wrong in it, and for one that holds no table.
+    It is UTF-8, with or without a byte-order mark. Raises ``ValueError`` of one sentence for a name that ends otherwise, for a file
+    that cannot be read, with the position of what is wrong in it, for one of more than a megabyte, and for one that holds no table.
     """
     path = checked_path("path", path, ENDINGS)
+    content = content_of(path, LARGEST + 1)
+    _not_too_large(len(content), str(path))
     try:
-        text = content_of(path).decode("utf-8")
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ValueError(f"file {str(path)!r} cannot be read: {error}.") from None
+        raise ValueError(f"file {shown(str(path))} cannot be read: {error}.") from None
     return parsed_table(text, str(path))
 
 
 def checked_path(name: str, value: Any, endings: Sequence[str], allowed: str | None = None) -> Path:
-    """A path with one of some endings; ``ValueError`` for another, and for what is no path."""
+    """A path with one of some endings, in small letters or capitals; ``ValueError`` for another, and for what is no path."""
     text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
-    if not isinstance(text, str) or "\0" in text or Path(text).suffix not in endings:
+    if not isinstance(text, str) or "\0" in text or Path(text).suffix.lower() not in endings:
         raise Refused(name, text, allowed or f"a file that ends in {' or '.join(endings)}")
     return Path(text)
 
 
-def content_of(path: Path) -> bytes:
-    """What is in a file; ``ValueError`` names one that cannot be read."""
+def content_of(path: Path, most: int = -1) -> bytes:
+    """What is in a file, or the first so many bytes of it; ``ValueError`` names one that cannot be read."""
     try:
-        return path.read_bytes()
+        with path.open("rb") as file:
+            return file.read(most)
     except OSError as error:
-        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+        raise ValueError(f"file {shown(str(path))} cannot be read: {error.strerror}.") from None
     except MemoryError:
-        raise ValueError(f"file {str(path)!r} cannot be read: it is larger than the memory.") from None
+        raise ValueError(f"file {shown(str(path))} cannot be read: it is larger than the memory.") from None
 
 
 def parsed_table(text: str, source: str) -> dict[str, Any]:
     """The table in a text, JSON where the name of its source ends so and TOML otherwise; ``ValueError`` names the source."""
+    _not_too_large(len(text), source)
     try:
-        content = json.loads(text) if source.endswith(".json") else tomllib.loads(text)
+        content = _json(text) if source.lower().endswith(".json") else _toml(text)
     except (ValueError, RecursionError) as error:  # of syntax, and of integers of too many digits
-        raise ValueError(f"file {source!r} cannot be read: {' '.join(str(error).split()).rstrip('.')}.") from None
+        why = cut(" ".join(str(error).split()).rstrip("."))
+        raise ValueError(f"file {shown(source)} cannot be read: {why}.") from None
     if not isinstance(content, dict):
-        raise Refused(f"file {source!r}", content, "a table of fields")
+        raise Refused(f"file {shown(source)}", content, "a table of fields")
     return {name: value for name, value in content.items() if name != SCHEMA}
+
+
+def _not_too_large(size: int, source: str) -> None:
+    if size > LARGEST:
+        raise ValueError(f"file {shown(source)} is too large, but must have at most {LARGEST} bytes.")
+
+
+def _toml(text: str) -> Any:
+    if deep := _TOO_DEEP.search(text):
+        where = text.count("\n", 0, deep.start()) + 1
+        raise ValueError(f"a key on line {where} has more than the {DEEPEST} parts that are allowed")
+    return tomllib.loads(text)
+
+
+def _json(text: str) -> Any:
+    return json.loads(text, object_pairs_hook=_each_once)
+
+
+def _each_once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """An object of JSON, whose keys are there once, as those of TOML are."""
+    table: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in table:
+            raise ValueError(f"key {shown(key)} is there twice, but must be there once")
+        table[key] = value
+    return table
 
 
 def parsed_arrays(content: bytes, source: str) -> dict[str, Any]:
@@ -76,7 +117,7 @@ def parsed_arrays(content: bytes, source: str) -> dict[str, Any]:
             return {key: archive[key] for key in archive.files}
     except Exception as error:  # noqa: BLE001 - a damaged archive makes zipfile, zlib and NumPy raise whatever comes first
         why = "it holds Python objects" if "Object arrays" in str(error) else "it is no .npz archive of arrays"
-        raise ValueError(f"file {source!r} cannot be read: {why}.") from None
+        raise ValueError(f"file {shown(source)} cannot be read: {why}.") from None
 
 
 @contextmanager
@@ -85,4 +126,4 @@ def of_file(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        raise ValueError(f"file {str(path)!r}: {error}") from None
+        raise ValueError(f"file {shown(str(path))}: {error}") from None

@@ -94,16 +94,19 @@ class Flag(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Text(Kind):
-    """Any text."""
+    """Any text; with ``line``, one that a table or a legend can show: not blank, and on one line."""
+
+    line: bool = False
 
     @property
     def allowed(self) -> str:
         """Text."""
-        return "a string"
+        return "a string that is not blank, on one line" if self.line else "a string"
 
     def core(self) -> CoreSchema:
         """A string."""
-        return core_schema.str_schema(strict=True)
+        text = core_schema.str_schema(strict=True)
+        return core_schema.no_info_after_validator_function(_on_one_line, text) if self.line else text
 
     def json(self) -> JsonSchema:
         """A string."""
@@ -206,7 +209,7 @@ class NameOrFile(Kind):
         return {"anyOf": [{"enum": list(self.names)}, {"type": "string", "pattern": f"{re.escape(self.ending)}$"}]}
 
     def _known(self, value: str) -> str:
-        if value not in self.names and not value.endswith(self.ending):
+        if value not in self.names and not value.lower().endswith(self.ending):
             raise ValueError
         return value
 
@@ -254,6 +257,12 @@ _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", 
 def _for_a_file(value: str) -> str:
     begins = value[:1].isalnum() or value[:1] == "_"
     if not begins or not value.isprintable() or set(value) & set('/\\:*?"<>|') or value[-1] in ". " or _stem(value) in _DEVICES:
+        raise ValueError
+    return value
+
+
+def _on_one_line(value: str) -> str:
+    if not value.isprintable() or not value.strip():
         raise ValueError
     return value
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -95,18 +95,16 @@ def checked_seeds(seed: Any, count: int) -> None:
 
 def own_seeds(seed: Any, count: int) -> list[int | None]:
     """One seed for each blade, None for one that goes on with the generator that it has."""
-    try:
-        seeds = [None if number is None or isinstance(number, bool) else operator.index(number) for number in seed]
-        wrong = isinstance(seed, (str, bytes, bytearray, memoryview, Mapping)) or any(isinstance(number, bool) for number in seed)
-    except TypeError:
-        seeds, wrong = [], True
-    if wrong or len(seeds) != count or any(number is not None and number < 0 for number in seeds):
+    if not isinstance(seed, (list, tuple, range, np.ndarray)) or len(seed) != count:  # what has an order, and can be read again
         raise Refused("seed", seed, _batch_allows(count))
-    return seeds
+    try:
+        return [checked_seed(number) for number in seed]
+    except ValueError:
+        raise Refused("seed", seed, _batch_allows(count)) from None
 
 
 def _batch_allows(count: int) -> str:
-    return f"an integer, or a sequence of {count} integers that are not negative, or None"
+    return f"an integer, or a sequence of {count} integers that are not negative, or None: a list, tuple, range or array"
 
 
 def _is_number(seed: Any) -> bool:

@@ -121,7 +121,7 @@ def scenario(given: Scenario | Mapping[str, Any] | str | os.PathLike[str] | None
     """
     if given is None:
         return SCENARIOS["default"]
-    if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(ENDINGS)):
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and given.lower().endswith(ENDINGS)):
         return load_scenario(given)
     if isinstance(given, (str, Scenario)):
         return _named(given) if isinstance(given, str) else given
@@ -142,7 +142,7 @@ def _beside(path: Path, content: dict[str, Any]) -> dict[str, Any]:
     """The content of a file with the plant file that it names taken to lie where it does itself."""
     plants = content.get("plants")
     truth = plants.get("truth") if isinstance(plants, dict) else None
-    if plants is None or not isinstance(truth, str) or not truth.endswith(ENDING):
+    if plants is None or not isinstance(truth, str) or not truth.lower().endswith(ENDING):
         return content
     return {**content, "plants": {**plants, "truth": str(path.parent / truth)}}
 

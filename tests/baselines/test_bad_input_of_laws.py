@@ -151,3 +151,59 @@ def test_parts_of_a_scheduled_law_that_do_not_fit_are_told(right, speeds, laws, 
 def test_a_reading_that_is_not_finite_is_refused_and_not_remembered(law, reading):
     with pytest.raises(ValueError, match="^observation is .*, but must be finite observation vectors"):
         law(beamenv.build_plant(beamenv.blade_config())).predict(np.array([0.0, reading, 0.0, 0.0]))
+
+
+@pytest.mark.parametrize("size", [1e101, 1e307])
+@pytest.mark.parametrize("law", [clipped_lqg, lqg, mpc])
+def test_a_reading_whose_products_no_number_can_hold_is_refused(law, size, right):
+    law = law(right["plant"])
+    with pytest.raises(ValueError, match="^observation is .*, but must be finite observation vectors of numbers not beyond 1e"):
+        law.predict(np.full(2, size))
+    action, memory = law.predict(np.array([1e100, -1e100]))
+    assert np.isfinite(action).all() and np.isfinite(memory).all()
+
+
+@pytest.mark.parametrize(("magnitude", "duration"), [(1e300, 1e300), (1e7, 1.0), (1.0, 1e4), (1e-7, 1.0), (1.0, 1e-320)])
+@pytest.mark.parametrize("kind", [baselines.PersistentLoad, lambda **given: baselines.RotorHarmonics(200.0, **given)])
+def test_loads_that_no_blade_meets_are_refused(kind, magnitude, duration):
+    with pytest.raises(ValueError, match=r"\.(magnitude|duration) is .*, but must be a number from 1e-06 to"):
+        kind(magnitude=magnitude, duration=duration)
+
+
+@pytest.mark.parametrize("magnitude", [1e-6, 1e6])
+@pytest.mark.parametrize("duration", [1e-6, 1e3])
+def test_the_least_and_the_largest_load_have_a_filter(magnitude, duration, right):
+    law = lqg(right["plant"], persistent_load=baselines.PersistentLoad(magnitude, duration))
+    assert np.isfinite(law.transition).all()
+
+
+def test_equal_loads_and_orders_given_twice_are_refused(right):
+    with pytest.raises(ValueError, match=r"^harmonics.orders is \(1, 1\), but must be orders that differ from each other"):
+        baselines.RotorHarmonics(200.0, orders=[1, 1])
+    twice = [baselines.PersistentLoad(), baselines.PersistentLoad()]
+    for law in (baselines.full_order_lqg, baselines.reference_lqg):
+        with pytest.raises(ValueError, match="^load is .*, but must be a list of loads that differ from each other"):
+            law(right["plant"], load=twice)
+    assert baselines.full_order_lqg(right["plant"], load=[baselines.PersistentLoad(5.0), baselines.PersistentLoad(10.0, 0.1)])
+
+
+@pytest.mark.parametrize("name", ["", " ", "a\nb", "a\rb", "a\u2028b", "a\tb", "\x1b[31m"])
+def test_a_name_that_no_table_can_show_is_refused(name, right):
+    for law in (baselines.full_order_lqg, baselines.reference_lqg):
+        with pytest.raises(ValueError, match="^name is .*, but must be a string that is not blank, on one line.$"):
+            law(right["plant"], name=name)
+
+
+@pytest.mark.parametrize("speed", [[100.0, 200.0], float("nan"), float("inf"), "fast", None, True])
+def test_a_speed_that_is_no_number_is_called_the_speed(speed, right):
+    law = scheduled_lqg(right["family"])
+    with pytest.raises(ValueError, match=r"^speed is .*, but must be a finite number \(rad/s\).$"):
+        law.at(speed)
+    assert law.at(195).order == law.at(np.float64(195.0)).order == law.order
+
+
+@pytest.mark.parametrize(("name", "size"), [("Q", 6), ("R", 2)])
+@pytest.mark.parametrize("law", [lqg, mpc, clipped_lqg])
+def test_a_weight_beyond_all_numbers_is_named(law, name, size, right):
+    with pytest.raises(ValueError, match=f"^{name} has the entry 1e.300, but must hold numbers from -1e.100 to 1e.100.$"):
+        law(right["plant"], **{name: 1e300 * np.eye(size)})

@@ -95,7 +95,11 @@ CONTINUOUS = ([[-1.0]], [[1.0, 0.0]], [[1.0], [0.0]], np.zeros((2, 2)))
         ([control.ss(*CONTINUOUS)], "dt = 0, but must be in discrete"),
         ([signal.StateSpace(*CONTINUOUS)], "dt = None, but must be in discrete"),
         ([control.ss([], [], [], np.eye(2), dt=1.0)], "dt = 1.0, but .* every 0.0005 s"),
-        ([np.eye(2)], "A alone is of type ndarray, but must be .* control.StateSpace"),
+        ([tuple(np.eye(2) for _ in range(4))], "A is .array.*, but must be .* or else one of four arguments A, B, C, D"),
+        (
+            [np.eye(2)],
+            "A is array.*, but must be a discrete-time control.StateSpace where .* four arguments A, B, C, D",
+        ),
         ([np.eye(2), np.eye(3), np.eye(2), np.eye(2)], r"B has shape \(3, 3\), but .* shape \(2, 2\)"),
         ([np.eye(2), np.eye(2), np.full((2, 2), np.nan), np.eye(2)], "C .* finite numbers"),
         ([np.eye(2), np.eye(2), "gain", np.eye(2)], "C = 'gain' must be a matrix of real numbers"),

@@ -168,6 +168,13 @@ def test_blocks_that_are_not_positive_whole_numbers_are_refused(small_plant, blo
         mpc(small_plant(), move_blocks=blocks)
 
 
+@pytest.mark.parametrize("blocks", [[10**8], [1001], [600, 600], [1] * 201])
+def test_a_horizon_that_no_plan_needs_is_refused_at_once(small_plant, blocks):
+    with pytest.raises(ValueError, match="^move_blocks is .*, but must be .*(from 1 to 1000|200 counts .* is at most 1000).$"):
+        mpc(small_plant(), move_blocks=blocks)
+    assert mpc(small_plant(), move_blocks=[1, 999]).unconstrained_plan.shape == (2000, 6)
+
+
 def test_under_deep_saturation_it_costs_less_than_lqg_clipped(load):
     scenario = {"preset": "deflection", "magnitude": 300.0}
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=8, scenario=scenario, blade={"model": "thesis"})

@@ -1,8 +1,10 @@
 """Every example runs to its end: each asserts the numbers that it tells."""
 
+import re
 import runpy
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -14,7 +16,7 @@ PACKAGES = {"03_placement": "matplotlib", "04_train_an_agent": "torch"}
     "script",
     [pytest.param(path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else []) for path in sorted(EXAMPLES.glob("[0-9]*.py"))],
 )
-def test_example_runs_and_its_numbers_hold(script, monkeypatch):
+def test_example_runs_and_its_numbers_hold(script, monkeypatch, capsys):
     if script in PACKAGES:
         pytest.importorskip(PACKAGES[script])
     if script == "03_placement":
@@ -22,6 +24,11 @@ def test_example_runs_and_its_numbers_hold(script, monkeypatch):
 
         monkeypatch.setattr(plt, "show", lambda: plt.close("all"))
     runpy.run_path(str(EXAMPLES / f"{script}.py"))
+    if script == "02_lqg":
+        page = (EXAMPLES.parent / "docs" / "lqg.md").read_text(encoding="utf-8")
+        told = re.search(r"([\d.]+) µJ by the equations,\s+([\d.]+) ± ([\d.]+) µJ measured", page).groups()
+        printed = re.search(r"= ([\d.]+) µJ\n.*measured: ([\d.]+) ± ([\d.]+) µJ", capsys.readouterr().out, re.DOTALL).groups()
+        np.testing.assert_allclose([float(number) for number in told], [float(number) for number in printed], atol=0.011)
 
 
 @pytest.mark.parametrize("script", sorted(EXAMPLES.glob("[0-9]*.py"), key=str), ids=lambda path: path.stem)

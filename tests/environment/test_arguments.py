@@ -128,11 +128,21 @@ def test_a_bad_reset_option_is_named_and_changes_nothing(options, sentence):
         assert np.array_equal(env.step(np.zeros(shape))[0], twin.step(np.zeros(shape))[0])
 
 
-@pytest.mark.parametrize("seed", [[1, 2], [1, 2, -3], [1, 2, 0.5], [1, 2, True], "abc", b"abc", {1: 2}, 0.5])
+BAD_SEEDS = [[1, 2], [1, 2, -3], [1, 2, 0.5], [1, 2, True], "abc", b"abc", {1: 2}, 0.5, {1, 2, 3}, {1: 2, 2: 3, 3: 4}.keys()]
+
+
+@pytest.mark.parametrize("seed", [*BAD_SEEDS, (number for number in (1, 2, True)), iter([1, 2, 3])])
 def test_bad_seeds_of_a_batch_are_named(seed):
     envs = RotatingBeamVectorEnv(3)
     with pytest.raises(ValueError, match="seed is .*, but must be an integer, or a sequence of 3 integers that are not negative"):
         envs.reset(seed=seed)
+
+
+@pytest.mark.parametrize("seed", [[1, 2, 3], (1, 2, 3), range(1, 4), np.array([1, 2, 3])])
+def test_seeds_of_the_blades_are_a_list_a_tuple_a_range_or_an_array(seed):
+    envs = RotatingBeamVectorEnv(3)
+    envs.reset(seed=seed)
+    assert envs.np_random_seed == (1, 2, 3)
 
 
 def test_stepping_or_drawing_before_a_reset_is_refused():

@@ -33,11 +33,11 @@ def departure(blade):
     return own / solid - 1.0
 
 
-def test_the_patch_at_the_clamp_is_a_tenth_from_solid_elements_mode_by_mode():
+def test_the_patch_at_the_clamp_is_seven_per_cent_from_solid_elements_mode_by_mode():
     blade = bare()
-    assert 0.05 < np.abs(departure(blade)).max() < 0.10
+    assert np.abs(departure(blade)).max() == pytest.approx(0.072, abs=0.002)  # the figure that the note and the pages tell
     tip = SOLID.tip / SOLID.natural_frequencies**2 @ SOLID.actuation[:, 0]
-    assert driven(blade)[1][:, 0] / tip - 1.0 == pytest.approx([-0.136, -0.06], abs=0.025)
+    assert driven(blade)[1][:, 0] / tip - 1.0 == pytest.approx([-0.124, -0.066], abs=0.005)
 
 
 def test_in_the_thesis_model_it_is_not():
@@ -49,7 +49,7 @@ def test_in_the_thesis_model_it_is_not():
 def test_a_blade_with_patches_nearer_than_its_depth_says_so():
     assert clamp_note(PRESETS["thesis"]) == (
         "Nearer to the clamp than the section is deep (0.0508 m): actuator at 0 m, sensor at 0 m; what patches do there differs "
-        "from solid elements by up to 10 %, mode by mode."
+        "from solid elements by up to 7 %, mode by mode."
     )
     assert "110 %" in clamp_note(blade_config("thesis", {"model": "thesis"}))
     assert clamp_note(PRESETS["sound-blade"]) == ""

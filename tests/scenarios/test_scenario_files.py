@@ -2,6 +2,7 @@
 
 import builtins
 import sys
+import time
 import types
 import warnings
 from pathlib import Path
@@ -194,3 +195,35 @@ def test_a_file_that_is_none_is_named_in_one_sentence(tmp_path, content, sentenc
     with pytest.raises(ValueError, match=sentence) as caught:
         scenario(str(path))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("a.toml", "a." * 50000 + "b = 1", "a key on line 1 has more than the 100 parts that are allowed"),
+        ("a.toml", "\n[" + '"a" . ' * 50000 + "b]", "a key on line 2 has more than the 100 parts"),
+        ("a.toml", "plants = {" + "a." * 50000 + "b = 1}", "a key on line 1 has more than the 100 parts"),
+        ("a.toml", "#" * 1_000_001, "is too large, but must have at most 1000000 bytes"),
+        ("a.json", " " * 1_000_001, "is too large, but must have at most 1000000 bytes"),
+        ("a.json", '{"step": 1.0, "step": 0.0}', "key 'step' is there twice, but must be there once"),
+        ("a.json", '{"plants": {"bank": 1, "bank": 2}}', "key 'bank' is there twice"),
+        ("a.toml", "a" * 999_999, "cannot be read: "),
+        ("a" * 250 + ".toml", "step = \n", "file '.{159}… cannot be read: "),
+    ],
+)
+def test_a_file_that_no_scenario_needs_is_refused_at_once(tmp_path, name, content, sentence):
+    path = tmp_path / name
+    path.write_text(content, encoding="utf-8")
+    began = time.perf_counter()
+    with pytest.raises(ValueError, match=sentence) as caught:
+        scenario(str(path))
+    assert time.perf_counter() - began < 5.0
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 500
+
+
+@pytest.mark.parametrize("name", ["A.TOML", "b.toml", "C.Json"])
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_endings_in_capitals_and_a_byte_order_mark_are_read(tmp_path, name, mark):
+    path = tmp_path / name
+    path.write_text(mark + ('{"step": 0.375, "pulse": 0.125}' if "C" in name else "step = 0.375\npulse = 0.125"), encoding="utf-8")
+    assert (scenario(str(path)).step, load_scenario(path).pulse) == (0.375, 0.125)

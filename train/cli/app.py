@@ -137,10 +137,12 @@ def evaluate(
 
         import baselines
         import beamenv
+        from beamenv.configuration import checked
         from train.benchmark.runs import Runs
         from train.controllers.choice import chosen_runs
-        from train.shared.held_out import held_out
+        from train.shared.held_out import SEEDS, held_out
 
+        seeds = checked("seeds", seeds, SEEDS)
         arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
         found: dict[str, baselines.Evaluation] = {}

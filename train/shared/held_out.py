@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from baselines.evaluation.episodes import MOST_SEEDS
 from beamenv.configuration import Count
 
 HELD_OUT = 1_000_000
 """The first of them: training draws from generators of its own."""
 
-SEEDS = Count(2)
+SEEDS = Count(2, MOST_SEEDS)
 """How many of them: intervals need more than one episode."""
 
 
