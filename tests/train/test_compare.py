@@ -79,8 +79,8 @@ def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished
 
 def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
     _, evaluations, _ = finished
-    design = gymnasium.make(beamenv.ENV_ID).unwrapped.task.design
-    laws = {name: named(name).build(design) for name in CLASSICAL}
+    task = gymnasium.make(beamenv.ENV_ID).unwrapped.task
+    laws = {name: named(name).build_for(task) for name in CLASSICAL}
     left, right = shown_pair(evaluations[: len(laws)], laws)
     assert left is laws["none"]
     assert right.observes == "observation" and right is not left

@@ -29,7 +29,10 @@ from train.shared.threads import one_torch_thread
 from train.shared.versions import versions
 
 GENERALIST = "generalist"
-"""In place of a scenario: all of the benchmark, in one training, but those that are kept for judging."""
+"""In place of a scenario: all of ``NAMES``, in one training."""
+
+NAMES = tuple(name for name in BENCHMARK if name not in UNSEEN)
+"""The benchmark's scenarios but those that are kept for judging."""
 
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
@@ -56,7 +59,7 @@ class Job:
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario."""
-        scenarios = [name for name in BENCHMARK if name not in UNSEEN] if self.scenario == GENERALIST else [self.scenario]
+        scenarios = NAMES if self.scenario == GENERALIST else (self.scenario,)
         return {str(each): resolve_task(**{**self.environment, "scenario": each}) for each in scenarios}
 
     def identity(self) -> dict[str, Any]:
