@@ -3,7 +3,8 @@
 
 PYTHON ?= python3
 ARGS ?=
-JOBS ?= auto
+JOBS ?= logical
+PARALLEL = -n $(JOBS) --maxprocesses 8 --dist loadfile
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
@@ -41,7 +42,7 @@ compare benchmark reproduce speed: $(INSTALLED)
 
 # As many files of tests at a time as there are cores, each on one thread; JOBS=0 takes one after the other.
 test: $(INSTALLED)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(PARALLEL) $(ARGS)
 
 slow: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow $(ARGS)
@@ -70,14 +71,14 @@ lowest: $(INSTALLED)
 	@test -x $(APART)/lowest/bin/python || $(BIN)/python -m venv $(APART)/lowest
 	$(BIN)/python .ci/bounds.py > $(APART)/lowest.txt
 	$(APART)/lowest/bin/python -m pip install --quiet --disable-pip-version-check -c $(APART)/lowest.txt '.[dev]'
-	OMP_NUM_THREADS=1 $(APART)/lowest/bin/python -m pytest -W default -n $(JOBS) --dist loadfile $(ARGS)
+	OMP_NUM_THREADS=1 $(APART)/lowest/bin/python -m pytest -W default $(PARALLEL) $(ARGS)
 
 newest: | $(BIN)/python
 	@mkdir -p $(APART)
 	@test -x $(APART)/newest/bin/python || $(BIN)/python -m venv $(APART)/newest
 	@grep '^torch==' .ci/constraints.txt > $(APART)/torch.txt
 	$(APART)/newest/bin/python -m pip install --quiet --disable-pip-version-check --upgrade -c $(APART)/torch.txt '.[dev]'
-	OMP_NUM_THREADS=1 $(APART)/newest/bin/python -m pytest -n $(JOBS) --dist loadfile $(ARGS)
+	OMP_NUM_THREADS=1 $(APART)/newest/bin/python -m pytest $(PARALLEL) $(ARGS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
