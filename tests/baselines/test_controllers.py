@@ -149,7 +149,7 @@ def test_lqg_refuses_unknown_designs_by_name(small_plant):
         lqg(small_plant(), "analog")
     with pytest.raises(ValueError, match='persistent_load.*needs design="sampled"'):
         lqg(small_plant(), "continuous", persistent_load=PersistentLoad())
-    with pytest.raises(ValueError, match="persistent_load.duration is 0.0, but must be a positive number"):
+    with pytest.raises(ValueError, match="persistent_load.duration is 0.0, but must be a number from 1e-06 to 1000"):
         PersistentLoad(duration=0.0)
     with pytest.raises(ValueError, match="persistent_load.magnitude is True"):
         PersistentLoad(True)

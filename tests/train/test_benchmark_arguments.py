@@ -13,7 +13,7 @@ from train.benchmark.campaign import environment_json
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"seeds": 1}, "seeds is 1, but must be a whole number not below 2"),
+        ({"seeds": 1}, "seeds is 1, but must be a whole number from 2 to 1e[+]06"),
         ({"controllers": ["pid"]}, "controller is 'pid', but must be one of .*lqg, lqg-load"),
         ({"own": {"mine": 3}}, "controller 'mine' is of type int"),
         ({"own": {"lqg": np.zeros_like}}, "'lqg' is there twice"),
