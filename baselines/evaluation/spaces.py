@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, Literal, TypeAlias
 
-import numpy as np
 from gymnasium import wrappers
 from gymnasium.spaces import Box
 from gymnasium.vector import VectorEnv
 
 from baselines.evaluation.conditions import tasks_of
 from beamenv.configuration import Refused
+from beamenv.envs.within import alike, layers
 
 Side: TypeAlias = Literal["action", "observation"]
 _CLIPS = (wrappers.ClipAction, wrappers.vector.ClipAction)
@@ -31,7 +31,7 @@ def check_spaces(env: Any, unchanged: Sequence[Side]) -> None:
     shown_as = space_of(env, "observation")
     if not isinstance(shown_as, Box):
         raise Refused("env", env, f"one whose observations are arrays, in a Box, and not in {type(shown_as).__name__}")
-    if any(isinstance(layer, _SKIPS) for layer in _layers(env)):
+    if any(isinstance(layer, _SKIPS) for layer in layers(env)):
         raise Refused("env", env, "one that tells of every control interval: leave out the wrapper that skips some")
     for side in unchanged:
         if _is_changed(env, side):
@@ -45,32 +45,14 @@ def space_of(env: Any, side: Side) -> Any:
 
 def _is_changed(env: Any, side: Side) -> bool:
     """Whether a wrapper, of the batch or of a blade in it, has another space than what it wraps."""
-    for layer in _layers(env):
+    for layer in layers(env):
         if side == "observation" and isinstance(layer, _NORMALISES):
             return True
-        if not isinstance(layer, _CLIPS) and not _alike(space_of(layer, side), space_of(layer.env, side)):
+        if not isinstance(layer, _CLIPS) and not alike(space_of(layer, side), space_of(layer.env, side)):
             return True
     inner = env.unwrapped
     if blades := getattr(inner, "envs", None):
         return any(_is_changed(blade, side) for blade in blades)
     tasks = tasks_of(env) if hasattr(inner, "get_attr") else ()  # of processes, whose wrappers cannot be seen
     own = [task.action_space() if side == "action" else task.observation_space() for task in tasks[:1]]
-    return any(not _alike(space_of(inner, side), space) for space in own)
-
-
-def _layers(env: Any) -> Iterator[Any]:
-    """The wrappers, the outermost first."""
-    while env is not env.unwrapped:
-        yield env
-        env = env.env
-
-
-def _alike(space: Any, own: Any) -> bool:
-    """Whether a space holds the same numbers, whatever their type."""
-    return (
-        isinstance(space, Box)
-        and isinstance(own, Box)
-        and space.shape == own.shape
-        and np.allclose(space.low, own.low, rtol=1e-6, atol=0.0)
-        and np.allclose(space.high, own.high, rtol=1e-6, atol=0.0)
-    )
+    return any(not alike(space_of(inner, side), space) for space in own)

@@ -78,9 +78,7 @@ def multiple_model(
     markov = None if transition is None else _markov(transition, those)
     if fallback is not None:
         _check_fallback(fallback, first)
-    window, allowance = checked("window", window, Count(1, 10**6)), checked("allowance", allowance, Number(gt=0.0))
-    degrees = (2 * window - 1) * len(first.C)
-    quantile = float(chdtri(degrees, 1.0 - checked("confidence", confidence, Number(gt=0.0, lt=1.0)))) / degrees
+    misfit = _misfit(window, confidence, allowance, len(first.C))
     floor = checked("floor", floor, Number(ge=0.0, lt=1.0))
     rate_weight, verify = checked("rate_weight", rate_weight, Number(ge=0.0)), checked("verify", verify, Flag())
     depth = max(int(rate_weight > 0.0), *(each.delay for each in those))
@@ -105,8 +103,15 @@ def multiple_model(
         floor=floor,
         fallback=fallback,
         window=window,
-        misfit=allowance * quantile,
+        misfit=misfit,
     )
+
+
+def _misfit(window: int, confidence: float, allowance: float, sensors: int) -> float:
+    """Mean normalised innovation squared per reading from which on no hypothesis fits."""
+    degrees = (2 * checked("window", window, Count(1, 10**6)) - 1) * sensors
+    quantile = float(chdtri(degrees, 1.0 - checked("confidence", confidence, Number(gt=0.0, lt=1.0)))) / degrees
+    return checked("allowance", allowance, Number(gt=0.0)) * quantile
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import gymnasium
@@ -26,7 +26,7 @@ def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observati
         raise Refused("env", env, "a batch of blades" if of_batch else "an environment with a blade")
     for what in unchanged:
         name = f"single_{what}_space" if of_batch else f"{what}_space"
-        unlike = not _alike(getattr(env, name), getattr(env.unwrapped, name))
+        unlike = not alike(getattr(env, name), getattr(env.unwrapped, name))
         if unlike or (what == "observation" and _shows_otherwise(env)):
             shows = "shows the sensors' readings as they are" if what == "observation" else "takes voltages as the blade does"
             raise Refused("env", env, f"one that {shows}: put what changes its {what}s around this wrapper, not into it")
@@ -35,11 +35,14 @@ def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observati
 
 def _shows_otherwise(env: Any) -> bool:
     """Whether one of its wrappers changes what is shown, or when, though its space may tell nothing of it."""
+    return any(isinstance(layer, _OTHERWISE) and not isinstance(layer, _AS_THEY_ARE) for layer in layers(env))
+
+
+def layers(env: Any) -> Iterator[Any]:
+    """The wrappers around an environment, the outermost first."""
     while env is not env.unwrapped:
-        if isinstance(env, _OTHERWISE) and not isinstance(env, _AS_THEY_ARE):
-            return True
+        yield env
         env = env.env
-    return False
 
 
 _OTHERWISE = (
@@ -52,7 +55,9 @@ _OTHERWISE = (
 _AS_THEY_ARE = (wrappers.DtypeObservation, wrappers.vector.DtypeObservation)
 
 
-def _alike(space: Any, own: Any) -> bool:
-    """Whether a space holds the same numbers, whatever their type."""
-    is_box = isinstance(space, Box) and space.shape == own.shape
-    return is_box and np.array_equal(space.low, own.low) and np.array_equal(space.high, own.high)
+def alike(space: Any, own: Any) -> bool:
+    """Whether two spaces of arrays hold the same numbers, in the precision that both can have."""
+    if not (isinstance(space, Box) and isinstance(own, Box) and space.shape == own.shape):
+        return False
+    pairs = ((space.low, own.low), (space.high, own.high))
+    return all(np.array_equal(one.astype(np.float32), other.astype(np.float32)) for one, other in pairs)

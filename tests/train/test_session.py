@@ -13,72 +13,17 @@ import pytest
 import train.learning.job
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.task import resolve_task
+from tests.train.brief import GRADIENT, PPO, RECURRENT, SAC, SHORT, TQC, assert_same, ignore, interrupted_after, job, weights
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import read_checkpoint
-from train.learning.job import Job, run
-from train.learning.recipe import parsed
+from train.learning.job import run
 from train.learning.session import Budget, follow
 from train.shared.interruption import Interrupted, ending_as_interrupted
-
-SHORT = {"duration": 0.02}  # 40 control intervals
-
-
-ROWS = "agent = {!r}\ntitle = 'Brief'\nupdates = 6\n[settings]\n"
-
-
-CRITICS = "critic_units = 16\ncritic_first = 1\ncritic_steps = 2\ngradient_steps = 2\n"
-
-
-GRADIENT = parsed(ROWS.format("gradient") + "episodes = 8\nwindow = 10\n[settings.actor_settings]\nunits = 6\n", "brief")
-
-
-PPO = parsed(ROWS.format("ppo") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 32\nunits = 8\n", "brief")
-
-
-SAC = parsed(
-    ROWS.format("sac") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 16\nfirst = 32\nbuffer = 256\nunits = 8\n" + CRITICS,
-    "brief",
-)
-
-
-TQC = parsed(
-    ROWS.format("tqc") + "blades = 8\nhistory = 3\nrollout = 4\nbatch = 16\nfirst = 32\nbuffer = 64\nunits = 8\n" + CRITICS, "brief"
-)
-
-
-RECURRENT = parsed(ROWS.format("recurrent-ppo") + "blades = 8\nrollout = 4\nbatch = 32\nunits = 8\n", "brief")
-
-
-def job(recipe, scenario="nominal", seed=0, updates=6):
-    return Job(recipe.agent, recipe, scenario, seed, Budget(updates=updates), SHORT)
-
-
-def ignore(progress):
-    pass
-
-
-def interrupted_after(updates):
-    def report(progress):
-        if progress.updates == updates:
-            raise KeyboardInterrupt
-
-    return report
-
-
-def weights(folder):
-    with np.load(folder / "weights.npz", allow_pickle=False) as arrays:
-        return {name: arrays[name] for name in arrays.files}
 
 
 def curve(folder):
     with (folder / "learning.csv").open() as file:
         return list(csv.DictReader(file))
-
-
-def assert_same(first, second):
-    assert set(first) == set(second)
-    for name, weight in first.items():
-        np.testing.assert_array_equal(weight, second[name])
 
 
 @dataclass

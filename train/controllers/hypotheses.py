@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from baselines import Hypothesis, PersistentLoad, RotorHarmonics
 from baselines.design.load_model import Load
+from baselines.laws.foreseen_load import mean_square
 from beamenv.blade.build import Blade
 from beamenv.knowledge import Prior
 from beamenv.scenarios.scenario import Scenario
@@ -80,7 +81,7 @@ def _hypothesis(scenario: Scenario, blade: Blade, delay: int, fault: Fault) -> H
         sensor_gain=fault.sensor_gain,
         sensor_bias=fault.sensor_bias,
         load=_loads(scenario, blade),
-        deflection=float(np.sqrt(0.5 * scenario.deflection * _mean_square(scenario.magnitude))),
+        deflection=float(np.sqrt(0.5 * scenario.deflection * mean_square(scenario.magnitude))),
         holds_lost_readings=scenario.acquisition.dropout > 0.0,
         prior=fault.share,
     )
@@ -91,12 +92,6 @@ def _loads(scenario: Scenario, blade: Blade) -> list[Load]:
     orders = tuple(order for order, amplitude in enumerate(scenario.rotor.harmonics, start=1) if amplitude)
     harmonics: list[Load] = [RotorHarmonics(blade.config.speed, orders)] if orders else []
     return [*harmonics, PersistentLoad()]
-
-
-def _mean_square(ends: tuple[float, float]) -> float:
-    """Of what is drawn uniformly between them."""
-    low, high = ends
-    return (low**2 + low * high + high**2) / 3.0
 
 
 def _delays(scenario: Scenario) -> range:
@@ -124,7 +119,7 @@ def _faults(failures: Failures, m: int, p: int) -> list[Fault]:
     actuators = [
         replace(sound, actuator_gain=1.0 - (1.0 - weak) * ring, share=1.0 / m) for ring in _rings(failures.dead_actuators, m)
     ]
-    bias = float(np.sqrt(_mean_square(failures.bias)))
+    bias = float(np.sqrt(mean_square(failures.bias)))
     sensors = [
         replace(sound, sensor_gain=1.0 - dead * ring, sensor_bias=(1 - dead) * bias * ring, share=share / p)
         for ring in _rings(failures.faulty_sensors, p)
