@@ -11,7 +11,7 @@ from gymnasium.vector import VectorEnv
 
 from baselines.evaluation.conditions import tasks_of
 from beamenv.configuration import Refused
-from beamenv.envs.within import alike, layers
+from beamenv.wrapping import alike, layers
 
 Side: TypeAlias = Literal["action", "observation"]
 _CLIPS = (wrappers.ClipAction, wrappers.vector.ClipAction)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
-import numpy as np
 from gymnasium import wrappers
-from gymnasium.spaces import Box
 from gymnasium.vector import VectorEnv
 
 from beamenv.configuration import Refused
 from beamenv.task import Task
+from beamenv.wrapping import alike, layers
 
 
 def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observation",)) -> Task:
@@ -38,13 +37,6 @@ def _shows_otherwise(env: Any) -> bool:
     return any(isinstance(layer, _OTHERWISE) and not isinstance(layer, _AS_THEY_ARE) for layer in layers(env))
 
 
-def layers(env: Any) -> Iterator[Any]:
-    """The wrappers around an environment, the outermost first."""
-    while env is not env.unwrapped:
-        yield env
-        env = env.env
-
-
 _OTHERWISE = (
     gymnasium.ObservationWrapper,
     gymnasium.vector.VectorObservationWrapper,
@@ -53,11 +45,3 @@ _OTHERWISE = (
     wrappers.StickyAction,
 )
 _AS_THEY_ARE = (wrappers.DtypeObservation, wrappers.vector.DtypeObservation)
-
-
-def alike(space: Any, own: Any) -> bool:
-    """Whether two spaces of arrays hold the same numbers, in the precision that both can have."""
-    if not (isinstance(space, Box) and isinstance(own, Box) and space.shape == own.shape):
-        return False
-    pairs = ((space.low, own.low), (space.high, own.high))
-    return all(np.array_equal(one.astype(np.float32), other.astype(np.float32)) for one, other in pairs)
