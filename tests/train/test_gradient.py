@@ -119,7 +119,7 @@ def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, changes):
 )
 def test_an_actor_and_its_policy_ask_for_the_same_voltages(kind, base):
     torch.manual_seed(1)
-    actor = new_actor(task_of(), GradientSettings(kind, base, False, ActorSettings(output_gain=3.0), runs=2))
+    actor = new_actor(task_of(), GradientSettings(kind, base, "base", ActorSettings(output_gain=3.0), runs=2))
     with torch.no_grad():
         for weights in actor.parameters():
             weights *= 1.0 + 0.02 * torch.randn(weights.shape)
@@ -141,7 +141,7 @@ def test_an_untrained_actor_is_the_law_it_starts_from(kind, base):
     """While no reading that it expects is beyond full scale."""
     task = task_of()
     law, memories = reference_lqg(task.design.full_plant, load=REFERENCES[base]), [None, None]
-    policy = new_actor(task, GradientSettings(kind, base, False, ActorSettings(output_gain=0.0))).policy(0)
+    policy = new_actor(task, GradientSettings(kind, base, "base", ActorSettings(output_gain=0.0))).policy(0)
     for observed in np.random.default_rng(0).normal(0.0, 0.01, (40, 5, 4)):
         action, memories[0] = law.predict(observed, memories[0])
         other, memories[1] = policy.predict(observed, memories[1])
@@ -151,7 +151,7 @@ def test_an_untrained_actor_is_the_law_it_starts_from(kind, base):
 
 @pytest.mark.parametrize("kind", ["state-space", "belief"])
 def test_an_idle_actor_asks_for_nothing(kind):
-    policy = new_actor(task_of(), GradientSettings(kind, "lqg", True)).policy(0)
+    policy = new_actor(task_of(), GradientSettings(kind, "lqg", "idle")).policy(0)
     action, memory = policy.predict(np.full((2, 4), 0.1))
     assert not policy.predict(np.full((2, 4), 0.1), memory)[0].any()
     assert not action.any() and memory.any()
@@ -192,7 +192,7 @@ def test_training_under_the_noise_of_the_design_does_not_leave_the_optimum(kind)
 @pytest.mark.slow
 def test_a_gain_from_the_belief_that_starts_at_nothing_finds_lqg_s():
     task = task_of("white", 0.25)
-    settings = GradientSettings("belief", "lqg", True, episodes=64, learning_rate=2e-2)
+    settings = GradientSettings("belief", "lqg", "idle", episodes=64, learning_rate=2e-2)
     (policy,) = train_gradient(task, 0, lambda progress: None, settings, updates=80)
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=64, scenario="white", duration=0.25)
     law = reference_lqg(task.design.full_plant)

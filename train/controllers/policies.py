@@ -193,7 +193,7 @@ class ResidualPolicy(Policy):
 
     def knowing(self, memory: Array, voltages: Array) -> Array:
         """The law's estimate, too, goes by the voltages that were held."""
-        units, m = self.weights["weight_hh"].shape[1], voltages.shape[1]
+        units = self.weights["weight_hh"].shape[1]
         return np.hstack([memory[:, :units], _corrected(self.weights, memory[:, units:], voltages), voltages])
 
 

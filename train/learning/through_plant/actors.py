@@ -220,9 +220,7 @@ class BeliefActor(Actor):
     readout: Tensor
     unit: Tensor
 
-    def __init__(
-        self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase, innovations: Array, idle: bool
-    ) -> None:
+    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase, innovations: Array, idle: bool) -> None:
         super().__init__(plant, settings, runs)
         order = base.feedback.shape[1]
         asked, unit = base.fused[:, order:], innovations / SPREAD

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 import torch
 
-from beamenv.configuration import Choice, Flag, Number, Positive, configuration
+from beamenv.configuration import Choice, Number, Positive, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, PASSES, RATE
@@ -40,8 +40,8 @@ class GradientSettings:
     """"recurrent", "residual", "state-space" (all matrices of a linear law) or "belief" (its gain alone, its filter as it is)."""
     base: Annotated[str, Choice(BASES)] = "lqg"
     """What a residual actor adds to and a linear one starts from: see ``train.learning.through_plant.linear_base``."""
-    idle: Annotated[bool, Flag()] = False
-    """Whether a linear actor starts without voltages instead: of its base it then has the filter alone."""
+    start: Annotated[str, Choice(("base", "idle"))] = "base"
+    """Whether a linear actor starts as its base, or without voltages: of the base it then has the filter alone."""
     actor_settings: ActorSettings = field(default_factory=ActorSettings)
     runs: Annotated[int, PASSES] = 1
     """Independent trainings side by side."""
@@ -63,9 +63,9 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
     if settings.actor == "recurrent":
         return RecurrentActor(plant, own, runs)
     if settings.actor == "state-space":
-        return StateSpaceActor(plant, own, runs, linear_base(settings.base, task), settings.idle)
+        return StateSpaceActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
     if settings.actor == "belief":
-        return BeliefActor(plant, own, runs, *belief_base(settings.base, task), settings.idle)
+        return BeliefActor(plant, own, runs, *belief_base(settings.base, task), settings.start == "idle")
     return ResidualActor(plant, own, runs, linear_base(settings.base, task))
 
 
