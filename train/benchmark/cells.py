@@ -40,7 +40,7 @@ SERIES = tuple(each.name for each in fields(EpisodeMetrics))
 ABOUT = ("scenario", "controller", "run", "title", "sentence")
 """Fields of a cell that are text."""
 
-BESIDE = ("uncontrolled", "lost")
+BESIDE = ("uncontrolled", "fails")
 """Fields of a cell with a number for each seed, besides its metrics."""
 
 
@@ -77,7 +77,7 @@ class Cell:
     """Why it failed; or, beside metrics, what went wrong on the way."""
     uncontrolled: Array | None = None
     """(N,), J s: J₀, J without control; a blade that fails is charged to its episode's end as in its last interval."""
-    lost: Array | None = None
+    fails: Array | None = None
     """(N,): 1 where the blade fails without control."""
     metrics: Mapping[str, Array] | None = None
     """(N,) each, as in ``EpisodeMetrics``."""
@@ -107,7 +107,7 @@ def _measured(job: Job, blades: Blades) -> Cell:
         title=name_of(controller),
         sentence=f"the solver gave up at {gave_up} instants; the law's substitute was applied there." if gave_up else "",
         uncontrolled=blades.uncontrolled,
-        lost=blades.reference.failed.astype(float),
+        fails=blades.reference.failed.astype(float),
         metrics={name: getattr(metrics, name) for name in SERIES},
     )
 
@@ -143,11 +143,13 @@ def read_cell(folder: Path, job: Job) -> Cell | None:
     with of_file(path):
         about = checked_table("cell", content, ("digest", *ABOUT, "series"))
         texts = {name: checked(f"cell.{name}", about.get(name), Text()) for name in ("digest", *ABOUT)}
+        if texts.pop("digest") != wanted:
+            return None  # whatever series a cell had when it was written
         series = checked_table("cell.series", about.get("series"), (*BESIDE, *SERIES))
-        if texts.pop("digest") != wanted or not series:
+        if not series:
             return None
         found = {name: _numbers(f"cell.series.{name}", series.get(name), job.setting.seeds) for name in (*BESIDE, *SERIES)}
-    return Cell(**texts, uncontrolled=found.pop("uncontrolled"), lost=found.pop("lost"), metrics=found)
+    return Cell(**texts, uncontrolled=found.pop("uncontrolled"), fails=found.pop("fails"), metrics=found)
 
 
 def _numbers(name: str, values: Any, count: int) -> Array:
