@@ -20,7 +20,6 @@ from train.benchmark.bench import Bench, Blades, Setting
 from train.controllers.sources import Source
 from train.shared.digests import CONTROLLERS, digest, source_digest
 from train.shared.files import read_json, write_json
-from train.shared.held_out import held_out
 from train.shared.versions import installed_version
 
 Array = NDArray[np.float64]
@@ -97,7 +96,7 @@ def _measured(job: Job, blades: Blades) -> Cell:
         raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")
     if not np.isfinite(blades.uncontrolled).all():
         raise ValueError("J without control is infinite in an episode of this scenario: no other can be relative to it.")
-    episodes = roll_out(controller, blades.envs, held_out(job.setting.seeds))
+    episodes = roll_out(controller, blades.envs, job.setting.episodes)
     metrics = measure(episodes, blades.band)
     gave_up = getattr(controller, "solver_failures", 0)
     return Cell(

@@ -9,7 +9,9 @@ from typing import Any
 from baselines import Estimate
 from baselines.evaluation.metrics import finite
 from beamenv.configuration.writing import write_whole
+from train.benchmark.contests import Contest, contests
 from train.benchmark.score import Aggregate, Headroom, aggregates, headrooms
+from train.benchmark.showing.contests import agents_and_laws, leaders
 from train.benchmark.showing.legend import legend
 from train.benchmark.showing.scores import headroom, scores
 from train.benchmark.table import BenchmarkTable, Row
@@ -79,6 +81,7 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
         "configuration": dict(table.configuration),
         "findings": judged,
         "refused": dict(table.refused),
+        "contests": [contest_json(each) for each in contests(table)],
         "aggregates": [aggregate_json(each) for each in aggregates(table)],
         "headroom": [headroom_json(each) for each in headrooms(table)],
         "rows": rows,
@@ -88,6 +91,14 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
 def estimate_json(estimate: Estimate | None) -> dict[str, float | None] | None:
     """None for what is infinite, and for no estimate."""
     return None if estimate is None else {name: finite(getattr(estimate, name)) for name in ("value", "low", "high")}
+
+
+def contest_json(one: Contest) -> dict[str, Any]:
+    """An agent against the laws of a scenario."""
+    names = {name: getattr(one, name).controller for name in ("agent", "law", "hardest")}
+    gaps = {name: estimate_json(getattr(one, name)) for name in ("gap", "least_clear")}
+    said = {name: getattr(one, name) for name in ("scenario", "verdict", "agent_chosen", "law_chosen")}
+    return {**said, **names, **gaps}
 
 
 def aggregate_json(one: Aggregate) -> dict[str, Any]:
@@ -105,7 +116,7 @@ def headroom_json(one: Headroom) -> dict[str, Any]:
 
 def markdown(table: BenchmarkTable) -> str:
     """Findings, overview, a table for each scenario, what went wrong, and how it was made."""
-    parts = [found(table), scores(table), headroom(table), overview(table), legend(table)]
+    parts = [found(table), agents_and_laws(table), leaders(table), scores(table), headroom(table), overview(table), legend(table)]
     parts += [f"### {escaped(name)}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
     if table.sentences:
         lines = "\n".join(f"- {escaped(where)}: {escaped(sentence)}" for where, sentence in table.sentences.items())
