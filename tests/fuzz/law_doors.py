@@ -11,6 +11,7 @@ from baselines import placement
 from baselines.design.instruments import Instruments
 from baselines.design.linear import MATRICES
 from beamenv.blade import BladeConfig
+from beamenv.blade.design import Design
 from beamenv.knowledge import Prior, Truth
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
