@@ -58,7 +58,7 @@ def _loads(prior: Prior) -> tuple[Any, ...]:
 
 
 def _law(prior: Prior, detuning: Detuning) -> LinearController:
-    return detuned_lqg(prior.bank.plant, detuning, *_loads(prior), name="informed LQG")
+    return detuned_lqg(prior.blade.truth, detuning, *_loads(prior), name="informed LQG")
 
 
 def _cost(prior: Prior) -> Callable[[Detuning], float]:

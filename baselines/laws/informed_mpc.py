@@ -17,6 +17,6 @@ def informed_mpc(prior: Prior) -> PredictiveController:
     is no ``Prior``, ModuleNotFoundError without DAQP.
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
-    detuning, plant = chosen_detuning(prior), prior.bank.plant
+    detuning, plant = chosen_detuning(prior), prior.blade.truth
     design = detuned_design(plant, detuning, *foreseen_loads(prior.scenario, prior.blade.config.speed))
     return predictive(plant, "informed MPC", design, detuning.delay)
