@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from baselines.design.box_qp import BoxQP
 from baselines.design.controller import Array
-from baselines.design.delay import with_delay
+from baselines.design.delay import checked_delay, with_delay
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
 from baselines.design.matrix import keep_matrices, rows
@@ -125,6 +125,7 @@ def mpc(
     load = checked_persistent_load(persistent_load)
     name = "MPC" if load is None else "MPC with load estimate"
     blocks = None if move_blocks is None else _checked(move_blocks)
+    delay = checked_delay(delay)
     design = sampled_design(weighted(plant, Q, R), load, rate_weight=rate_weight, delay=delay)
     return predictive(plant, name, design, delay, blocks, verify=verify)
 
