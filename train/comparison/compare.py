@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, field
+from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -24,7 +24,7 @@ from train.controllers.policy_files import load_policy, read_about
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.job import Job, run
-from train.learning.recipe import Recipe
+from train.learning.recipe import Recipe, named_recipe
 from train.learning.session import Budget
 from train.learning.training import Progress
 from train.shared.claim import NAME, check_nothing_replaced
@@ -56,7 +56,7 @@ class Comparison:
 
     environment: Annotated[Mapping[str, Any], Table()] = field(default_factory=dict)
     """Keyword arguments of the environment, as JSON can hold them."""
-    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"gradient": 75.0, "ppo": 255.0})
+    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"gradient": 30.0, "ppo": 255.0})
     """Seconds of training of each agent; none are trained where it is empty."""
     seeds: Annotated[int, SEEDS] = 64
     """Held-out episodes."""
@@ -67,11 +67,16 @@ class Comparison:
             checked(f"budget.{name}", seconds, Number(gt=0.0, unit="s"))
 
     def job(self, agent: str) -> Job:
-        """The training of an agent, with its trainer's own settings."""
+        """The training of an agent, with the settings of ``settings_of``."""
         environment = dict(self.environment)
         scenario = environment.pop("scenario", "default")
-        recipe = Recipe(agent, f"{agent} of a comparison", 1, AGENTS[agent].settings())
+        recipe = Recipe(agent, f"{agent} of a comparison", 1, settings_of(agent))
         return Job(agent, recipe, scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
+
+
+def settings_of(agent: str) -> Any:
+    """Of a comparison's agent: those of the recipe "belief", one run, for "gradient"; of the others their trainer's own."""
+    return replace(named_recipe("belief").settings, runs=1) if agent == "gradient" else AGENTS[agent].settings()
 
 
 class Listener:
@@ -133,7 +138,7 @@ def described(comparison: Comparison, task: Any) -> dict[str, Any]:
         "blade": to_dict(task.config),
         "design": to_dict(task.design_config),
         "scenario": task.scenario.to_dict(),
-        "agents": {name: asdict(AGENTS[name].settings()) for name in comparison.budget},
+        "agents": {name: asdict(settings_of(name)) for name in comparison.budget},
     }
     whole: dict[str, Any] = json.loads(json.dumps(content))
     return whole
