@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -69,6 +70,8 @@ class FilterBank(ReadOnly):
     """(p,), A: where readings are clipped."""
     holds: NDArray[np.bool_]
     """(H,): whether lost readings show as the one before."""
+    sizes: tuple[int, ...]
+    """(H,): states of each filter's own."""
     left: tuple[tuple[Array, Array], ...]
     """Of the last instant, by the pattern of what is lost, bit by bit: inverse and logarithm of the determinant of what is left."""
 
@@ -95,6 +98,7 @@ class FilterBank(ReadOnly):
             log_determinant=np.linalg.slogdet(covariance)[1],
             full_scale=full_scale,
             holds=np.array(holds, dtype=bool),
+            sizes=tuple(len(each.A) for each in filters),
             left=tuple(_without(covariance[-1], code) for code in range(patterns if patterns <= MOST_PATTERNS else 0)),
         )
 
@@ -102,6 +106,15 @@ class FilterBank(ReadOnly):
     def counts(self) -> tuple[int, int]:
         """Hypotheses H and states s."""
         return self.transition.shape[0], self.transition.shape[1]
+
+    @property
+    def alike(self) -> Iterator[tuple[slice, int]]:
+        """Hypotheses next to each other that have as many states, and how many."""
+        first = 0
+        for size, those in groupby(self.sizes):
+            following = first + len(list(those))
+            yield slice(first, following), size
+            first = following
 
     def lost(self, reading: Array, before: Array, first: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """(N, p): readings that show the one before exactly, unless both are clipped, if any hypothesis says that lost ones do."""
@@ -117,12 +130,12 @@ class FilterBank(ReadOnly):
         step, codes = self._step(instant), 1 << lost.shape[1]
         keys = step * codes + lost @ (1 << np.arange(lost.shape[1]))
         if (keys == keys[0]).all():
-            return self._correction(*divmod(int(keys[0]), codes), innovation)
+            return self._correction(divmod(int(keys[0]), codes), innovation)
         H, N, p = innovation.shape
         all_of_them = Correction(np.empty((H, N, p)), np.empty((H, N)), np.empty((H, N)))
         for key in np.unique(keys).tolist():
             rows = np.flatnonzero(keys == key)
-            for whole, part in zip(all_of_them, self._correction(*divmod(key, codes), innovation[:, rows]), strict=True):
+            for whole, part in zip(all_of_them, self._correction(divmod(key, codes), innovation[:, rows]), strict=True):
                 whole[:, rows] = part
         return all_of_them
 
@@ -144,11 +157,12 @@ class FilterBank(ReadOnly):
         """(N,): which of the gains, of which the last stays."""
         return np.minimum(instant, len(self.cross) - 1).astype(np.int64)
 
-    def _correction(self, k: int, code: int, innovation: Array) -> Correction:
-        """Of blades at one instant that have lost the same readings, the bits of ``code``.
+    def _correction(self, at: tuple[int, int], innovation: Array) -> Correction:
+        """Of blades ``at`` one instant that have lost the same readings, the bits of a number.
 
         With z = covariance⁻¹ innovation of those that are left and zero of the others, S Cᵀ z is the optimum from them.
         """
+        k, code = at
         inverse, log_determinant = self.inverse[k], self.log_determinant[k]
         if code:
             kept = k == len(self.cross) - 1 and code < len(self.left)

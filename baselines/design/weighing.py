@@ -15,7 +15,6 @@ from baselines.design.linear import LinearController
 from baselines.design.matrix import keep_matrices
 from baselines.design.objects import instance
 
-
 AT_ONCE = 2**18
 """Numbers of memories that are worked on at once: larger arrays in between would be asked of the system anew at every instant."""
 
@@ -74,9 +73,9 @@ class MultipleModel(Law):
     misfit: float
     """Mean normalised innovation squared over the number of readings from which on no hypothesis fits; 1 where one is right."""
     _moved: Array = field(init=False)
-    """(H, s, s + m + p): [Aᵀ, −Kᵀ, Cᵀ], from a prediction to the next, to what is asked for and to the readings."""
+    """(H, s, p + m + s): [Cᵀ, −Kᵀ, Aᵀ], from a prediction to the readings, to what is asked for and to the next prediction."""
     _onward: Array = field(init=False)
-    """(instants, H, p, s + m): C S [Aᵀ, −Kᵀ], the same of what readings add to it."""
+    """(instants, H, p, m + s): C S [−Kᵀ, Aᵀ], the same of what readings add to it."""
 
     def __post_init__(self) -> None:
         """``ValueError`` for parts that do not fit."""
@@ -88,8 +87,8 @@ class MultipleModel(Law):
         keep_matrices(self, {"state_gain": (H, m, s), "voltage_gain": (H, m, m * depth), "prior": (H,)})
         if self.transition is not None:
             keep_matrices(self, {"transition": (H, H)})
-        onward = np.concatenate([bank.transition, -self.state_gain.swapaxes(-1, -2)], axis=-1)
-        object.__setattr__(self, "_moved", np.concatenate([onward, bank.output], axis=-1))
+        onward = np.concatenate([-self.state_gain.swapaxes(-1, -2), bank.transition], axis=-1)
+        object.__setattr__(self, "_moved", np.concatenate([bank.output, onward], axis=-1))
         object.__setattr__(self, "_onward", np.matmul(bank.cross, onward))
 
     @property
@@ -135,19 +134,19 @@ class MultipleModel(Law):
 
     def _decided(self, reading: Array, old: Memory, new: Memory) -> Array:
         """Voltages (N, m), V, from readings (N, p), A, and what was remembered; writes what is to be."""
-        states, expects = self.bank.counts[1], reading.shape[1]
-        moved = np.matmul(old.predicted.swapaxes(0, 1), self._moved)
+        p, m = self.instruments.counts
+        moved = self._from(old.predicted.swapaxes(0, 1))
         lost = self.bank.lost(reading, old.reading, old.instant == 0.0)
-        correction = self.bank.corrections(old.instant, moved[..., -expects:], reading, lost)
+        correction = self.bank.corrections(old.instant, moved[..., :p], reading, lost)
         weights = self._weights(old.evidence + correction.log_density.T)
         self._judge(old, new, correction.squared.T, lost, weights)
         carried = self.bank.carried(old.instant, correction.whitened, self._onward)
-        moved = np.add(moved[..., :-expects], carried, out=carried)
+        moved = np.add(moved[..., p:], carried, out=carried)
         before = old.voltages.reshape(len(reading), -1)
-        voltage = self._asked(moved[..., states:], before, weights)
+        voltage = self._asked(moved[..., :m], before, weights)
         if self.fallback is not None:
             voltage = self._in_charge(self.fallback, old, new, reading, voltage)
-        estimate = moved[..., :states].swapaxes(0, 1)
+        estimate = moved[..., m:].swapaxes(0, 1)
         if self.transition is not None:
             weights, estimate = self._mixed(self.transition, weights, estimate)
         voltages = np.concatenate([voltage, before], axis=1)
@@ -157,6 +156,16 @@ class MultipleModel(Law):
         new.reading[...] = reading
         new.instant[...] = old.instant + 1.0
         return voltage
+
+    def _from(self, predicted: Array) -> Array:
+        """(H, N, p + m + s) of predictions (H, N, s), shorter ones by what is theirs."""
+        (H, N, s), more = predicted.shape, sum(self.instruments.counts)
+        moved = np.empty((H, N, more + s))
+        for those, size in self.bank.alike:
+            out = moved[those, :, : more + size]
+            np.matmul(predicted[those, :, :size], self._moved[those, :size, : more + size], out=out)
+            moved[those, :, more + size :] = 0.0
+        return moved
 
     def _weights(self, evidence: Array) -> Array:
         """(N, H), each at least the floor, which add up to 1."""
