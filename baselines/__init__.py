@@ -19,6 +19,8 @@ from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.h_infinity import h_infinity
 from baselines.laws.informed_lqg import informed_lqg
+from baselines.laws.informed_mpc import informed_mpc
+from baselines.laws.inverse_hysteresis import InverseHysteresis, inverse_hysteresis
 from baselines.laws.lqg import lqg
 from baselines.laws.lqr import lqr
 from baselines.laws.mpc import PredictiveController, mpc
@@ -26,7 +28,9 @@ from baselines.laws.multiple_model import multiple_model
 from baselines.laws.no_control import no_control
 from baselines.laws.positive_position_feedback import positive_position_feedback
 from baselines.laws.reference_lqg import full_order_lqg, reference_lqg
+from baselines.laws.robust_lqg import robust_lqg
 from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
+from baselines.laws.run_up_lqg import RunUpLQG, run_up_lqg
 from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
 from baselines.laws.velocity_feedback import velocity_feedback
 
@@ -41,12 +45,14 @@ __all__ = [
     "Evaluation",
     "Hypothesis",
     "Instruments",
+    "InverseHysteresis",
     "Law",
     "LinearController",
     "MultipleModel",
     "PersistentLoad",
     "PredictiveController",
     "RotorHarmonics",
+    "RunUpLQG",
     "ScheduledLQG",
     "StabilityMargins",
     "clairvoyant_lqg",
@@ -58,6 +64,8 @@ __all__ = [
     "h_infinity",
     "h_infinity_norm",
     "informed_lqg",
+    "informed_mpc",
+    "inverse_hysteresis",
     "lqg",
     "lqr",
     "mpc",
@@ -65,8 +73,10 @@ __all__ = [
     "no_control",
     "positive_position_feedback",
     "reference_lqg",
+    "robust_lqg",
     "roll_out",
     "rotor_lqg",
+    "run_up_lqg",
     "scheduled_lqg",
     "scheduled_lqg_for",
     "stability_margins",

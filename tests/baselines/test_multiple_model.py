@@ -12,7 +12,7 @@ from baselines import Hypothesis, MultipleModel, PersistentLoad, evaluate, full_
 from baselines.design import weighing
 from baselines.design.loop import closed_loop, spectral_radius
 from baselines.laws import multiple_model as builder
-from baselines.laws.detuned_lqg import ROBUST, detuned_lqg
+from baselines.laws.detuned_lqg import CAUTIOUS, detuned_lqg
 from baselines.laws.lqg import known_sensor_noise, sampled_design
 from beamenv.plant.plant import sample
 
@@ -356,9 +356,9 @@ def _delayed():
     return envs, envs.unwrapped.design.full_plant
 
 
-def test_on_blades_outside_its_bank_it_does_no_worse_than_its_fallback_by_much_and_without_one_it_does(delayed):
+def test_on_blades_outside_its_bank_a_cautious_fallback_costs_a_fraction_of_the_reference_and_of_none(delayed):
     envs, plant = delayed
-    load, fallback, seeds = PersistentLoad(), detuned_lqg(plant, ROBUST), range(2_000_000, 2_000_006)
+    load, fallback, seeds = PersistentLoad(), detuned_lqg(plant, CAUTIOUS), range(2_000_000, 2_000_006)
     bank = [Hypothesis(plant, load=load, deflection=11.0)]
     plain = evaluate(reference_lqg(plant), envs, seeds)
     robust, safe, trusting = (
@@ -366,8 +366,8 @@ def test_on_blades_outside_its_bank_it_does_no_worse_than_its_fallback_by_much_a
         for law in (fallback, multiple_model(bank, fallback), multiple_model(bank))
     )
     assert robust.cost.value < 0.5 * plain.cost.value
-    assert safe.cost.value < 1.5 * robust.cost.value
-    assert trusting.cost.value > 3.0 * safe.cost.value
+    assert safe.cost.value < 0.5 * plain.cost.value
+    assert trusting.cost.value > 2.0 * safe.cost.value
     told = multiple_model([replace(bank[0], delay=d, holds_lost_readings=True) for d in range(4)], fallback)
     informed = evaluate(told, envs, seeds, reference=plain.reference)
     assert informed.cost.value < robust.cost.value

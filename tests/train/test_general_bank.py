@@ -53,5 +53,5 @@ def test_it_is_one_and_the_same_law_in_each_scenario_seen_or_not(monkeypatch):
     general_law.cache_clear()
     laws = [named("multiple-model-general").build_for(task_of(name)) for name in ("nominal", "off-model", "delay-failure")]
     assert laws[0] is laws[1] is laws[2]
-    assert laws[0].fallback is not None and laws[0].fallback.name == "robust LQG"
+    assert laws[0].fallback is not None and laws[0].fallback.name == "cautious LQG"
     general_law.cache_clear()

@@ -102,11 +102,11 @@ def test_of_scenarios_kept_for_judging_it_knows_nothing(name):
     assert held.delay == 0 and held.actuator_gain.all() and held.sensor_gain.all() and not held.holds_lost_readings
 
 
-def test_the_controller_of_that_name_is_built_from_its_prior_and_falls_back_to_the_robust_law():
+def test_the_controller_of_that_name_is_built_from_its_prior_and_falls_back_to_the_cautious_law():
     law = named("multiple-model").build_for(resolve_task(scenario="delay", blade={"model": "thesis"}, duration=0.1))
     assert isinstance(law, MultipleModel)
     assert len(law.prior) == 3
-    assert law.fallback is not None and law.fallback.name == "robust LQG"
+    assert law.fallback is not None and law.fallback.name == "cautious LQG"
 
 
 def test_of_what_is_drawn_from_more_than_it_holds_quick_changes_cost_more():

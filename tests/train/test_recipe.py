@@ -69,7 +69,7 @@ def test_what_is_wrong_is_told_in_a_sentence(before, after, sentence):
 
 
 def test_unknown_names_and_files_are_told(tmp_path):
-    with pytest.raises(ValueError, match="agent is 'dreamer', but must be one of gradient"):
+    with pytest.raises(ValueError, match="agent is 'dreamer', but must be one of belief, gradient"):
         named_recipe("dreamer")
     with pytest.raises(ValueError, match="absent.toml"):
         load_recipe(tmp_path / "absent.toml")
@@ -82,8 +82,8 @@ def test_generalists_train_on_every_named_scenario_but_where_a_plant_file_moves(
     assert set(Job("gradient", recipe, "solid", 0, Budget(updates=1), {}).tasks()) == {"solid"}
 
 
-MAY_BE_ZERO = {"first", "critic_first", "energy_horizon", "exploration", "output_gain", "trace", "smoothing"}
-"""Settings that mean something at zero: no waiting, no potential, a deviation of one, an idle start, one step ahead, a mean."""
+MAY_BE_ZERO = {"compositions", "first", "critic_first", "energy_horizon", "exploration", "output_gain", "trace", "smoothing"}
+"""Settings that mean something at zero: none, no wait or potential, a deviation of one, an idle start, one step ahead, a mean."""
 
 NUMBERS = [
     (name, table, each.name)

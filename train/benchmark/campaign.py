@@ -27,7 +27,7 @@ from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import as_path, check_folder
-from train.shared.held_out import SEEDS, held_out
+from train.shared.held_out import SEEDS
 from train.shared.lock import alone_in
 from train.shared.versions import versions
 
@@ -49,6 +49,7 @@ def benchmark(
     jobs: int = 1,
     trained: Path = FOLDER,
     environment: Mapping[str, Any] | None = None,
+    validation: bool = False,
     progress: Progress | None = None,
 ) -> BenchmarkTable:
     """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
@@ -62,6 +63,7 @@ def benchmark(
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
+    - ``validation``: on the seeds that contenders are chosen on, in place of those that they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
@@ -72,6 +74,7 @@ def benchmark(
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
     if progress is not None and not callable(progress):
         raise Refused("progress", progress, "None, or a function of cells done, their number, and the cell")
+    validation = checked("validation", validation, Flag())
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
@@ -82,7 +85,7 @@ def benchmark(
         check_folder(folder)
     listed = listed_controllers(controllers, own, models, trusted, trained)
     known, refused = read_scenarios(scenarios)
-    settings = [Setting(name, each, seeds, arguments) for name, each in known.items()]
+    settings = [Setting(name, each, seeds, arguments, validation) for name, each in known.items()]
     queue = [
         Job(setting, each.name, name, source)
         for setting in settings
@@ -171,7 +174,7 @@ def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progr
 
 def configuration(settings: Sequence[Setting], listed: Sequence[ListedController]) -> dict[str, Any]:
     """How the table was made, as JSON can hold it."""
-    seeds = held_out(settings[0].seeds)
+    seeds = settings[0].episodes
     return {
         "seeds": [seeds[0], seeds[-1]],
         "environment": json.loads(settings[0].arguments),

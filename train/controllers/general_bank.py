@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 from baselines import Hypothesis, MultipleModel, multiple_model
-from baselines.laws.detuned_lqg import ROBUST, detuned_lqg
+from baselines.laws.detuned_lqg import CAUTIOUS, detuned_lqg
 from beamenv.blade.build import Blade
 from beamenv.knowledge import Prior, on_training_bank
 from beamenv.scenarios.named import NAMES, UNSEEN
@@ -34,8 +34,8 @@ def general_hypotheses(blade: Blade) -> list[Hypothesis]:
 
 @lru_cache(maxsize=4)
 def general_law(blade: Blade) -> MultipleModel:
-    """The multiple-model law over them, and the robust LQG where none of them fits; one for all that ask with an equal blade."""
-    fallback = detuned_lqg(blade.truth, ROBUST, name="robust LQG")
+    """The multiple-model law over them, and the cautious LQG where none of them fits; one for all that ask with an equal blade."""
+    fallback = detuned_lqg(blade.truth, CAUTIOUS, name="cautious LQG")
     return multiple_model(general_hypotheses(blade), fallback, rate_weight=BETWEEN)
 
 

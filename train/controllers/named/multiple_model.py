@@ -1,7 +1,7 @@
 """An LQG with load estimate for each thing that may be the case in the scenario, weighed by what is read (Magill 1965)."""
 
 from baselines import Controller, multiple_model
-from baselines.laws.detuned_lqg import ROBUST, detuned_lqg
+from baselines.laws.detuned_lqg import CAUTIOUS, detuned_lqg
 from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Prior
 from train.controllers.hypotheses import BETWEEN, are_drawn, hypotheses_of, switches
@@ -11,7 +11,7 @@ TIER = 1
 
 
 def build(prior: Prior) -> Controller:
-    """Over the scenario's plants, delays and faults, and the robust LQG where none of them fits."""
-    hypotheses, fallback = hypotheses_of(prior), detuned_lqg(prior.blade.truth, ROBUST, name="robust LQG")
+    """Over the scenario's plants, delays and faults, and the cautious LQG where none of them fits."""
+    hypotheses, fallback = hypotheses_of(prior), detuned_lqg(prior.blade.truth, CAUTIOUS, name="cautious LQG")
     rate_weight = BETWEEN if are_drawn(prior) else RATE_WEIGHT
     return multiple_model(hypotheses, fallback, transition=switches(prior, hypotheses), rate_weight=rate_weight)

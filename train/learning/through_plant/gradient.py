@@ -14,25 +14,38 @@ from typing import Annotated, Any
 import numpy as np
 import torch
 
-from beamenv.configuration import Choice, Number, Positive, configuration
+from beamenv.configuration import Choice, Count, Number, Positive, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, PASSES, RATE
 from train.learning.session import Budget, follow
-from train.learning.through_plant.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
+from train.learning.through_plant.actors import (
+    Actor,
+    ActorSettings,
+    BeliefActor,
+    RecurrentActor,
+    ResidualActor,
+    StateSpaceActor,
+)
+from train.learning.through_plant.compositions import compositions
 from train.learning.through_plant.linear_base import BASES, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import Report, on_training_bank, uncontrolled_cost
+
+COMPOSED = 13
+"""Seed of the scenarios that generalists meet besides those with a name."""
 
 
 @configuration("settings")
 class GradientSettings:
     """One experiment."""
 
-    actor: Annotated[str, Choice(("recurrent", "residual", "linear"))] = "recurrent"
-    """"recurrent", "residual" or "linear"."""
+    actor: Annotated[str, Choice(("recurrent", "residual", "state-space", "belief"))] = "recurrent"
+    """"recurrent", "residual", "state-space" (all matrices of a linear law) or "belief" (its gain alone, its filter as it is)."""
     base: Annotated[str, Choice(BASES)] = "lqg"
-    """What a residual actor adds to: see ``train.learning.through_plant.linear_base``."""
+    """What a residual actor adds to and a linear one starts from: see ``train.learning.through_plant.linear_base``."""
+    start: Annotated[str, Choice(("base", "idle"))] = "base"
+    """Whether a linear actor starts as its base, or without voltages: of the base it then has the filter alone."""
     actor_settings: ActorSettings = field(default_factory=ActorSettings)
     runs: Annotated[int, PASSES] = 1
     """Independent trainings side by side."""
@@ -46,6 +59,11 @@ class GradientSettings:
     """s: the cost of a joule left at a window's end."""
     gradient_norm: Positive = 1.0
     """Gradients are clipped to it."""
+    calm: Positive = 10.0
+    """Times no control: what a blade's window costs beyond that counts by its logarithm, so that unstable episodes neither drown
+    the others nor go unheard."""
+    compositions: Annotated[int, Count(0, 1000)] = 0
+    """Scenarios composed at random (``compositions``) that a training of several scenarios meets besides."""
 
 
 def new_actor(task: Task, settings: GradientSettings) -> Actor:
@@ -53,9 +71,16 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
     plant, own, runs = task.design_plant, settings.actor_settings, settings.runs
     if settings.actor == "recurrent":
         return RecurrentActor(plant, own, runs)
-    if settings.actor == "linear":
-        return LinearActor(plant, own, runs)
+    if settings.actor == "state-space":
+        return StateSpaceActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
+    if settings.actor == "belief":
+        return BeliefActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
     return ResidualActor(plant, own, runs, linear_base(settings.base, task))
+
+
+def calmed(cost: torch.Tensor, calm: float) -> torch.Tensor:
+    """The costs where they are below ``calm``, and beyond it calm (1 + log(cost / calm)): as steep there, then flatter."""
+    return torch.where(cost > calm, calm * (1.0 + torch.log(cost.clamp(min=calm) / calm)), cost)
 
 
 class GradientTraining:
@@ -73,9 +98,10 @@ class GradientTraining:
         self.actor = new_actor(tasks[0], settings)
         self._parameters = [weights for weights in self.actor.parameters() if weights.requires_grad]
         self._optimiser = torch.optim.Adam(self._parameters, lr=settings.learning_rate)
-        apart = [on_training_bank(task) for task in tasks]
+        further = compositions(tasks[0], settings.compositions, COMPOSED) if len(tasks) > 1 else []
+        apart = [on_training_bank(task) for task in [*tasks, *further]]
         self._windows = [Windows(task, settings.runs * settings.episodes, settings.window, self._generator) for task in apart]
-        self._references = [uncontrolled_cost(task) for task in apart]
+        self._references = [uncontrolled_cost(task, 512 if len(apart) == 1 else 128) for task in apart]
         self._order: list[int] = []
         self.steps = 0
         """Control intervals so far."""
@@ -94,7 +120,8 @@ class GradientTraining:
         cost, left = windows.unroll(self.actor)
         scale = windows.count / reference
         self._optimiser.zero_grad()
-        loss = (cost + self.settings.energy_horizon * left).view(self.settings.runs, -1).mean(dim=1).sum() * scale
+        loss = calmed(scale * (cost + self.settings.energy_horizon * left), self.settings.calm)
+        loss = loss.view(self.settings.runs, -1).mean(dim=1).sum()
         torch.autograd.backward(loss)
         self._clip_gradients()
         self._optimiser.step()
