@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-import beamenv
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
+from beamenv.scenarios.named import expanded
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.task import resolve_task
 from train.benchmark.bench import Setting
@@ -55,8 +55,8 @@ def benchmark(
 
     - ``own``: objects with Stable-Baselines3's ``predict``, or plain functions, by the names they are to have. They are given the
       readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
-    - ``scenarios``: names or files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
-      the others go on.
+    - ``scenarios``: names, files, and the groups "benchmark", "open", "unseen" and "all"; "all" if None. One that cannot be read is
+      refused in one sentence, and the others go on.
     - ``controllers``: names of controllers and shipped agents, all of them if None. No control and LQG are always among them.
     - ``seeds``: held-out episodes, equal for every controller.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
@@ -135,8 +135,8 @@ def _plain(value: Any) -> Any:
 
 
 def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
-    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
-    read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
+    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read; all of them if None."""
+    read = {name: _read(name) for name in expanded(["all"] if names is None else names)}
     titles = {name: Path(name).stem if name.endswith(ENDINGS) else name for name in read}
     known = {checked("scenario", titles[name], FileName()): each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}

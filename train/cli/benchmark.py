@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from beamenv.configuration.files import ENDINGS
+from beamenv.scenarios.named import GROUPS
 from train.cli.options import RESUMES, JsonOption, one_sentence, print_json, print_table
 from train.shared.digests import digest
 from train.shared.files import check_folder
@@ -27,7 +28,8 @@ LONGEST = 60
 
 def benchmark(
     scenario: Annotated[
-        list[str] | None, typer.Option(help="Name or TOML file of a scenario; repeat for more. All of the benchmark's if left out.")
+        list[str] | None,
+        typer.Option(help=f"Name or TOML file of a scenario, or {', '.join(GROUPS)} of them; repeat for more. All if left out."),
     ] = None,
     controller: Annotated[
         list[str] | None, typer.Option(help="Name of a controller or shipped agent; repeat for more. All of them if left out.")
@@ -85,6 +87,7 @@ def _measured(**arguments: Any) -> BenchmarkTable:
 
 def default_folder(scenarios: Sequence[str], controllers: Sequence[str], seeds: int, models: Sequence[Path]) -> Path:
     """``results/benchmark``, with what is chosen behind it: each choice has a folder of its own."""
+    scenarios = () if list(scenarios) == ["all"] else scenarios
     chosen = [Path(name).stem if name.endswith(ENDINGS) else name for name in (*scenarios, *controllers)]
     chosen += [path.stem for path in models] + ([] if seeds == SEEDS else [str(seeds)])
     name = "-".join(["benchmark", *chosen])
