@@ -13,15 +13,13 @@ from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, discover
 from train.controllers.shipped import FOLDER, shipped
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
+from train.controllers.tiers import LEARNT
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
 
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
-
-LEARNT = 1
-"""The tier of agents: what they train on is the scenario's distribution, and they see the readings alone."""
 
 INDISPENSABLE = ("none", "lqg")
 """What every cost is relative to, and what everyone is compared with in pairs."""
