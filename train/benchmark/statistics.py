@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines.evaluation.statistics import Estimate, Resamples, interval, resamples
+from baselines.evaluation.statistics import RESAMPLES, Estimate, Resamples, interval, paired_draws, resamples
+from beamenv.configuration.read_only import sealed
 
 Array = NDArray[np.float64]
 
@@ -44,8 +47,8 @@ def relative_cost(cost: Array, uncontrolled: Array) -> Estimate:
 def difference(cost: Array, rival: Array, uncontrolled: Array) -> Estimate:
     """Relative cost of one controller, (K, N), less that of a rival, (L, N), on the same seeds. Infinite less infinite is a tie."""
     ours, theirs = resamples(*cost.shape), resamples(*rival.shape)
-    value = _less(np.array([cost.mean()]), np.array([rival.mean()]))[0] / uncontrolled.mean()
-    return interval(value, _less(ours.mean(cost), theirs.mean(rival)) / _mean_of_seeds(uncontrolled, ours))
+    value = less(np.array([cost.mean()]), np.array([rival.mean()]))[0] / uncontrolled.mean()
+    return interval(value, less(ours.mean(cost), theirs.mean(rival)) / _mean_of_seeds(uncontrolled, ours))
 
 
 def ratio(cost: Array, rival: Array) -> Estimate:
@@ -54,10 +57,61 @@ def ratio(cost: Array, rival: Array) -> Estimate:
     return interval(cost.mean() / rival.mean(), ours.mean(cost) / theirs.mean(rival))
 
 
+def scores(cost: Array, bound: Array, uncontrolled: Array, stratum: str = "") -> Array | None:
+    """(1 + R,): how much of what can be gained is, (J₀ − J) / (J₀ − J of the bound), each a mean; and the same of R resamples.
+
+    Of ``cost`` (K, N) and ``bound`` (1, N). 0 is no control and 1 the bound; nothing is clipped, and an infinite ``cost`` has the
+    score −∞. None where the bound breaks a blade, or gains nothing in some resample: then there is nothing to relate to.
+
+    Seeds are drawn together for all scenarios and controllers, as all meet the same ones. Runs are drawn by ``stratum``: one for
+    each scenario's own trainings, and the same one for all scenarios that the same runs are put through.
+    """
+    seeds = _seed_counts(cost.shape[1])
+    without = _means(uncontrolled[None], seeds)
+    reach = without - _means(bound, seeds)
+    if not (np.isfinite(reach).all() and (reach > 0.0).all()):
+        return None
+    return np.asarray((without - _means(cost, seeds, run_counts(len(cost), stratum))) / reach)
+
+
+def summary(found: Array) -> Estimate:
+    """The estimate of a value and its resamples, (1 + R,)."""
+    return interval(found[0], found[1:])
+
+
+def over_scenarios(scored: Sequence[Array]) -> Array:
+    """(1 + R,): interquartile mean over scenarios of what ``scores`` gives for each."""
+    return np.asarray(interquartile_mean(np.stack(scored, axis=-1)))
+
+
+@lru_cache(maxsize=256)
+def run_counts(runs: int, stratum: str) -> Array:
+    """(1 + R, runs): how often each run is drawn in a stratum's resamples, the first of which are the runs themselves."""
+    drawn = np.random.default_rng([runs, *stratum.encode()]).integers(runs, size=(RESAMPLES, runs))
+    return sealed(np.vstack([np.ones(runs), (drawn[:, :, None] == np.arange(runs)).sum(axis=1)]))
+
+
+@lru_cache(maxsize=8)
+def _seed_counts(seeds: int) -> Array:
+    """(1 + R, N): the same of seeds."""
+    drawn = [np.bincount(row, minlength=seeds) for row in paired_draws(seeds)]
+    return sealed(np.vstack([np.ones(seeds), *drawn]).astype(float))
+
+
+def _means(values: Array, seeds: Array, runs: Array | None = None) -> Array:
+    """(1 + R,): means of resampled ``values`` (K, N); infinite where an infinite one was drawn."""
+    infinite = np.isinf(values)
+    each = np.ones((1, len(values))) if runs is None else runs
+    total = ((each @ np.where(infinite, 0.0, values)) * seeds).sum(axis=1)
+    lost = ((each @ infinite.astype(float)) * seeds).sum(axis=1) > 0.0
+    return np.asarray(np.where(lost, np.inf, total / values.size))
+
+
 def _mean_of_seeds(values: Array, drawn: Resamples) -> Array:
     return np.asarray(drawn.seed_counts @ values / len(values))
 
 
-def _less(cost: Array, rival: Array) -> Array:
-    both = np.isinf(cost) & np.isinf(rival)
+def less(cost: Array, rival: Array) -> Array:
+    """The one less the other; infinite less infinite is a tie."""
+    both = np.isinf(cost) & (cost == rival)
     return np.where(both, 0.0, np.where(both, 0.0, cost) - np.where(both, 0.0, rival))

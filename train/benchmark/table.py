@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,9 @@ controller that feeds vibration may well take longer than an episode to break th
 
 RIVAL = "lqg"
 
+BOUND = "clairvoyant"
+"""What scores relate to: it is told each episode's truth."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Row:
@@ -39,12 +42,16 @@ class Row:
     seeds: int
     sentences: tuple[str, ...] = ()
     """What went wrong, once each."""
+    everywhere: bool = True
+    """Whether the same runs are put through every scenario; a specialist's are each scenario's own."""
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     """In SI units; empty where nothing could be measured."""
     cost: Array | None = None
     """(runs, N), J s; J₀ where a blade fails with and without control, infinite where it fails under the controller alone."""
     uncontrolled: Array | None = None
     """(N,), J s: J₀."""
+    scored: Array | None = None
+    """(1 + R,): the score and those of R resamples; None without."""
 
     @property
     def measured(self) -> bool:
@@ -101,8 +108,8 @@ def tabulate(
     rows = []
     for scenario in dict.fromkeys(cell.scenario for cell in cells):
         found = {each.name: [c for c in cells if (c.scenario, c.controller) == (scenario, each.name)] for each in listed}
-        rivals = costs(found.get(RIVAL, []))
-        rows += [row(found[each.name], each, rivals) for each in listed if found[each.name]]
+        rivals, bound = costs(found.get(RIVAL, [])), costs(found.get(BOUND, []))
+        rows += [row(found[each.name], each, rivals, bound) for each in listed if found[each.name]]
     return BenchmarkTable(tuple(rows), refused, configuration)
 
 
@@ -117,22 +124,27 @@ def _judged(cell: Cell) -> Array:
     return judged(cell.metrics["cost"], cell.uncontrolled, cell.lost > 0.0)
 
 
-def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None) -> Row:
+def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None, bound: Array | None) -> Row:
     """The training runs of one controller in one scenario taken together."""
     served = [cell for cell in cells if cell.metrics is not None]
     title = (served or cells)[0].title or listed.name
-    about = (cells[0].scenario, listed.name, title, listed.kind, listed.tier)
     sentences = tuple(dict.fromkeys(cell.sentence for cell in cells if cell.sentence))
-    if not served:
-        return Row(*about, runs=0, seeds=0, sentences=sentences)
-    if len(served) < len(cells):
+    if served and len(served) < len(cells):
         sentences = (f"{len(cells) - len(served)} of {len(cells)} runs could not be measured:", *sentences)
+    scenario, everywhere = cells[0].scenario, bool(listed.everywhere)
+    empty = Row(scenario, listed.name, title, listed.kind, listed.tier, 0, 0, sentences, everywhere)
+    if not served:
+        return empty
     series = {name: np.stack([cell.metrics[name] for cell in served if cell.metrics]) for name in SERIES}
     uncontrolled = served[0].uncontrolled
     assert uncontrolled is not None
     cost = np.stack([_judged(cell) for cell in served])
     found = estimates(series, cost, uncontrolled, rival)
-    return Row(*about, len(served), len(uncontrolled), sentences, found, cost, uncontrolled)
+    measured = replace(empty, runs=len(served), seeds=len(uncontrolled), estimates=found, cost=cost, uncontrolled=uncontrolled)
+    scored = None if bound is None else statistics.scores(cost, bound, uncontrolled, "" if everywhere else scenario)
+    if scored is None:
+        return measured
+    return replace(measured, estimates={"score": statistics.summary(scored), **found}, scored=scored)
 
 
 def estimates(series: Mapping[str, Array], cost: Array, uncontrolled: Array, rival: Array | None) -> dict[str, Estimate]:

@@ -6,10 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from baselines import Estimate
 from baselines.evaluation.metrics import finite
 from baselines.evaluation.statistics import CONFIDENCE, RESAMPLES
 from beamenv.configuration.writing import write_whole
 from beamenv.knowledge import TIERS, TRUTH
+from train.benchmark.score import RULE, Aggregate, Headroom, aggregates, headrooms
+from train.benchmark.showing.scores import headroom, scores
 from train.benchmark.table import UNSTABLE, BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.shared.columns import Column, number, share
@@ -19,6 +22,7 @@ from train.shared.markdown import table as markdown_table
 
 COLUMNS = (
     Column("relative_cost", "J / J₀", 1.0, "{:.3f}", interval=True),
+    Column("score", "score", 1.0, "{:.3f}", interval=True),
     Column("relative_cost_iqm", "IQM of J / J₀", 1.0, "{:.3f}", interval=True),
     Column("difference_to_lqg", "J / J₀ less LQG's", 1.0, "{:+.3f}", interval=True),
     Column("improvement_on_lqg", "P(J < LQG's)", 1.0, "{:.2f}", interval=True),
@@ -31,7 +35,6 @@ COLUMNS = (
     Column("effort", "effort, mJ s", 1e3, "{:.3g}"),
     Column("saturation", "saturated, %", 100.0, "{:.1f}"),
 )
-
 
 ABOUT = ("scenario", "controller", "title", "tier", "kind", "runs", "seeds")
 """Fields of a row besides its estimates."""
@@ -59,18 +62,40 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
     rows = []
     for row in table.rows:
         about = {name: getattr(row, name) for name in ABOUT}
-        found = {
-            name: {"value": finite(each.value), "low": finite(each.low), "high": finite(each.high)}
-            for name, each in row.estimates.items()
-        }
+        found = {name: estimate_json(each) for name, each in row.estimates.items()}
         rows.append({**about, "estimates": found, "sentences": list(row.sentences)})
     judged = [{"sentence": each.sentence, "met": each.met} for each in findings(table)]
-    return {"configuration": dict(table.configuration), "findings": judged, "refused": dict(table.refused), "rows": rows}
+    return {
+        "configuration": dict(table.configuration),
+        "findings": judged,
+        "refused": dict(table.refused),
+        "aggregates": [aggregate_json(each) for each in aggregates(table)],
+        "headroom": [headroom_json(each) for each in headrooms(table)],
+        "rows": rows,
+    }
+
+
+def estimate_json(estimate: Estimate | None) -> dict[str, float | None] | None:
+    """None for what is infinite, and for no estimate."""
+    return None if estimate is None else {name: finite(getattr(estimate, name)) for name in ("value", "low", "high")}
+
+
+def aggregate_json(one: Aggregate) -> dict[str, Any]:
+    """A controller's score over a split."""
+    about = {name: getattr(one, name) for name in ("split", "controller", "tier", "kind")}
+    over = {"scenarios": list(one.scenarios), "without": list(one.without)}
+    return {**about, "score": estimate_json(one.score), "less_lqg": estimate_json(one.less_lqg), **over}
+
+
+def headroom_json(one: Headroom) -> dict[str, Any]:
+    """What is left to gain in a scenario."""
+    best = {"controller": one.best.controller, "tier": one.best.tier, "kind": one.best.kind}
+    return {"scenario": one.scenario, "best": best, "relative_cost": estimate_json(one.cost), "score": estimate_json(one.score)}
 
 
 def markdown(table: BenchmarkTable) -> str:
     """Findings, overview, a table for each scenario, what went wrong, and how it was made."""
-    parts = [found(table), overview(table), legend(table)]
+    parts = [found(table), scores(table), headroom(table), overview(table), legend(table)]
     parts += [f"### {escaped(name)}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
     if table.sentences:
         lines = "\n".join(f"- {escaped(where)}: {escaped(sentence)}" for where, sentence in table.sentences.items())
@@ -123,7 +148,7 @@ def legend(table: BenchmarkTable) -> str:
         f"{100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
         "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails, which makes J infinite, "
         f"or J₀ where it fails without control too, or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort "
-        f"are means over episodes. {tiers()}"
+        f"are means over episodes. {RULE} {tiers()}"
     )
 
 
