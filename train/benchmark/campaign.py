@@ -70,8 +70,7 @@ def benchmark(
     be written or another process is at work.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
-    if progress is not None and not callable(progress):
-        raise Refused("progress", progress, "None, or a function of cells done, their number, and the cell")
+    progress = checked_progress(progress)
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
@@ -81,14 +80,31 @@ def benchmark(
     if folder is not None:
         check_folder(folder)
     listed = listed_controllers(controllers, own, models, trusted, trained)
+    return of_listed(listed, scenarios, seeds, folder, jobs=jobs, arguments=arguments, progress=progress)
+
+
+def checked_progress(progress: Any) -> Progress | None:
+    """None, or something to call."""
+    if progress is not None and not callable(progress):
+        raise Refused("progress", progress, "None, or a function of cells done, their number, and the cell")
+    found: Progress | None = progress
+    return found
+
+
+def of_listed(
+    listed: Sequence[ListedController],
+    scenarios: Sequence[str] | None,
+    seeds: int,
+    folder: Path | None,
+    *,
+    jobs: int = 1,
+    arguments: str = "{}",
+    progress: Progress | None = None,
+) -> BenchmarkTable:
+    """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON."""
     known, refused = read_scenarios(scenarios)
     settings = [Setting(name, each, seeds, arguments) for name, each in known.items()]
-    queue = [
-        Job(setting, each.name, name, source)
-        for setting in settings
-        for each in listed
-        for name, source in each.runs(setting.name).items()
-    ]
+    queue = [job for setting in settings for each in listed for job in jobs_of(each, setting)]
     check_paths(queue)
     made = configuration(settings, listed)
     with nullcontext() if folder is None else alone_in(folder):
@@ -99,6 +115,11 @@ def benchmark(
         if folder is not None:
             write_all(folder, table)
     return table
+
+
+def jobs_of(listed: ListedController, setting: Setting) -> list[Job]:
+    """The cells of one controller in one scenario, one for each training run."""
+    return [Job(setting, listed.name, run, source) for run, source in listed.runs(setting.name).items()]
 
 
 def check_paths(queue: Sequence[Job]) -> None:
