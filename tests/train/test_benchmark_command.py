@@ -94,7 +94,7 @@ def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for():
     rows = [Row(name, law, law, "fixed", 0, 1, 2) for name in names for law in ("none", "positive-position-feedback")]
     table = BenchmarkTable(tuple(rows), {}, {})
     assert list(blocks(table, 200)) == [names]
-    assert list(blocks(table, 80)) == [names[:2], names[2:]]
+    assert list(blocks(table, 80)) == [names[:3], names[3:]]
     assert list(blocks(table, 20)) == [(name,) for name in names]
 
 

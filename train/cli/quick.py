@@ -11,7 +11,7 @@ QUICK_SCENARIOS = ("nominal", "delay", "failure", "mid-failure", "delay-failure"
 """LQG's own, two in which it goes unstable, an open one, and two unseen; none whose many plants take long to build."""
 
 QUICK_LAWS = (
-    *("none", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "mpc", "informed-lqg", "multiple-model"),
+    *("none", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "informed-lqg", "multiple-model"),
     *("scheduled-lqg", "clairvoyant"),
 )
 """Of every tier."""
