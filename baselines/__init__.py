@@ -19,6 +19,7 @@ from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.h_infinity import h_infinity
 from baselines.laws.informed_lqg import informed_lqg
+from baselines.laws.inverse_hysteresis import InverseHysteresis, inverse_hysteresis
 from baselines.laws.lqg import lqg
 from baselines.laws.lqr import lqr
 from baselines.laws.mpc import PredictiveController, mpc
@@ -27,6 +28,7 @@ from baselines.laws.no_control import no_control
 from baselines.laws.positive_position_feedback import positive_position_feedback
 from baselines.laws.reference_lqg import full_order_lqg, reference_lqg
 from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
+from baselines.laws.run_up_lqg import RunUpLQG, run_up_lqg
 from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
 from baselines.laws.velocity_feedback import velocity_feedback
 
@@ -41,12 +43,14 @@ __all__ = [
     "Evaluation",
     "Hypothesis",
     "Instruments",
+    "InverseHysteresis",
     "Law",
     "LinearController",
     "MultipleModel",
     "PersistentLoad",
     "PredictiveController",
     "RotorHarmonics",
+    "RunUpLQG",
     "ScheduledLQG",
     "StabilityMargins",
     "clairvoyant_lqg",
@@ -58,6 +62,7 @@ __all__ = [
     "h_infinity",
     "h_infinity_norm",
     "informed_lqg",
+    "inverse_hysteresis",
     "lqg",
     "lqr",
     "mpc",
@@ -67,6 +72,7 @@ __all__ = [
     "reference_lqg",
     "roll_out",
     "rotor_lqg",
+    "run_up_lqg",
     "scheduled_lqg",
     "scheduled_lqg_for",
     "stability_margins",

@@ -2,139 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass
 
 from baselines.design.controller import Array
 from baselines.design.instruments import Instruments
-from baselines.design.law import Law
 from baselines.design.objects import instance
-from baselines.laws.clairvoyant_plan import Plan
+from baselines.laws.time_varying_lqg import TimeVaryingLQG
 from beamenv.knowledge import Truth
-from beamenv.plant.plant import normalised
-from beamenv.simulation.signals.electronics import hysteresis_of
-from beamenv.simulation.signals.hysteresis import PLAYS, Hysteresis
-
-Rows = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class ClairvoyantLQG(Law):
+class ClairvoyantLQG(TimeVaryingLQG):
     """The optimum under white noise of the plant, delay and faults that each episode has, over the episode.
 
-    It ``observes`` the readings and the truth as it is now, and remembers the instant, what it believes of blade and loads, the
-    voltages that are still to act, the last readings and the actuators' hysteresis. Its gains vary with time
-    (``baselines.design.time_varying``): the filter's from the covariance with which episodes begin, the regulator's towards their
-    end. It inverts hysteresis, takes a reading that repeats the last one for lost where readings are lost, and expects no more of a
-    sensor than its full scale. Loads are not told: it estimates those that the scenario lets foresee (``foreseen_loads``).
-
-    Under white noise nothing costs less in the mean while no limit acts. Drawn loads are no white noise, and limits act: with them
-    it is a reference and not a bound.
+    It ``observes`` the readings and the truth as it is now. Under white noise nothing costs less in the mean while no limit acts.
+    Drawn loads are no white noise, and limits act: with them it is a reference and not a bound.
     """
 
-    truth: Truth
-    _plan: Plan = field(init=False)
-    _hysteresis: Hysteresis | None = field(init=False)
-    _limits: Array = field(init=False)
-    _full_scale: Array = field(init=False)
-
-    def __post_init__(self) -> None:
-        Law.__post_init__(self)
-        plant, drive = normalised(self.truth.plant), self.truth.scenario.drive
-        object.__setattr__(self, "_plan", Plan.of(self.truth))
-        object.__setattr__(self, "_hysteresis", hysteresis_of(self.truth.plant, drive.hysteresis))
-        object.__setattr__(self, "_limits", plant.voltage_limits)
-        object.__setattr__(self, "_full_scale", self.truth.plant.sensor_full_scale)
-
-    @property
-    def order(self) -> int:
-        """Numbers in a blade's memory."""
-        m, p = self._plan.sizes[1:]
-        return 1 + self._plan.states + p + (PLAYS * m if self._hysteresis else 0)
-
-    def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
-        """As a filter and a regulator, each with the gains of the blade's truth and of its instant."""
-        m, p = self._plan.sizes[1:]
-        seen = self.instruments.read(np.atleast_2d(observation))
-        told, readings = seen[:, p:], seen[:, :p] / self._full_scale
-        instant, belief, last, plays = np.split(np.atleast_2d(memory), np.cumsum([1, self._plan.states, p]), axis=1)
-        plays = plays.reshape(len(seen), m, -1)
-        now = Now.of(self._plan, told, instant[:, 0].astype(np.int64))
-        belief = now.corrected(belief, readings, last if self.truth.scenario.acquisition.dropout else None)
-        voltage = effective = np.clip(now.wanted(belief), *self._limits)
-        if self._hysteresis is not None:
-            voltage = self._hysteresis.inverse(now.wanted(belief), plays, *self._limits)
-            effective, plays = self._hysteresis.step(voltage, plays)
-        following = np.hstack([instant + 1.0, now.following(belief, effective), readings, plays.reshape(len(seen), -1)])
-        action = voltage * np.abs(self.instruments.voltage_limits).max(axis=0) / self.instruments.voltage_scale
-        return action.reshape(*observation.shape[:-1], m), following.reshape(*observation.shape[:-1], -1)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Now:
-    """N blades at their instants, each with the matrices of its truth: one of each where all have the same."""
-
-    plan: Plan
-    plant: Any
-    """(N,) places in the bank, or one."""
-    told: Array
-    instant: Rows
-    feedback: Array
-    """(N, m, s) or (m, s)."""
-    gain: Array
-    """(N, s, p) or (s, p)."""
-
-    @classmethod
-    def of(cls, plan: Plan, told: Array, instant: Rows) -> Now:
-        """Beyond the episode's end, with the last gains."""
-        met, plant, when = plan.met(told), told[:, 0].astype(np.int64), np.minimum(instant, plan.truth.steps - 1)
-        alike = (met == met[0]).all() and (when == when[0]).all()
-        feedback, gain = ([each[k][t] for k, t in zip(met, when, strict=True)] for each in (plan.regulator, plan.filter))
-        if alike:
-            return cls(plan, plant[0], told, instant, feedback[0], gain[0])
-        return cls(plan, plant[0] if (plant == plant[0]).all() else plant, told, instant, np.stack(feedback), np.stack(gain))
-
-    def corrected(self, belief: Array, readings: Array, last: Array | None) -> Array:
-        """The belief (N, s) after readings (N, p), of which those that repeat the ``last`` ones tell nothing."""
-        n, m, p = self.plan.sizes
-        start = self.plan.truth.bank.start
-        if start is not None:
-            belief = belief + np.pad(start, ((0, 0), (0, belief.shape[1] - n))) * (self.instant == 0)[:, None]
-        sensing, bias = self.told[:, 2 + m : 2 + m + p], self.told[:, 2 + m + p :]
-        expected = _each(self.plan.plants.C[self.plant], belief[:, :n]) * sensing + bias
-        news = readings - np.clip(expected, -1.0, 1.0)
-        if last is not None:
-            news = np.where((readings == last) & (self.instant > 0)[:, None], 0.0, news)
-        return belief + _each(self.gain, news)
-
-    def wanted(self, belief: Array) -> Array:
-        """(N, m): the voltages that are to act."""
-        return -_each(self.feedback, belief)
-
-    def following(self, belief: Array, voltage: Array) -> Array:
-        """The belief (N, s) of the next instant, from effective voltages (N, m) that are on their way from now on."""
-        n, m, _ = self.plan.sizes
-        plants, q = self.plan.plants, belief.shape[1] - n - m * self.plan.slots
-        state, load, coming = np.split(belief, [n, n + q], axis=1)
-        coming = np.hstack([voltage, coming])
-        delay = self.told[:, 1].astype(np.int64)
-        acting = coming.reshape(len(belief), -1, m)[np.arange(len(belief)), delay] * self.told[:, 2 : 2 + m]
-        model = self.plan.loads[int(np.ravel(self.plant)[0])]
-        turned, forces = load @ model.transition.T, load @ model.output.T
-        if np.ndim(self.plant) and q:
-            models = [self.plan.loads[each] for each in self.plant]
-            turned = _each(np.stack([each.transition for each in models]), load)
-            forces = _each(np.stack([each.output for each in models]), load)
-        moved = (_each(each[self.plant], part) for each, part in ((plants.A, state), (plants.B, acting), (plants.E, forces)))
-        return np.hstack([sum(moved), turned, coming[:, : m * self.plan.slots]])
-
-
-def _each(matrices: Array, rows: Array) -> Array:
-    """Rows (N, k) times one matrix (l, k), or each times its own (N, l, k)."""
-    return rows @ matrices.T if matrices.ndim == 2 else (matrices @ rows[..., None])[..., 0]
+    def told(self, seen: Array) -> tuple[Array, Array]:
+        """The truth lies behind the readings."""
+        p = self._plan.sizes[2]
+        return seen[:, :p], seen[:, p:]
 
 
 def clairvoyant_lqg(truth: Truth) -> ClairvoyantLQG:

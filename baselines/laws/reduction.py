@@ -30,7 +30,7 @@ def reduced(plant: Plant | SampledPlant, law: LinearController, order: int, *, v
 
 def truncations(plant: Plant | SampledPlant, law: LinearController) -> Callable[[int], LinearController]:
     """The law of each order, from one balancing; it may be unstable."""
-    basis, dual = _balanced(sampled(plant), law)
+    basis, dual = balanced(sampled(plant), law)
 
     def of(order: int) -> LinearController:
         onto, back = basis[:, :order], dual[:order]
@@ -45,8 +45,11 @@ def truncations(plant: Plant | SampledPlant, law: LinearController) -> Callable[
     return of
 
 
-def _balanced(held: SampledPlant, law: LinearController) -> tuple[Array, Array]:
-    """Basis and dual basis (s, k), (k, s) of the memory, the most important direction first; k of them are not lost in rounding."""
+def balanced(held: SampledPlant, law: LinearController) -> tuple[Array, Array]:
+    """Basis and dual basis (s, k), (k, s) of the memory, the most important direction first; k of them are not lost in rounding.
+
+    The memory is about basis[:, :r] times that of ``truncations(held, law)(r)``. Raises ``ValueError`` as ``reduced`` does.
+    """
     transition, noise_input, state_map, _, covariance = closed_loop(held, law)
     if spectral_radius(transition) >= 1.0:
         raise ValueError(f"law = {law.name} is unstable on the plant, and cannot be reduced there.")

@@ -90,6 +90,7 @@ RECORDS = {
     "BENCHMARK_SCENARIOS", "ENV_ID", "OPEN_SCENARIOS", "PRESETS", "SCENARIOS", "UNSEEN_SCENARIOS",  # no callables
     "Controller", "Episodes", "EpisodeMetrics", "Estimate", "Evaluation", "StabilityMargins",  # what functions give
     "PredictiveController", "ScheduledLQG", "ClairvoyantLQG",  # what mpc, scheduled_lqg and clairvoyant_lqg give
+    "InverseHysteresis", "RunUpLQG",  # what inverse_hysteresis and run_up_lqg give
     "BeamConfig",
 }  # fmt: skip
 

@@ -42,7 +42,7 @@ def test_what_could_not_be_served_is_told_and_the_rest_shown(tmp_path):
     result = run(*SMALL, "--scenario", str(tmp_path / "mine.toml"), "--folder", str(tmp_path / "results"))
     assert result.exit_code == 1
     assert "scenario has no field 'stepp'" in result.stderr
-    assert "deflection, tier 0: lowest J by lqg (fixed)" in " ".join(result.stdout.split())
+    assert "Tier 0, the nominal plant: least J of 1 scenarios by lqg in 1, clearly in 1." in " ".join(result.stdout.split())
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ import pytest
 import torch
 
 import beamenv
-from baselines import PersistentLoad, clipped_lqg, evaluate
+from baselines import PersistentLoad, RotorHarmonics, evaluate, reference_lqg
+from baselines.laws.lqg import sampled_design
+from baselines.laws.reference_lqg import full_order_lqg
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import normalised
@@ -15,6 +17,7 @@ from beamenv.simulation.kernel import Operators, advance
 from beamenv.task import resolve_task
 from train.learning.through_plant.actors import ActorSettings
 from train.learning.through_plant.gradient import GradientSettings, new_actor, train_gradient
+from train.learning.through_plant.linear_base import innovations_of, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import on_training_bank, uncontrolled_cost
 
@@ -109,11 +112,17 @@ def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, changes):
 
 @pytest.mark.parametrize(
     ("kind", "base"),
-    [("recurrent", "lqg"), ("residual", "lqg"), ("residual", "lqg-load"), ("residual", "lqg-rotor"), ("linear", "lqg")],
+    [
+        *(("recurrent", "lqg"), ("residual", "lqg"), ("residual", "lqg-load"), ("residual", "lqg-rotor")),
+        *(("state-space", "lqg"), ("state-space", "lqg-rotor"), ("belief", "lqg"), ("belief", "lqg-load")),
+    ],
 )
 def test_an_actor_and_its_policy_ask_for_the_same_voltages(kind, base):
     torch.manual_seed(1)
-    actor = new_actor(task_of(), GradientSettings(kind, base, ActorSettings(output_gain=3.0), runs=2))
+    actor = new_actor(task_of(), GradientSettings(kind, base, "base", ActorSettings(output_gain=3.0), runs=2))
+    with torch.no_grad():
+        for weights in actor.parameters():
+            weights *= 1.0 + 0.02 * torch.randn(weights.shape)
     readings = torch.clamp(torch.randn(20, 6, 4), -1.0, 1.0)
     memory, policy_memory = actor.start(6), None
     policy = actor.policy(1)
@@ -123,17 +132,72 @@ def test_an_actor_and_its_policy_ask_for_the_same_voltages(kind, base):
         np.testing.assert_allclose(action, voltages[3:].detach().numpy(), atol=2e-5)
 
 
-@pytest.mark.parametrize("base", ["lqg", "lqg-load"])
-def test_a_residual_actor_that_adds_nothing_is_the_controller_it_adds_to(plant, base):
-    """With the clipping of readings known to its filter."""
-    actor = new_actor(task_of(), GradientSettings("residual", base, ActorSettings(output_gain=0.0)))
-    law, policy = clipped_lqg(plant, PersistentLoad() if base.endswith("load") else None), actor.policy(0)
-    memories = [None, None]
-    for observed in np.clip(np.random.default_rng(0).normal(0.0, 0.7, (30, 5, 4)), -1.0, 1.0):
+REFERENCES = {"lqg": (), "lqg-load": (PersistentLoad(),), "lqg-rotor": (RotorHarmonics(200.0), PersistentLoad())}
+
+
+@pytest.mark.parametrize("base", REFERENCES)
+@pytest.mark.parametrize("kind", ["residual", "state-space", "belief"])
+def test_an_untrained_actor_is_the_law_it_starts_from(kind, base):
+    """While no reading that it expects is beyond full scale."""
+    task = task_of()
+    law, memories = reference_lqg(task.design.full_plant, load=REFERENCES[base]), [None, None]
+    policy = new_actor(task, GradientSettings(kind, base, "base", ActorSettings(output_gain=0.0))).policy(0)
+    for observed in np.random.default_rng(0).normal(0.0, 0.01, (40, 5, 4)):
         action, memories[0] = law.predict(observed, memories[0])
         other, memories[1] = policy.predict(observed, memories[1])
-        np.testing.assert_allclose(other, action, atol=2e-3)
-    assert np.abs(action).max() > 0.1
+        np.testing.assert_allclose(other, action, atol=1e-5)
+    assert np.abs(action).max() > 0.002
+
+
+@pytest.mark.parametrize("kind", ["state-space", "belief"])
+def test_an_idle_actor_asks_for_nothing(kind):
+    policy = new_actor(task_of(), GradientSettings(kind, "lqg", "idle")).policy(0)
+    action, memory = policy.predict(np.full((2, 4), 0.1))
+    assert not policy.predict(np.full((2, 4), 0.1), memory)[0].any()
+    assert not action.any() and memory.any()
+
+
+def test_innovations_of_an_unreduced_law_are_as_large_as_its_kalman_filter_s():
+    """C S Cᵀ + V on the plant and the load that it is designed for."""
+    plant, load = task_of().design.full_plant, PersistentLoad()
+    held, _, filtered = sampled_design(plant, load, rate_weight=1.0)
+    law = full_order_lqg(plant, load=load)
+    variance = np.diag(held.C @ filtered.matrix @ held.C.T) + np.diag(plant.sensor_noise) / held.interval
+    found = innovations_of(law, held.C.T / plant.sensor_full_scale, plant)
+    np.testing.assert_allclose(found, np.sqrt(variance) / plant.sensor_full_scale, rtol=1e-6)
+
+
+def test_a_filter_that_knows_that_readings_clip_takes_one_at_full_scale_for_what_it_expects():
+    """Three full scales expected and one shown: no innovation, as if three had been shown to a filter without a range."""
+    base, policy = linear_base("lqg", task_of()), new_actor(task_of(), GradientSettings("state-space", "lqg")).policy(0)
+    estimate = 3.0 * np.linalg.lstsq(base.readout.T, np.eye(4)[0], rcond=None)[0]
+    asked = (np.concatenate([estimate, 3.0 * np.eye(4)[0]]) @ base.fused)[-4:]
+    action, _ = policy.predict(np.eye(4)[0], np.concatenate([estimate, np.zeros(4)])[None].astype(np.float32))
+    np.testing.assert_allclose(action, np.clip(asked, -1.0, 1.0), atol=1e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["state-space", "belief"])
+def test_training_under_the_noise_of_the_design_does_not_leave_the_optimum(kind):
+    """In white noise alone nothing linear beats LQG, and the rate-penalised reference is 0.3 % from it."""
+    task = task_of("white", 0.25)
+    settings = GradientSettings(kind, "lqg", episodes=32, learning_rate=1e-3)
+    (policy,) = train_gradient(task, 0, lambda progress: None, settings, updates=60)
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=64, scenario="white", duration=0.25)
+    law = reference_lqg(task.design.full_plant)
+    trained, reference = (evaluate(each, envs, range(64)).relative_cost.value for each in (policy, law))
+    assert trained == pytest.approx(reference, rel=0.02)
+
+
+@pytest.mark.slow
+def test_a_gain_from_the_belief_that_starts_at_nothing_finds_lqg_s():
+    task = task_of("white", 0.25)
+    settings = GradientSettings("belief", "lqg", "idle", episodes=64, learning_rate=2e-2)
+    (policy,) = train_gradient(task, 0, lambda progress: None, settings, updates=80)
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=64, scenario="white", duration=0.25)
+    law = reference_lqg(task.design.full_plant)
+    trained, reference = (evaluate(each, envs, range(64)).relative_cost.value for each in (policy, law))
+    assert trained <= 1.05 * reference
 
 
 def test_runs_side_by_side_do_not_see_one_another(plant):

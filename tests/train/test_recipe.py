@@ -69,7 +69,7 @@ def test_what_is_wrong_is_told_in_a_sentence(before, after, sentence):
 
 
 def test_unknown_names_and_files_are_told(tmp_path):
-    with pytest.raises(ValueError, match="agent is 'dreamer', but must be one of gradient"):
+    with pytest.raises(ValueError, match="agent is 'dreamer', but must be one of belief, gradient"):
         named_recipe("dreamer")
     with pytest.raises(ValueError, match="absent.toml"):
         load_recipe(tmp_path / "absent.toml")

@@ -27,7 +27,7 @@ from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import as_path, check_folder
-from train.shared.held_out import SEEDS, held_out
+from train.shared.held_out import SEEDS
 from train.shared.lock import alone_in
 from train.shared.versions import versions
 
@@ -49,6 +49,7 @@ def benchmark(
     jobs: int = 1,
     trained: Path = FOLDER,
     environment: Mapping[str, Any] | None = None,
+    validation: bool = False,
     progress: Progress | None = None,
 ) -> BenchmarkTable:
     """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
@@ -62,6 +63,7 @@ def benchmark(
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
+    - ``validation``: on the seeds that contenders are chosen on, in place of those that they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
@@ -70,7 +72,7 @@ def benchmark(
     be written or another process is at work.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
-    progress = checked_progress(progress)
+    progress, validation = checked_progress(progress), checked("validation", validation, Flag())
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
@@ -80,7 +82,7 @@ def benchmark(
     if folder is not None:
         check_folder(folder)
     listed = listed_controllers(controllers, own, models, trusted, trained)
-    return of_listed(listed, scenarios, seeds, folder, jobs=jobs, arguments=arguments, progress=progress)
+    return of_listed(listed, scenarios, seeds, folder, jobs=jobs, arguments=arguments, validation=validation, progress=progress)
 
 
 def checked_progress(progress: Any) -> Progress | None:
@@ -99,11 +101,12 @@ def of_listed(
     *,
     jobs: int = 1,
     arguments: str = "{}",
+    validation: bool = False,
     progress: Progress | None = None,
 ) -> BenchmarkTable:
     """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON."""
     known, refused = read_scenarios(scenarios)
-    settings = [Setting(name, each, seeds, arguments) for name, each in known.items()]
+    settings = [Setting(name, each, seeds, arguments, validation) for name, each in known.items()]
     queue = [job for setting in settings for each in listed for job in jobs_of(each, setting)]
     check_paths(queue)
     made = configuration(settings, listed)
@@ -192,7 +195,7 @@ def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progr
 
 def configuration(settings: Sequence[Setting], listed: Sequence[ListedController]) -> dict[str, Any]:
     """How the table was made, as JSON can hold it."""
-    seeds = held_out(settings[0].seeds)
+    seeds = settings[0].episodes
     return {
         "seeds": [seeds[0], seeds[-1]],
         "environment": json.loads(settings[0].arguments),

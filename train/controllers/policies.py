@@ -139,11 +139,36 @@ class RecurrentPolicy(Policy):
         return action, np.hstack([hidden, np.zeros_like(action)])
 
 
-class ResidualPolicy(Policy):
-    """Adds to a linear controller and weighs it: u = clip((1 + g) ∘ u_lin + r), [g, r] the tanh output of a gated recurrent unit.
+class StateSpacePolicy(Policy):
+    """A linear law whose memory is that of a filter: [ξ, y'] @ fused = [ξ⁺ before feedback, u], and ξ⁺ gains clip(u) @ feedback.
 
-    The controller is given readings as ``train.learning.through_plant.linear_base`` has it: its filter knows that they clip.
-    Its memory is [hidden units | the controller's | voltages].
+    y' = y + (C ξ − clip(C ξ)) with C ξ = ξ @ readout, the readings that are expected: with it the innovation y' − C ξ is
+    y − clip(C ξ), that of a filter which knows that readings clip. Its memory is [ξ | voltages].
+    """
+
+    __slots__ = ()
+    kind = "state-space"
+
+    @property
+    def memory_size(self) -> int:
+        """The filter's memory, and the last voltages."""
+        return int(self.weights["feedback"].shape[1]) + len(self.lowest)
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """One product, and what the drive lets through of it."""
+        asked, onward = linear_law(self.weights, readings, memory[:, : self.weights["feedback"].shape[1]])
+        action = np.clip(asked, self.lowest, self.highest)
+        return action, np.hstack([onward + action @ self.weights["feedback"], action])
+
+    def knowing(self, memory: Array, voltages: Array) -> Array:
+        """The filter, too, goes by the voltages that were held."""
+        return np.hstack([_corrected(self.weights, memory, voltages), voltages])
+
+
+class ResidualPolicy(Policy):
+    """Adds to a linear law and weighs it: u = clip((1 + g) ∘ u_lin + r), [g, r] the tanh output of a gated recurrent unit.
+
+    The law is that of a ``StateSpacePolicy``. Its memory is [hidden units | the law's | voltages].
     """
 
     __slots__ = ()
@@ -151,28 +176,39 @@ class ResidualPolicy(Policy):
 
     @property
     def memory_size(self) -> int:
-        """Hidden units, the controller's memory and the last voltages."""
+        """Hidden units, the law's memory and the last voltages."""
         return int(self.weights["weight_hh"].shape[1]) + int(self.weights["feedback"].shape[1]) + len(self.lowest)
 
     def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
-        """The controller, the unit, and what both ask for."""
+        """The law, the unit, and what both ask for."""
         units, order = self.weights["weight_hh"].shape[1], self.weights["feedback"].shape[1]
         hidden, linear, voltages = memory[:, :units], memory[:, units : units + order], memory[:, units + order :]
-        predicted = linear @ self.weights["readout"]
-        given = readings + predicted - np.clip(predicted, -1.0, 1.0)
-        product = np.hstack([linear, given]) @ self.weights["fused"]
-        asked = np.clip(product[:, order:], self.lowest, self.highest)
+        asked, onward = linear_law(self.weights, readings, linear)
+        asked = np.clip(asked, self.lowest, self.highest)
         inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked])
         hidden, output = gated_unit(self.weights, inputs, hidden)
         weight, added = np.split(output, 2, axis=1)
         action = np.clip((1.0 + weight) * asked + added, self.lowest, self.highest)
-        return action, np.hstack([hidden, product[:, :order] + action @ self.weights["feedback"], action])
+        return action, np.hstack([hidden, onward + action @ self.weights["feedback"], action])
 
     def knowing(self, memory: Array, voltages: Array) -> Array:
-        """The controller's estimate, too, goes by the voltages that were held."""
-        m, order = voltages.shape[1], self.weights["feedback"].shape[1]
-        linear = memory[:, -m - order : -m] + (voltages - memory[:, -m:]) @ self.weights["feedback"]
-        return np.hstack([memory[:, : -m - order], linear, voltages])
+        """The law's estimate, too, goes by the voltages that were held."""
+        units = self.weights["weight_hh"].shape[1]
+        return np.hstack([memory[:, :units], _corrected(self.weights, memory[:, units:], voltages), voltages])
+
+
+def linear_law(weights: Mapping[str, Array], readings: Array, memory: Array) -> tuple[Array, Array]:
+    """Voltages (N, m) that a law of these ``fused`` and ``readout`` asks for, and its next memory (N, s) before feedback."""
+    predicted = memory @ weights["readout"]
+    given = readings + predicted - np.clip(predicted, -1.0, 1.0)
+    product = np.hstack([memory, given]) @ weights["fused"]
+    return product[:, memory.shape[1] :], product[:, : memory.shape[1]]
+
+
+def _corrected(weights: Mapping[str, Array], memory: Array, voltages: Array) -> Array:
+    """The law's part (N, s) of a memory [ξ | voltages] once other ``voltages`` were held."""
+    m = voltages.shape[1]
+    return memory[:, :-m] + (voltages - memory[:, -m:]) @ weights["feedback"]
 
 
 def gated_unit(weights: Mapping[str, Array], inputs: Array, hidden: Array) -> tuple[Array, Array]:

@@ -17,11 +17,13 @@ from beamenv.configuration.writing import write_whole
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.lstm_policy import LSTMPolicy
-from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
+from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy, StateSpacePolicy
 from train.controllers.policy_parts import checked_settings, checked_weights, limits
 from train.shared.files import as_path, read_json, write_json
 
-KINDS: Mapping[str, type[Policy]] = {kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, ResidualPolicy, LSTMPolicy)}
+KINDS: Mapping[str, type[Policy]] = {
+    kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, LSTMPolicy)
+}
 
 FORMAT = 1
 """Of ``agent.json``, and what it says if it says none."""

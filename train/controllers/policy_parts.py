@@ -17,6 +17,7 @@ Shapes = dict[str, tuple[int, ...]]
 NEEDED: Mapping[str, Mapping[str, Kind]] = {
     "history": {"input_gain": Number(), "held": Count()},
     "recurrent": {"input_gain": Number()},
+    "state-space": {},
     "residual": {"input_gain": Number()},
     "lstm": {"input_gain": Number(), "held": Count()},
 }
@@ -113,11 +114,15 @@ def _recurrent(sizes: _Sizes, m: int, p: int | None) -> Shapes:
     return _cells(sizes, 3, p + m, m)
 
 
+def _state_space(sizes: _Sizes, m: int, p: int | None) -> Shapes:
+    order = sizes.of("feedback")[1]
+    p = sizes.of("readout")[1] if p is None else p
+    return {"fused": (order + p, order + m), "feedback": (m, order), "readout": (order, p)}
+
+
 def _residual(sizes: _Sizes, m: int, p: int | None) -> Shapes:
     p = max(sizes.of("weight_ih")[1] - 2 * m, 1) if p is None else p
-    order = sizes.of("feedback")[1]
-    law = {"fused": (order + p, order + m), "feedback": (m, order), "readout": (order, p)}
-    return {**_cells(sizes, 3, p + 2 * m, 2 * m), **law}
+    return {**_cells(sizes, 3, p + 2 * m, 2 * m), **_state_space(sizes, m, p)}
 
 
 def _lstm(sizes: _Sizes, m: int, p: int | None) -> Shapes:
@@ -127,6 +132,7 @@ def _lstm(sizes: _Sizes, m: int, p: int | None) -> Shapes:
 EXPECTED: Mapping[str, Callable[[_Sizes, int, int | None], Shapes]] = {
     "history": _history,
     "recurrent": _recurrent,
+    "state-space": _state_space,
     "residual": _residual,
     "lstm": _lstm,
 }

@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Annotated, Any
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
+from baselines.design.controller import Array
 from beamenv.configuration import Number, Positive, configuration
 from beamenv.plant.plant import Plant, normalised
-from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy
-from train.learning.ranges import INSTANTS, UNITS
-from train.learning.through_plant.linear_base import LinearBase
+from train.controllers.policies import Policy, RecurrentPolicy, ResidualPolicy, StateSpacePolicy
+from train.learning.ranges import UNITS
+from train.learning.through_plant.linear_base import SPREAD, LinearBase
 from train.learning.through_plant.windows import Memory
 
 
@@ -22,8 +24,6 @@ class ActorSettings:
 
     units: Annotated[int, UNITS] = 48
     """Hidden units of a GRU: twice the plant's states, about."""
-    history: Annotated[int, INSTANTS] = 24
-    """Instants that a linear policy sees, 12 ms."""
     input_gain: Positive = 4.0
     """Readings are a few per cent of full scale most of the time."""
     output_gain: Annotated[float, Number(ge=0.0)] = 0.1
@@ -175,27 +175,93 @@ class ResidualActor(Actor):
         return ResidualPolicy("residual (LQG + GRU)", weights, asdict(self.settings), *self._bounds())
 
 
-class LinearActor(Actor):
-    """A linear function of the last readings and voltages."""
+class StateSpaceActor(Actor):
+    """A linear law with a memory, started at a law of the design plant, or, ``idle``, at no voltages; all its matrices are free."""
 
-    def __init__(self, plant: Plant, settings: ActorSettings, runs: int) -> None:
+    readout: Tensor
+
+    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase, idle: bool) -> None:
         super().__init__(plant, settings, runs)
-        self.width = self.sensors + self.voltages
-        inputs = settings.history * self.width
-        self.out = Layer(runs, inputs, self.voltages, inputs**-0.5, settings.output_gain, bias=False)
+        order, fused = base.feedback.shape[1], base.fused.copy()
+        fused[:, order:] *= float(not idle)
+        self.fused, self.feedback = (nn.Parameter(_for_each(runs, matrix)) for matrix in (fused, base.feedback))
+        self.register_buffer("readout", torch.tensor(base.readout, dtype=torch.float32))
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """The window of past instants."""
-        return (self.settings.history * self.width,)
+        """The law's memory."""
+        return (self.feedback.shape[2],)
 
     def forward(self, readings: Tensor, memory: Memory) -> tuple[Tensor, Memory]:
         """Voltages and memory."""
-        window, voltages = memory
-        window = torch.cat([window[:, self.width :], readings, voltages], dim=1)
-        voltages = self._within(self.out(self.settings.input_gain * window))
-        return voltages, (window, voltages)
+        linear, _ = memory
+        predicted = linear @ self.readout
+        given = readings + predicted - torch.clamp(predicted, -1.0, 1.0)
+        product = _run_by_run(torch.cat([linear, given], dim=1), self.fused)
+        order = linear.shape[1]
+        voltages = self._within(product[:, order:])
+        return voltages, (product[:, :order] + _run_by_run(voltages, self.feedback), voltages)
 
     def policy(self, run: int) -> Policy:
         """What a run has learnt, as arrays."""
-        return HistoryPolicy("linear", self.out.arrays(run, "0"), {**asdict(self.settings), "held": 1}, *self._bounds())
+        weights = {"fused": _array(self.fused[run]), "feedback": _array(self.feedback[run]), "readout": _array(self.readout)}
+        return StateSpacePolicy("optimised linear", weights, {}, *self._bounds())
+
+
+class BeliefActor(Actor):
+    """A gain from the belief of a law's filter, which stays as it is: its memory ξ and the innovations y − clip(C ξ).
+
+    What the gain is from is scaled to equal root mean squares, ``SPREAD``, so that a step of the optimiser is as large a share of
+    what each number does: errors in the gains from the blade's high modes destabilise.
+    """
+
+    onward: Tensor
+    feedback: Tensor
+    readout: Tensor
+    unit: Tensor
+
+    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase, innovations: Array, idle: bool) -> None:
+        super().__init__(plant, settings, runs)
+        order = base.feedback.shape[1]
+        asked, unit = base.fused[:, order:], innovations / SPREAD
+        gain = np.vstack([asked[:order] + base.readout @ asked[order:], unit[:, None] * asked[order:]])
+        self.gain = nn.Parameter(_for_each(runs, gain * float(not idle)))
+        fixed = {"onward": base.fused[:, :order], "feedback": base.feedback, "readout": base.readout, "unit": unit}
+        for name, matrix in fixed.items():
+            self.register_buffer(name, torch.tensor(matrix, dtype=torch.float32))
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """The filter's memory."""
+        return (self.feedback.shape[1],)
+
+    def forward(self, readings: Tensor, memory: Memory) -> tuple[Tensor, Memory]:
+        """Voltages and memory."""
+        belief, _ = memory
+        predicted = belief @ self.readout
+        innovation = readings - torch.clamp(predicted, -1.0, 1.0)
+        voltages = self._within(_run_by_run(torch.cat([belief, innovation / self.unit], dim=1), self.gain))
+        onward = torch.cat([belief, predicted + innovation], dim=1) @ self.onward
+        return voltages, (onward + voltages @ self.feedback, voltages)
+
+    def policy(self, run: int) -> Policy:
+        """What a run has learnt, as arrays: the same law of readings."""
+        order = self.feedback.shape[1]
+        from_reading = self.gain[run, order:] / self.unit[:, None]
+        asked = torch.cat([self.gain[run, :order] - self.readout @ from_reading, from_reading])
+        weights = {"fused": torch.cat([self.onward, asked], dim=1), "feedback": self.feedback, "readout": self.readout}
+        return StateSpacePolicy("linear on the belief", {n: _array(w) for n, w in weights.items()}, {}, *self._bounds())
+
+
+def _run_by_run(rows: Tensor, matrices: Tensor) -> Tensor:
+    """Rows (rows, k), in equal parts of the runs, times each run's own matrix (runs, k, l)."""
+    runs = len(matrices)
+    return torch.bmm(rows.view(runs, -1, rows.shape[1]), matrices).view(len(rows), -1)
+
+
+def _for_each(runs: int, matrix: Array) -> Tensor:
+    return torch.tensor(matrix, dtype=torch.float32).repeat(runs, 1, 1)
+
+
+def _array(matrix: Tensor) -> Any:
+    return matrix.detach().numpy().copy()

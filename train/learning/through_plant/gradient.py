@@ -19,8 +19,15 @@ from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, PASSES, RATE
 from train.learning.session import Budget, follow
-from train.learning.through_plant.actors import Actor, ActorSettings, LinearActor, RecurrentActor, ResidualActor
-from train.learning.through_plant.linear_base import BASES, linear_base
+from train.learning.through_plant.actors import (
+    Actor,
+    ActorSettings,
+    BeliefActor,
+    RecurrentActor,
+    ResidualActor,
+    StateSpaceActor,
+)
+from train.learning.through_plant.linear_base import BASES, belief_base, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import Report, on_training_bank, uncontrolled_cost
 
@@ -29,10 +36,12 @@ from train.learning.training import Report, on_training_bank, uncontrolled_cost
 class GradientSettings:
     """One experiment."""
 
-    actor: Annotated[str, Choice(("recurrent", "residual", "linear"))] = "recurrent"
-    """"recurrent", "residual" or "linear"."""
+    actor: Annotated[str, Choice(("recurrent", "residual", "state-space", "belief"))] = "recurrent"
+    """"recurrent", "residual", "state-space" (all matrices of a linear law) or "belief" (its gain alone, its filter as it is)."""
     base: Annotated[str, Choice(BASES)] = "lqg"
-    """What a residual actor adds to: see ``train.learning.through_plant.linear_base``."""
+    """What a residual actor adds to and a linear one starts from: see ``train.learning.through_plant.linear_base``."""
+    start: Annotated[str, Choice(("base", "idle"))] = "base"
+    """Whether a linear actor starts as its base, or without voltages: of the base it then has the filter alone."""
     actor_settings: ActorSettings = field(default_factory=ActorSettings)
     runs: Annotated[int, PASSES] = 1
     """Independent trainings side by side."""
@@ -53,8 +62,10 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
     plant, own, runs = task.design_plant, settings.actor_settings, settings.runs
     if settings.actor == "recurrent":
         return RecurrentActor(plant, own, runs)
-    if settings.actor == "linear":
-        return LinearActor(plant, own, runs)
+    if settings.actor == "state-space":
+        return StateSpaceActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
+    if settings.actor == "belief":
+        return BeliefActor(plant, own, runs, *belief_base(settings.base, task), settings.start == "idle")
     return ResidualActor(plant, own, runs, linear_base(settings.base, task))
 
 

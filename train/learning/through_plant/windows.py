@@ -45,6 +45,7 @@ class Windows:
         self._generator = generator
         self._blades = Blades(task.bank, task.scenario, episodes)
         self._operators = task.bank.operators.convert(_float)
+        self._moving = task.bank.runs or task.bank.walk is not None  # blades come to other plants within an episode
         self._sensors, self._energetic = len(task.plant.C), task.plant.blade_states
         self._phase: NDArray[np.int64] = np.arange(episodes) % self.count
         self._loads = np.zeros((*self._blades.shape, 2))
@@ -117,14 +118,15 @@ class Windows:
         if self._memory is None:
             self._memory = actor.start(len(self._phase))
         state, readings, memory, signals = self._state, self._readings, self._memory, self._signals
-        cost = torch.zeros(len(state))
+        cost, operators = torch.zeros(len(state)), self._now()
         for loads, disturbance in self._disturbances():
             voltages, memory = actor(readings, memory)
             acting = voltages
             if signals is not None:
                 acting, signals = drive(self._faults, self._hysteresis, signals, voltages)
-            state, output, _, increment = advance(self._now(), torch.cat([state, acting, loads], dim=1))
+            state, output, _, increment = advance(operators, torch.cat([state, acting, loads], dim=1))
             state = self._elapse(state)
+            operators = self._now() if self._moving else operators
             readings, signals = self._read(output, disturbance, signals)
             cost = cost + increment
         left = 0.5 * (state[:, : self._energetic] ** 2).sum(dim=1)

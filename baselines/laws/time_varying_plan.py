@@ -1,4 +1,4 @@
-"""The gains of a law that is told each episode's truth, worked out when a truth is first met."""
+"""The gains of a law that is told what each episode has, worked out when such a truth is first met."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from baselines.design.lyapunov import accumulated
 from baselines.design.time_varying import Stage, filter_gains, regulator_gains
 from baselines.laws.foreseen_load import foreseen_loads, mean_square
 from baselines.laws.lqg import known_sensor_noise
-from beamenv.knowledge import Truth
+from beamenv.knowledge import Prior, Truth
 from beamenv.plant.plant import normalised
 from beamenv.simulation.plants.sampled_bank import SampledBank, sampled_bank
 
@@ -35,7 +35,7 @@ class Plan:
     another, an instant has that of its own.
     """
 
-    truth: Truth
+    known: Prior | Truth
     plants: SampledBank
     loads: tuple[LoadModel, ...]
     """Of each plant's speed."""
@@ -48,19 +48,19 @@ class Plan:
     """(T, s, p)."""
 
     @classmethod
-    def of(cls, truth: Truth) -> Plan:
+    def of(cls, known: Prior | Truth) -> Plan:
         """Without any gains yet; ``ValueError`` for a bank of several blades, or of plants that wander."""
-        bank, scenario, plant = truth.bank, truth.scenario, normalised(truth.plant)
+        bank, scenario, plant = known.bank, known.scenario, normalised(known.bank.plant)
         if bank.groups > 1:
             raise ValueError(f"truth has a bank of {bank.groups} blades, but must have that of a single one.")
         if bank.walk is not None:
             raise ValueError("truth has plants that wander within an episode, but allowed are one an episode, and a run-up's.")
         if not scenario.sensor_noise:
             plant = replace(plant, sensor_noise=np.zeros_like(plant.sensor_noise))
-        models = {speed: _model(truth, speed) for speed in dict.fromkeys(bank.speeds.tolist())}
+        models = {speed: _model(known, speed) for speed in dict.fromkeys(bank.speeds.tolist())}
         white = scenario.white_load * plant.process_noise, known_sensor_noise(plant)
         covariances = white[0] / plant.control_interval, white[1] / plant.control_interval
-        return cls(truth, sampled_bank(bank), tuple(models[speed] for speed in bank.speeds.tolist()), covariances)
+        return cls(known, sampled_bank(bank), tuple(models[speed] for speed in bank.speeds.tolist()), covariances)
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -70,7 +70,7 @@ class Plan:
     @property
     def slots(self) -> int:
         """D: intervals by which a voltage may come late."""
-        return self.truth.scenario.drive.delay[1]
+        return self.known.scenario.drive.delay[1]
 
     @property
     def states(self) -> int:
@@ -82,7 +82,7 @@ class Plan:
         """(N,): the place of each truth (N, 2 + m + 2 p), the gains of new ones worked out together."""
         kept = told.copy()
         kept[:, -self.sizes[2] :] = 0.0  # biases, which are told and taken off
-        if self.truth.bank.runs:
+        if self.known.bank.runs:
             kept[:, 0] = 0.0
         keys = [row.tobytes() for row in kept]
         new = {key: row for key, row in zip(keys, kept, strict=True) if key not in self.places}
@@ -92,7 +92,7 @@ class Plan:
         return np.array([self.places[key] for key in keys], dtype=np.int64)
 
     def _work_out(self, told: Array) -> None:
-        steps, runs = self.truth.steps, self.truth.bank.runs
+        steps, runs = self.known.steps, self.known.bank.runs
         plants = [np.full(len(told), k) for k in range(steps)] if runs else [told[:, 0].astype(np.int64)] * steps
         always = None if runs else self.stage(plants[0], told)
         stages = (always or self.stage(each, told) for each in plants)
@@ -141,7 +141,7 @@ class Plan:
 
     def beginning(self, plant: Rows) -> Array:
         """(G, s, s): covariance of the state at t = 0: of static deflections that are released, and of loads that may be on."""
-        n, scenario, release = self.sizes[0], self.truth.scenario, self.truth.bank.release[plant]
+        n, scenario, release = self.sizes[0], self.known.scenario, self.known.bank.release[plant]
         begun = np.zeros((len(plant), self.states, self.states))
         released = 0.5 * scenario.deflection * mean_square(scenario.magnitude)
         begun[:, :n, :n] = released * release.swapaxes(-1, -2) @ release
@@ -152,6 +152,6 @@ class Plan:
         return begun
 
 
-def _model(truth: Truth, speed: float) -> LoadModel:
-    loads = foreseen_loads(truth.scenario, speed)
-    return reduce(add, (load.model(truth.plant.control_interval) for load in loads), _NO_LOAD)
+def _model(known: Prior | Truth, speed: float) -> LoadModel:
+    loads = foreseen_loads(known.scenario, speed)
+    return reduce(add, (load.model(known.bank.plant.control_interval) for load in loads), _NO_LOAD)
