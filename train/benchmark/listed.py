@@ -18,7 +18,7 @@ from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
-from train.controllers.tiers import LEARNT
+from train.controllers.tiers import LEARNT as LEARNT
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
