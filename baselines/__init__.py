@@ -2,6 +2,7 @@
 
 from baselines.analysis.frequency_response import h_infinity_norm
 from baselines.analysis.margins import StabilityMargins, stability_margins
+from baselines.analysis.small_gain import small_gain
 from baselines.analysis.stationary import closed_loop_poles, stationary_cost
 from baselines.design.controller import Controller
 from baselines.design.hypothesis import Hypothesis
@@ -79,6 +80,7 @@ __all__ = [
     "run_up_lqg",
     "scheduled_lqg",
     "scheduled_lqg_for",
+    "small_gain",
     "stability_margins",
     "stationary_cost",
     "velocity_feedback",

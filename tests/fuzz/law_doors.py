@@ -54,6 +54,11 @@ LINEAR = Kind(
     lambda value: value if isinstance(value, baselines.LinearController) else NOTHING,
     st.sampled_from(["clipped", "true"]).map(lambda name: clipped() if name == "clipped" else small.law().__class__),
 )
+PLANTS = Kind(
+    "plants",
+    lambda value: value if isinstance(value, (list, tuple)) and value and all(isinstance(one, Plant) for one in value) else NOTHING,
+    st.sampled_from([[], [None], ()]),
+)
 HYPOTHESES = Kind(
     "hypotheses",
     lambda value: (
@@ -424,6 +429,14 @@ DOORS = [
         {"plant": PLANT, "controller": LINEAR, "at": TEXT},
         lambda: {"plant": small.plant(), "controller": small.law(), "at": "input"},
         public="stability_margins",
+    ),
+    Door(
+        "small_gain",
+        baselines.small_gain,
+        {"plant": PLANT, "controller": LINEAR, "others": PLANTS},
+        lambda: {"plant": small.plant(), "controller": small.law(), "others": [small.plant()]},
+        told=("others",),
+        public="small_gain",
     ),
     Door(
         "evaluate",
