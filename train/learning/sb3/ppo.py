@@ -9,19 +9,20 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Annotated, Any, ClassVar
 
-import numpy as np
 import torch
 from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
-from beamenv.configuration import Natural, Number, Positive, Refused, Share, configuration
-from beamenv.plant.plant import normalised
+from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Share, configuration
 from beamenv.task import Task
-from train.controllers.policies import HistoryPolicy, Policy
+from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricPolicy
 from train.learning.sb3.cloning import Cloning, clone
+from train.learning.sb3.quadratic import FitCritic, QuadraticPolicy
 from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs
+from train.learning.sb3.side_by_side import SideBySide
 
 
 @configuration("settings")
@@ -30,11 +31,19 @@ class PPOSettings:
 
     blades: Annotated[int, BLADES] = 1024
     """Environments stepped together."""
+    sees: Annotated[str, Choice(("history", "belief"))] = "history"
+    """The last readings and voltages, or the belief of the design's filter: see ``train.learning.sb3.belief``."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
+    actor: Annotated[str, Choice(("tanh", "linear"))] = "tanh"
+    """Two tanh layers and a linear one, or the latter alone, which begins without voltages."""
+    critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
+    """Two tanh layers on the true state, or a quadratic of it and of the coming load in closed form, for one scenario."""
     held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms: exploration that lasts tells more of the slow modes than white noise
     does, against the white load."""
+    approach: Annotated[float, RATE] = 1.0
+    """Share of the way from the last voltages to an action that they go: exploration that wanders in place of jumping."""
     rollout: Annotated[int, INSTANTS] = 16
     """Actions of every blade between updates."""
     batch: Annotated[int, SAMPLES] = 8192
@@ -43,6 +52,8 @@ class PPOSettings:
     """Passes over a rollout."""
     learning_rate: Annotated[float, RATE] = 1e-3
     """Adam's, falling linearly to zero over the training."""
+    damping: Annotated[float, RATE] = 1e-5
+    """Adam's ε: gradients far below it, of what hardly moves, change weights in proportion and not by the whole rate."""
     discount: Annotated[float, RATE] = 0.95
     """γ: 20 actions, 40 ms."""
     trace: Share = 0.8
@@ -63,10 +74,22 @@ class PPOSettings:
     """Updates that train the critic alone, for an actor that is good already."""
     smoothing: Share = 0.2
     """Weight of the latest rollout in the running cost."""
+    validation: Natural = 0
+    """Updates between two looks at the policy without exploration, on validation seeds; the best is kept. 0: the last is."""
 
     def __post_init__(self) -> None:
         if self.batch > self.blades * self.rollout:
             raise Refused("batch", self.batch, f"at most the {self.blades * self.rollout} samples of a rollout, blades · rollout")
+
+
+def _layered(settings: PPOSettings, envs: Envs) -> dict[str, Any]:
+    """What policies on a window or a belief are made of."""
+    made: dict[str, Any] = {"linear": settings.actor == "linear", "optimizer_kwargs": {"eps": settings.damping}}
+    if settings.critic == "quadratic":
+        if isinstance(envs, SideBySide):
+            raise Refused("settings.critic", settings.critic, "'network' where several scenarios are trained on")
+        made["modes"] = envs.blades.plant.blade_states // 2
+    return made
 
 
 class OnPolicyTraining(SB3Training):
@@ -76,9 +99,10 @@ class OnPolicyTraining(SB3Training):
     networks: ClassVar[Any]
 
     def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
-        envs = training_envs(tasks, settings, seed)
+        quadratic = settings.critic == "quadratic"
+        envs = training_envs(tasks, settings, seed, shows_loads=quadratic and len(tasks) == 1)
         model = self.algorithm(
-            self.networks,
+            QuadraticPolicy if quadratic else self.networks,
             envs,
             n_steps=settings.rollout,
             batch_size=settings.batch,
@@ -87,12 +111,14 @@ class OnPolicyTraining(SB3Training):
             gamma=settings.discount,
             gae_lambda=settings.trace,
             clip_range=settings.clip,
+            vf_coef=0.0 if quadratic else 0.5,
             max_grad_norm=settings.gradient_norm,
             policy_kwargs={
                 "seen": envs.seen,
                 "actor_gain": settings.input_gain,
                 "units": settings.units,
                 "log_std_init": settings.exploration,
+                **self._made(settings, envs),
             },
             seed=seed,
             device="cpu",
@@ -104,6 +130,14 @@ class OnPolicyTraining(SB3Training):
 
     def _start_from(self, teacher: Policy, model: Any, envs: Envs, settings: PPOSettings, seed: int) -> None:
         raise NotImplementedError
+
+    @staticmethod
+    def _made(settings: PPOSettings, envs: Envs) -> dict[str, Any]:
+        """Further arguments of the networks."""
+        return {}
+
+    def _callbacks(self) -> list[BaseCallback]:
+        return [FitCritic()] if self.settings.critic == "quadratic" else []
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}
@@ -118,7 +152,13 @@ class PPOTraining(OnPolicyTraining):
 
     algorithm, networks = PPO, AsymmetricPolicy
 
+    _made = staticmethod(_layered)
+
     def _start_from(self, teacher: Policy, model: Any, envs: Envs, settings: PPOSettings, seed: int) -> None:
+        if settings.sees != "history" or settings.approach < 1.0:
+            raise ValueError(
+                "teacher is given, but only an agent that sees a history, and goes all the way to its actions, starts from one."
+            )
         clone(nn.Sequential(*self._actor(model)), envs, teacher, settings.input_gain, Cloning(), seed)
 
     @staticmethod
@@ -129,8 +169,7 @@ class PPOTraining(OnPolicyTraining):
     def _held_back(self) -> list[nn.Parameter]:
         return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
 
-    def policy(self) -> HistoryPolicy:
+    def policy(self) -> Policy:
         """The actor's mean as arrays."""
         weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
-        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
-        return HistoryPolicy("PPO", weights, asdict(self.settings), lowest, highest)
+        return self._as_policy("PPO", weights, asdict(self.settings))

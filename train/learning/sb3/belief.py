@@ -1,0 +1,114 @@
+"""What agents may be shown in place of readings: the belief of a Kalman filter that knows the design, mode by mode.
+
+The filter has all modes of the design blade, so that what an agent makes of some of them cannot drive the others unseen. Blade
+states are shown in energy coordinates, whose squares are energy, in one common unit: an error of a gain then does as much harm to
+one mode as to another, where units of their own would let the uppermost modes, which hardly move, go unstable first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.vector import VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solve_discrete_lyapunov
+
+from baselines import PersistentLoad
+from baselines.laws.lqg import optimal_filter, sampled_with_loads
+from beamenv import VectorSensorHistory
+from beamenv.blade.design import Design
+from beamenv.plant.plant import drive_limit
+from train.controllers.belief_policy import FILTER, corrected
+
+Array = NDArray[Any]
+
+
+class Belief(NamedTuple):
+    """A filter in normalised units, as ``train.controllers.belief_policy.BeliefPolicy`` has it; n states, f of them shown."""
+
+    transition: Array
+    """(n, n)"""
+    input: Array
+    """(m, n)"""
+    correction: Array
+    """(p, n)"""
+    readout: Array
+    """(n, p)"""
+    shown: Array
+    """(n, f): energy coordinates of the blade over their common size, and the lasting load over its size."""
+
+
+def design_belief(design: Design) -> Belief:
+    """Of the design blade's full plant under white loads and ``PersistentLoad()``; ``ValueError`` where it has no filter."""
+    plant, load = design.full_plant, PersistentLoad()
+    held = sampled_with_loads(plant, load)
+    full_scale, modal, n = plant.sensor_full_scale, plant.blade_states, len(held.A)
+    noise = held.disturbance_input @ held.process_noise @ held.disturbance_input.T
+    size = np.sqrt(np.diag(solve_discrete_lyapunov(held.A, noise))[:modal].mean())
+    shown = np.delete(np.diag(np.repeat([1.0 / size, 1.0 / load.magnitude], [modal, n - modal])), np.s_[modal : n - 2], axis=1)
+    gain = optimal_filter(plant, held).gain * full_scale
+    parts = held.A.T, (held.B * drive_limit(plant)).T, gain.T, held.C.T / full_scale, shown
+    return Belief(*(np.ascontiguousarray(part, dtype=np.float32) for part in parts))
+
+
+class RollingBelief:
+    """The beliefs of a batch of blades, kept up as ``beamenv.envs.history.RollingHistory`` keeps windows."""
+
+    def __init__(self, count: int, belief: Belief) -> None:
+        self._belief = belief
+        self._filter: Mapping[str, Array] = dict(zip(FILTER, belief, strict=True))
+        self._before, self._estimate = (np.zeros((count, len(belief.transition)), np.float32) for _ in range(2))
+        self._voltages = np.zeros((count, len(belief.input)), np.float32)
+
+    def begin(self, readings: ArrayLike, rows: Any = slice(None)) -> None:
+        """Forget the past of ``rows``; ``readings`` (len(rows), p) are all there is."""
+        self._before[rows] = 0.0
+        self._voltages[rows] = 0.0
+        self._read(rows, readings)
+
+    def append(self, readings: ArrayLike, voltages: ArrayLike) -> None:
+        """One more instant: ``readings`` (N, p) after ``voltages`` (N, m), both normalised."""
+        self._voltages[...] = voltages
+        self._before[...] = self._estimate @ self._belief.transition + self._voltages @ self._belief.input
+        self._read(slice(None), readings)
+
+    def replace_last(self, rows: Any, readings: ArrayLike, voltages: ArrayLike) -> None:
+        """Put another last instant in the place of that of ``rows``."""
+        self._before[rows] += (np.asarray(voltages, np.float32) - self._voltages[rows]) @ self._belief.input
+        self._voltages[rows] = voltages
+        self._read(rows, readings)
+
+    def _read(self, rows: Any, readings: ArrayLike) -> None:
+        self._estimate[rows] = corrected(self._filter, self._before[rows], np.asarray(readings))
+
+    def window(self, rows: Any = slice(None)) -> Array:
+        """What is shown (len(rows), f + m): the beliefs, and the voltages held before."""
+        return np.hstack([self._estimate[rows] @ self._belief.shown, self._voltages[rows]])
+
+    def state_dict(self) -> dict[str, Array]:
+        """Copies of what moves."""
+        return {name: getattr(self, f"_{name}").copy() for name in ("before", "estimate", "voltages")}
+
+    def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
+        """Go back to a ``state_dict`` of an equally made batch."""
+        for name, array in state.items():
+            if name != "over":
+                getattr(self, f"_{name}")[...] = np.asarray(array)
+
+
+class VectorBelief(VectorSensorHistory):
+    """Observes the beliefs of ``belief`` in place of readings: (N, f + m).
+
+    - `env`: a `RotatingBeamVectorEnv` with normalised units.
+    """
+
+    def __init__(self, env: VectorEnv[Any, Any, NDArray[Any]], belief: Belief) -> None:
+        super().__init__(env, length=1)
+        self._history: Any = RollingBelief(env.num_envs, belief)
+        width = belief.shown.shape[1] + len(belief.input)
+        self.single_observation_space = Box(-np.inf, np.inf, (width,), np.float32)
+        self.observation_space = batch_space(self.single_observation_space, env.num_envs)
