@@ -17,7 +17,7 @@ FILTER = ("transition", "input", "correction", "readout", "shown")
 
 
 class BeliefPolicy(Policy):
-    """Asked every ``held`` instants: the layers' voltages from [x̂ @ shown | voltages held before], or ``approach`` of the way there.
+    """Asked every ``held`` instants: what the layers make of [x̂ @ shown | voltages held before], or ``approach`` of the way there.
 
     x̂ ← x̂ + (y − clip(x̂ @ readout)) @ correction, x̂⁺ = x̂ @ transition + u @ input: a filter that knows that readings clip and
     drives saturate. Its memory is [x̂ before the next reading | intervals the voltages have been held | voltages].

@@ -23,7 +23,7 @@ from train.controllers.policy_parts import checked_settings, checked_weights, li
 from train.shared.files import as_path, read_json, write_json
 
 KINDS: Mapping[str, type[Policy]] = {
-    kind.kind: kind for kind in (HistoryPolicy, BeliefPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, LSTMPolicy)
+    kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, LSTMPolicy, BeliefPolicy)
 }
 
 FORMAT = 1

@@ -26,10 +26,9 @@ NEEDED: Mapping[str, Mapping[str, Kind]] = {
 
 ACTIVATIONS = ("tanh", "relu")
 
-OPTIONAL: Mapping[str, Mapping[str, Kind]] = {
-    kind: {"activation": Choice(ACTIVATIONS), "squashed": Flag(), "approach": Number(gt=0.0, le=1.0)}
-    for kind in ("history", "belief")
-}
+_LAYERED = {"activation": Choice(ACTIVATIONS), "squashed": Flag(), "approach": Number(gt=0.0, le=1.0)}
+
+OPTIONAL: Mapping[str, Mapping[str, Kind]] = {"history": _LAYERED, "belief": _LAYERED}
 
 
 def limits(lowest: Any, highest: Any) -> tuple[Array, Array]:

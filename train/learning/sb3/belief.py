@@ -1,8 +1,8 @@
 """What agents may be shown in place of readings: the belief of a Kalman filter that knows the design, mode by mode.
 
-The filter has all modes of the design blade, so that what an agent makes of some of them cannot drive the others unseen. Blade
-states are shown in energy coordinates, whose squares are energy, in one common unit: an error of a gain then does as much harm to
-one mode as to another, where units of their own would let the uppermost modes, which hardly move, go unstable first.
+The filter has all modes of the design blade, and agents are shown the slow ones. As long as the filter is right, what is not fed back
+cannot be made unstable, whatever an agent in the making does with the rest: estimates of one mode do not hold the motion of another.
+States are shown in energy coordinates, whose squares are energy, in one common unit.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
 from baselines import PersistentLoad
-from baselines.laws.lqg import optimal_filter, sampled_with_loads
+from baselines.laws.lqg import optimal_filter, optimal_regulator, sampled_with_loads
 from beamenv import VectorSensorHistory
 from beamenv.blade.design import Design
+from beamenv.configuration import Refused
 from beamenv.plant.plant import drive_limit
 from train.controllers.belief_policy import FILTER, corrected
 
@@ -42,17 +43,34 @@ class Belief(NamedTuple):
     """(n, f): energy coordinates of the blade over their common size, and the lasting load over its size."""
 
 
-def design_belief(design: Design) -> Belief:
-    """Of the design blade's full plant under white loads and ``PersistentLoad()``; ``ValueError`` where it has no filter."""
+def design_belief(design: Design, modes: int) -> Belief:
+    """Of the design blade's full plant under white loads and ``PersistentLoad()``, the slowest ``modes`` of it shown.
+
+    ``ValueError`` where the plant has no such filter, and for more modes than it has.
+    """
     plant, load = design.full_plant, PersistentLoad()
     held = sampled_with_loads(plant, load)
     full_scale, modal, n = plant.sensor_full_scale, plant.blade_states, len(held.A)
+    if modes > modal // 2:
+        raise Refused("settings.modes", modes, f"at most the {modal // 2} of the design")
     noise = held.disturbance_input @ held.process_noise @ held.disturbance_input.T
     size = np.sqrt(np.diag(solve_discrete_lyapunov(held.A, noise))[:modal].mean())
-    shown = np.delete(np.diag(np.repeat([1.0 / size, 1.0 / load.magnitude], [modal, n - modal])), np.s_[modal : n - 2], axis=1)
+    kept = [*range(modes), *range(modal // 2, modal // 2 + modes), n - 2, n - 1]
+    shown = np.diag(np.repeat([1.0 / size, 1.0 / load.magnitude], [modal, n - modal]))[:, kept]
     gain = optimal_filter(plant, held).gain * full_scale
     parts = held.A.T, (held.B * drive_limit(plant)).T, gain.T, held.C.T / full_scale, shown
     return Belief(*(np.ascontiguousarray(part, dtype=np.float32) for part in parts))
+
+
+def regulator_on(belief: Belief, design: Design, approach: float = 1.0) -> Array:
+    """(m, f + m): the sampled regulator's gain as a linear actor on what a ``design_belief`` shows has it.
+
+    What is not shown has no part in it. ``approach`` of the way to its actions lie the regulator's voltages.
+    """
+    plant = design.full_plant
+    gain = -optimal_regulator(plant, sampled_with_loads(plant, PersistentLoad())).gain / drive_limit(plant)[:, None]
+    held = (1.0 - approach) * np.eye(len(gain))
+    return np.asarray(np.hstack([gain @ np.linalg.pinv(belief.shown.astype(np.float64)).T, -held]) / approach)
 
 
 class RollingBelief:

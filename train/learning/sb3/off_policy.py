@@ -21,7 +21,7 @@ from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
-from train.learning.sb3.cloning import Cloning, clone
+from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
@@ -38,6 +38,8 @@ class OffPolicySettings:
     """Environments stepped together."""
     sees: Annotated[str, Choice(("history", "belief"))] = "history"
     """The last readings and voltages, or the belief of the design's filter: see ``train.learning.sb3.belief``."""
+    modes: Annotated[int, UNITS] = 5
+    """Of the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     held: Annotated[int, INSTANTS] = 4
@@ -127,10 +129,7 @@ class OffPolicyTraining(SB3Training):
             model.actor.log_std.weight *= 0.01
             model.actor.log_std.bias.fill_(settings.exploration)
         if teacher is not None:
-            if settings.sees != "history" or settings.approach < 1.0:
-                raise ValueError(
-                    "teacher is given, but only an agent that sees a history, and goes all the way to its actions, starts from one."
-                )
+            check_clonable(settings)
             clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)
         super().__init__(model, envs, tasks, settings, seed)
 

@@ -19,7 +19,8 @@ from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
 from train.learning.sb3.asymmetric import AsymmetricPolicy
-from train.learning.sb3.cloning import Cloning, clone
+from train.learning.sb3.belief import design_belief, regulator_on
+from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.quadratic import FitCritic, QuadraticPolicy
 from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs
 from train.learning.sb3.side_by_side import SideBySide
@@ -33,10 +34,14 @@ class PPOSettings:
     """Environments stepped together."""
     sees: Annotated[str, Choice(("history", "belief"))] = "history"
     """The last readings and voltages, or the belief of the design's filter: see ``train.learning.sb3.belief``."""
+    modes: Annotated[int, UNITS] = 5
+    """Of the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     actor: Annotated[str, Choice(("tanh", "linear"))] = "tanh"
     """Two tanh layers and a linear one, or the latter alone, which begins without voltages."""
+    start: Annotated[str, Choice(("idle", "lqg"))] = "idle"
+    """Without voltages, or, for a linear actor on the belief, from the gains of LQG with load estimate."""
     critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
     """Two tanh layers on the true state, or a quadratic of it and of the coming load in closed form, for one scenario."""
     held: Annotated[int, INSTANTS] = 4
@@ -80,6 +85,8 @@ class PPOSettings:
     def __post_init__(self) -> None:
         if self.batch > self.blades * self.rollout:
             raise Refused("batch", self.batch, f"at most the {self.blades * self.rollout} samples of a rollout, blades · rollout")
+        if self.start == "lqg" and not (self.sees == "belief" and self.actor == "linear"):
+            raise Refused("start", self.start, "'idle' unless sees is 'belief' and actor 'linear'")
 
 
 def _layered(settings: PPOSettings, envs: Envs) -> dict[str, Any]:
@@ -124,6 +131,11 @@ class OnPolicyTraining(SB3Training):
             device="cpu",
         )
         model.policy.log_std.requires_grad_(False)  # exploration that fades would leave nothing to learn from under the white load
+        if settings.start == "lqg":
+            belief = design_belief(tasks[0].design, settings.modes)
+            gain = regulator_on(belief, tasks[0].design, settings.approach) / settings.input_gain
+            with torch.no_grad():
+                model.policy.action_net.weight.copy_(torch.as_tensor(gain))
         if teacher is not None:
             self._start_from(teacher, model, envs, settings, seed)
         super().__init__(model, envs, tasks, settings, seed)
@@ -155,10 +167,7 @@ class PPOTraining(OnPolicyTraining):
     _made = staticmethod(_layered)
 
     def _start_from(self, teacher: Policy, model: Any, envs: Envs, settings: PPOSettings, seed: int) -> None:
-        if settings.sees != "history" or settings.approach < 1.0:
-            raise ValueError(
-                "teacher is given, but only an agent that sees a history, and goes all the way to its actions, starts from one."
-            )
+        check_clonable(settings)
         clone(nn.Sequential(*self._actor(model)), envs, teacher, settings.input_gain, Cloning(), seed)
 
     @staticmethod

@@ -38,10 +38,10 @@ class RecurrentPPOSettings(PPOSettings):
     """Readings are a few per cent of full scale most of the time."""
 
     def __post_init__(self) -> None:
-        PPOSettings.__post_init__(self)
         for name, only in (("sees", "history"), ("actor", "tanh"), ("critic", "network"), ("approach", 1.0)):
             if getattr(self, name) != only:
                 raise Refused(name, getattr(self, name), f"{only!r}: cells know nothing else")
+        PPOSettings.__post_init__(self)
 
 
 class RecurrentPPOTraining(OnPolicyTraining):

@@ -33,7 +33,7 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     blades = settings.blades
     seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held", "approach")}
     if settings.sees == "belief":
-        seen["belief"] = design_belief(tasks[0].design)
+        seen["belief"] = design_belief(tasks[0].design, settings.modes)
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
     if settings.held > min(task.steps for task in tasks):
@@ -79,7 +79,7 @@ class SB3Training:
         self.losses: dict[str, float] = {}
         """What SB3 logged in the last update, by its names."""
         self._seed, self._design = seed, tasks[0].design_plant
-        self._belief = design_belief(tasks[0].design) if settings.sees == "belief" else None
+        self._belief = design_belief(tasks[0].design, settings.modes) if settings.sees == "belief" else None
         self._meter, self._validation = Meter(envs), Validation(tasks)
         self.validated = float("nan")
         """J relative to no control on validation seeds, without exploration, when it was last looked at."""
