@@ -36,11 +36,15 @@ class BeliefPolicy(Policy):
         m = len(self.lowest)
         before, age, voltages = memory[:, : -m - 1], memory[:, -m - 1 : -m], memory[:, -m:]
         estimate = corrected(self.weights, before, readings)
-        asked = network(self.weights, self.settings, np.hstack([estimate @ self.weights["shown"], voltages]))
+        asked = self.asked(np.hstack([estimate @ self.weights["shown"], voltages]))
         action = np.where(age == 0.0, towards(asked, voltages, self.settings), voltages)
         action = np.clip(action, self.lowest, self.highest).astype(np.float32)
         onward = estimate @ self.weights["transition"] + action @ self.weights["input"]
         return action, np.hstack([onward, (age + 1.0) % self.settings["held"], voltages]).astype(np.float32)
+
+    def asked(self, shown: Array) -> Array:
+        """Voltages (N, m) that the layers ask for, of what they are shown (N, f + m)."""
+        return network(self.weights, self.settings, shown)
 
     def knowing(self, memory: Array, voltages: Array) -> Array:
         """The filter, too, goes by the voltages that were held."""

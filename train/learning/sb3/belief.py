@@ -1,8 +1,8 @@
 """What agents may be shown in place of readings: the belief of a Kalman filter that knows the design, mode by mode.
 
-The filter has all modes of the design blade, and agents are shown the slow ones. As long as the filter is right, what is not fed back
-cannot be made unstable, whatever an agent in the making does with the rest: estimates of one mode do not hold the motion of another.
-States are shown in energy coordinates, whose squares are energy, in one common unit.
+The filter has all modes of the design blade, and agents are shown the slow ones. As long as the filter is right, what is not
+fed back cannot be made unstable, whatever an agent in the making does with the rest: the estimate of one mode does not hold
+the motion of another. States are shown in energy coordinates, whose squares are energy, in one common unit.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def design_belief(design: Design, modes: int) -> Belief:
     held = sampled_with_loads(plant, load)
     full_scale, modal, n = plant.sensor_full_scale, plant.blade_states, len(held.A)
     if modes > modal // 2:
-        raise Refused("settings.modes", modes, f"at most the {modal // 2} of the design")
+        raise Refused("modes", modes, f"at most the {modal // 2} of the design")
     noise = held.disturbance_input @ held.process_noise @ held.disturbance_input.T
     size = np.sqrt(np.diag(solve_discrete_lyapunov(held.A, noise))[:modal].mean())
     kept = [*range(modes), *range(modal // 2, modal // 2 + modes), n - 2, n - 1]

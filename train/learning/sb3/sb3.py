@@ -82,13 +82,12 @@ class SB3Training:
         self._belief = design_belief(tasks[0].design, settings.modes) if settings.sees == "belief" else None
         self._meter, self._validation = Meter(envs), Validation(tasks)
         self.validated = float("nan")
-        """J relative to no control on validation seeds, without exploration, when it was last looked at."""
         self._best: tuple[float, Policy] | None = None
         _, self._callback = model._setup_learn(2**62, [self._meter, *self._callbacks()])
 
     def update(self, remaining: float) -> None:
         """Gather experience and learn from it, at the share ``remaining`` of the learning rate."""
-        before = self.model.num_timesteps
+        before, self.validated = self.model.num_timesteps, float("nan")
         self.model._current_progress_remaining = remaining
         self._free(self.updates >= self.settings.critic_first)
         self._gather_and_learn()
@@ -161,7 +160,6 @@ class SB3Training:
             "torch": torch.get_rng_state(),
             "numpy": [str(kind), torch.as_tensor(np.asarray(keys, np.int64)), int(position), int(has_gauss), float(cached)],
             "counters": {"steps": self.steps, "updates": self.updates, "cost": self.cost, "timesteps": self.model.num_timesteps},
-            "validated": self.validated,
             "best": None if self._best is None else {"cost": self._best[0], "weights": dict(self._best[1].weights)},
             "episodes": self.envs.state_dict(),
             "shown": {"observations": self.model._last_obs.copy(), "starts": self.model._last_episode_starts.copy()},
@@ -177,7 +175,7 @@ class SB3Training:
         counters = state["counters"]
         self.steps, self.updates, self.cost = counters["steps"], counters["updates"], counters["cost"]
         self.model.num_timesteps = counters["timesteps"]
-        self.validated, best = state["validated"], state["best"]
+        best = state["best"]
         weights = {} if best is None else {name: np.asarray(weight) for name, weight in best["weights"].items()}
         self._best = None if best is None else (best["cost"], replace(self.policy(), weights=weights))
         self.envs.load_state_dict(state["episodes"])

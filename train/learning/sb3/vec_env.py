@@ -68,7 +68,7 @@ class TrainingVecEnv(BladeVecEnv):
         self.seen = int(np.prod(self.envs.single_observation_space.shape or ()))
         """How many numbers of an observation sensors show; what follows is the state."""
         self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
-        self._shows_loads, self._approach = shows_loads, approach
+        self._shows_loads, self.approach, self.belief = shows_loads, approach, belief
         self._voltages: Array = np.zeros((count, *(actions.shape or ())))
         width = self.seen + (0 if self._state_gain is None else len(self._state_gain) + 2 * shows_loads)
         self.observation_space = Box(-np.inf, np.inf, (width,), np.float32)
@@ -125,8 +125,8 @@ class TrainingVecEnv(BladeVecEnv):
         total, ended = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=np.bool_)
         infos, self.last_cost = self._unfinished, 0.0
         voltages = self._actions
-        if self._approach < 1.0:
-            self._voltages += self._approach * (voltages - self._voltages)
+        if self.approach < 1.0:
+            self._voltages += self.approach * (voltages - self._voltages)
             voltages = np.clip(self._voltages, self.action_space.low, self.action_space.high, out=self._voltages)
         for _ in range(self.held):
             windows, rewards, terminated, truncated, info = self.envs.step(voltages)
