@@ -15,14 +15,15 @@ from gymnasium.spaces import Box
 from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import solve_discrete_lyapunov
+from scipy.linalg import block_diag, solve_discrete_lyapunov
 
 from baselines import PersistentLoad
 from baselines.laws.lqg import optimal_filter, optimal_regulator, sampled_with_loads
 from beamenv import VectorSensorHistory
 from beamenv.blade.design import Design
 from beamenv.configuration import Refused
-from beamenv.plant.plant import drive_limit
+from beamenv.plant.hold import hold
+from beamenv.plant.plant import Plant, drive_limit
 from train.controllers.belief_policy import FILTER, corrected
 
 Array = NDArray[Any]
@@ -60,6 +61,38 @@ def design_belief(design: Design, modes: int) -> Belief:
     gain = optimal_filter(plant, held).gain * full_scale
     parts = held.A.T, (held.B * drive_limit(plant)).T, gain.T, held.C.T / full_scale, shown
     return Belief(*(np.ascontiguousarray(part, dtype=np.float32) for part in parts))
+
+
+OSCILLATORS = (15.0, 25.0, 40.0, 65.0)
+"""Hz: two to an octave or so, from below the slowest mode to where the fast ones begin."""
+
+OSCILLATOR_DAMPING = 0.4
+
+USUAL_READING = 0.1
+"""Of full scale, about, root mean square."""
+
+
+def oscillator_bank(plant: Plant) -> Belief:
+    """Readings alone, through oscillators: each shows what a reading has about its frequency, in phase and a quarter of a period later.
+
+    Nothing of the blade is in it. ẋ₁ = 2ζω (y − x₁) − ω x₂, ẋ₂ = ω x₁; the newest reading is held over the interval that it ends.
+    """
+    p, m = len(plant.C), plant.B.shape[1]
+    omega = 2.0 * np.pi * np.array(OSCILLATORS)
+    blocks = [np.array([[-2.0 * OSCILLATOR_DAMPING * w, -w], [w, 0.0]]) for w in omega]
+    held, driven = hold(
+        block_diag(*blocks), np.ravel([(2.0 * OSCILLATOR_DAMPING * w, 0.0) for w in omega])[:, None], plant.control_interval
+    )
+    transition, n = np.kron(np.eye(p), held), p * len(held)
+    parts = transition.T, np.zeros((m, n)), np.kron(np.eye(p), driven.T), np.zeros((n, p)), np.eye(n) / USUAL_READING
+    return Belief(*(np.ascontiguousarray(part, dtype=np.float32) for part in parts))
+
+
+def seen_by(settings: Any, design: Design) -> Belief | None:
+    """What the settings of a trainer show, None for a history."""
+    if settings.sees == "belief":
+        return design_belief(design, settings.modes)
+    return oscillator_bank(design.plant) if settings.sees == "oscillators" else None
 
 
 def regulator_on(belief: Belief, design: Design, approach: float = 1.0) -> Array:

@@ -19,7 +19,7 @@ from torch import nn
 from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Share, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
-from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
+from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
@@ -36,8 +36,8 @@ class OffPolicySettings:
 
     blades: Annotated[int, BLADES] = 256
     """Environments stepped together."""
-    sees: Annotated[str, Choice(("history", "belief"))] = "history"
-    """The last readings and voltages, or the belief of the design's filter: see ``train.learning.sb3.belief``."""
+    sees: Annotated[str, Choice(SEEN)] = "history"
+    """The last readings and voltages, or these through oscillators, or the belief of the design's filter: see ``belief``."""
     modes: Annotated[int, UNITS] = 5
     """Of the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12

@@ -17,7 +17,7 @@ from torch import nn
 from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Share, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
-from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
+from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
 from train.learning.sb3.asymmetric import AsymmetricPolicy
 from train.learning.sb3.belief import design_belief, regulator_on
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
@@ -32,8 +32,8 @@ class PPOSettings:
 
     blades: Annotated[int, BLADES] = 1024
     """Environments stepped together."""
-    sees: Annotated[str, Choice(("history", "belief"))] = "history"
-    """The last readings and voltages, or the belief of the design's filter: see ``train.learning.sb3.belief``."""
+    sees: Annotated[str, Choice(SEEN)] = "history"
+    """The last readings and voltages, or these through oscillators, or the belief of the design's filter: see ``belief``."""
     modes: Annotated[int, UNITS] = 5
     """Of the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
@@ -156,7 +156,8 @@ class OnPolicyTraining(SB3Training):
 
     def _gather_and_learn(self) -> None:
         self.model.collect_rollouts(self.envs, self._callback, self.model.rollout_buffer, self.model.n_steps)
-        self.model.train()
+        if self.settings.critic == "network" or self.updates >= self.settings.critic_first:  # the quadratic has been fitted
+            self.model.train()
 
 
 class PPOTraining(OnPolicyTraining):

@@ -16,7 +16,7 @@ from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.belief_policy import BeliefPolicy
 from train.controllers.policies import HistoryPolicy, Policy
-from train.learning.sb3.belief import design_belief
+from train.learning.sb3.belief import seen_by
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import TrainingVecEnv
 from train.learning.training import on_training_bank, uncontrolled_cost
@@ -32,8 +32,7 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     """
     blades = settings.blades
     seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held", "approach")}
-    if settings.sees == "belief":
-        seen["belief"] = design_belief(tasks[0].design, settings.modes)
+    seen["belief"] = seen_by(settings, tasks[0].design)
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
     if settings.held > min(task.steps for task in tasks):
@@ -79,7 +78,7 @@ class SB3Training:
         self.losses: dict[str, float] = {}
         """What SB3 logged in the last update, by its names."""
         self._seed, self._design = seed, tasks[0].design_plant
-        self._belief = design_belief(tasks[0].design, settings.modes) if settings.sees == "belief" else None
+        self._belief = seen_by(settings, tasks[0].design)
         self._meter, self._validation = Meter(envs), Validation(tasks)
         self.validated = float("nan")
         self._best: tuple[float, Policy] | None = None
