@@ -107,10 +107,10 @@ def test_voltages_go_the_same_share_of_the_way_to_an_action_at_each_decision(tas
 
 def test_a_quadratic_of_state_and_load_is_found_as_it_is():
     torch.manual_seed(0)
-    critic, states = Quadratic(20, modes=8), torch.randn(4000, 20)
-    matrix = torch.randn(20, 20)
-    matrix[16:18], matrix[:, 16:18] = 0.0, 0.0  # of the electronics squares alone are features
-    returns = torch.einsum("bi,ij,bj->b", states, matrix, states) + 0.7 * states[:, 16] ** 2 - 3.0
+    critic, states = Quadratic(19, modes=6, voltages=3), torch.randn(4000, 19)
+    matrix = torch.randn(19, 19)
+    matrix[15:17], matrix[:, 15:17] = 0.0, 0.0  # of the electronics squares alone are features
+    returns = torch.einsum("bi,ij,bj->b", states, matrix, states) + 0.7 * states[:, 15] ** 2 - 3.0
     critic.fit(states, returns)
     torch.testing.assert_close(critic(states)[:, 0], returns, rtol=1e-2, atol=5e-2)
 

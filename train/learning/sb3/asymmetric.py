@@ -35,7 +35,7 @@ class AsymmetricNetworks(nn.Module):
     def __init__(self, seen: int, hidden: int, actor_gain: float, units: int, linear: bool = False) -> None:
         super().__init__()
         self.seen, self.actor_gain = seen, actor_gain
-        self.policy_net: nn.Module = nn.Identity() if linear else tanh_layers(seen, units)
+        self.policy_net = nn.Sequential() if linear else tanh_layers(seen, units)
         self.value_net = tanh_layers(hidden, units)
         self.latent_dim_pi, self.latent_dim_vf = seen if linear else units, units
 

@@ -73,7 +73,7 @@ USUAL_READING = 0.1
 
 
 def oscillator_bank(plant: Plant) -> Belief:
-    """Readings alone, through oscillators: each shows what a reading has about its frequency, in phase and a quarter of a period later.
+    """Readings alone, through oscillators: each shows what a reading has about its frequency, in phase and a quarter period later.
 
     Nothing of the blade is in it. ẋ₁ = 2ζω (y − x₁) − ω x₂, ẋ₂ = ω x₁; the newest reading is held over the interval that it ends.
     """

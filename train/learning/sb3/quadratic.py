@@ -1,4 +1,4 @@
-"""A critic in closed form: values of a linear plant under a linear law are quadratic in its state and load.
+"""A critic in closed form: values of a linear plant under a linear law are quadratic in its state, load and voltages held.
 
 Least squares fit it to the returns of a rollout before these are learnt from: no rate, no network, no value loss.
 """
@@ -15,8 +15,8 @@ from torch import Tensor, nn
 
 from train.learning.sb3.asymmetric import AsymmetricPolicy
 
-MODES = 11
-"""Of which all products are features; of those above, which move little, squares alone."""
+MODES = 6
+"""Of which all products, with each other and with loads and voltages, are features; of those above, which move little, squares."""
 
 MEMORY = 0.7
 """Share that earlier rollouts keep in the sums of squares."""
@@ -26,16 +26,17 @@ RIDGE = 1e-4
 
 
 class Quadratic(nn.Module):
-    """V = Σ w_ij s_i s_j + Σ w_k s_k² + w on rows [displacements | velocities | electronics | loads (2)]."""
+    """V = Σ w_ij s_i s_j + Σ w_k s_k² + w on rows [voltages held (m) | displacements | velocities | electronics | loads (2)]."""
 
     weight: Tensor
     squares: Tensor
     """Sums of features' products, and, last row, of features times returns; kept with the weights, to resume from."""
 
-    def __init__(self, width: int, modes: int) -> None:
+    def __init__(self, width: int, modes: int, voltages: int) -> None:
         super().__init__()
         low = min(MODES, modes)
-        crossed = [*range(low), *range(modes, modes + low), width - 2, width - 1]
+        slow = [*range(low), *range(modes, modes + low)]
+        crossed = [*range(voltages), *(voltages + place for place in slow), width - 2, width - 1]
         self.crossed, self.alone = crossed, sorted(set(range(width)) - set(crossed))
         self._first, self._second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
         count = len(self._first) + len(self.alone) + 1
@@ -63,12 +64,14 @@ class Quadratic(nn.Module):
 
 
 class QuadraticPolicy(AsymmetricPolicy):
-    """SB3's policy with an actor of `AsymmetricNetworks` and a `Quadratic` critic of what the actor does not see."""
+    """SB3's policy with an actor of `AsymmetricNetworks` and a `Quadratic` critic of the true state."""
 
     def __init__(self, *args: Any, seen: int, modes: int, **kwargs: Any) -> None:
         super().__init__(*args, seen=seen, **kwargs)
-        self.seen = seen
-        self.quadratic = Quadratic(self.features_dim - seen, modes)
+        voltages = int(np.prod(self.action_space.shape or ()))
+        self.told = seen - voltages
+        """Where what the critic is told begins: with the voltages held, which the actor sees too."""
+        self.quadratic = Quadratic(self.features_dim - self.told, modes, voltages)
 
     def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
         """Actions, values and log-probabilities."""
@@ -85,7 +88,7 @@ class QuadraticPolicy(AsymmetricPolicy):
     def predict_values(self, obs: PyTorchObs) -> Tensor:
         """(B, 1)."""
         assert isinstance(obs, Tensor)
-        values: Tensor = self.quadratic(obs[:, self.seen :])
+        values: Tensor = self.quadratic(obs[:, self.told :])
         return values
 
 
@@ -100,7 +103,7 @@ class FitCritic(BaseCallback):
         buffer, policy = model.rollout_buffer, model.policy
         rows = torch.as_tensor(buffer.observations.reshape(-1, buffer.observations.shape[-1]))
         with torch.no_grad():
-            policy.quadratic.fit(rows[:, policy.seen :], torch.as_tensor(buffer.returns.reshape(-1)))
+            policy.quadratic.fit(rows[:, policy.told :], torch.as_tensor(buffer.returns.reshape(-1)))
             buffer.values[...] = policy.predict_values(rows).numpy().reshape(buffer.values.shape)
             last = policy.predict_values(torch.as_tensor(model._last_obs))
         buffer.compute_returns_and_advantage(last_values=last, dones=model._last_episode_starts)
