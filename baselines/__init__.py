@@ -2,6 +2,7 @@
 
 from baselines.analysis.frequency_response import h_infinity_norm
 from baselines.analysis.margins import StabilityMargins, stability_margins
+from baselines.analysis.small_gain import small_gain
 from baselines.analysis.stationary import closed_loop_poles, stationary_cost
 from baselines.design.controller import Controller
 from baselines.design.hypothesis import Hypothesis
@@ -19,6 +20,7 @@ from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.h_infinity import h_infinity
 from baselines.laws.informed_lqg import informed_lqg
+from baselines.laws.informed_mpc import informed_mpc
 from baselines.laws.inverse_hysteresis import InverseHysteresis, inverse_hysteresis
 from baselines.laws.lqg import lqg
 from baselines.laws.lqr import lqr
@@ -27,6 +29,7 @@ from baselines.laws.multiple_model import multiple_model
 from baselines.laws.no_control import no_control
 from baselines.laws.positive_position_feedback import positive_position_feedback
 from baselines.laws.reference_lqg import full_order_lqg, reference_lqg
+from baselines.laws.robust_lqg import robust_lqg
 from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
 from baselines.laws.run_up_lqg import RunUpLQG, run_up_lqg
 from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
@@ -62,6 +65,7 @@ __all__ = [
     "h_infinity",
     "h_infinity_norm",
     "informed_lqg",
+    "informed_mpc",
     "inverse_hysteresis",
     "lqg",
     "lqr",
@@ -70,11 +74,13 @@ __all__ = [
     "no_control",
     "positive_position_feedback",
     "reference_lqg",
+    "robust_lqg",
     "roll_out",
     "rotor_lqg",
     "run_up_lqg",
     "scheduled_lqg",
     "scheduled_lqg_for",
+    "small_gain",
     "stability_margins",
     "stationary_cost",
     "velocity_feedback",

@@ -7,7 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from baselines.design.riccati import Array
+from beamenv.configuration import Count, checked
 from beamenv.plant.plant import SampledPlant
+
+MOST_LATE = 20
+"""Intervals of delay that a law keeps in mind at most: each adds as many numbers to its memory as there are voltages."""
+
+
+def checked_delay(delay: int) -> int:
+    """Control intervals by which voltages come late; ``ValueError`` for what is no whole number from 0 to ``MOST_LATE``."""
+    return checked("delay", delay, Count(0, MOST_LATE))
 
 
 def with_delay(held: SampledPlant, intervals: int) -> SampledPlant:

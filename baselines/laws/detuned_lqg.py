@@ -5,20 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated
 
-from baselines.design.delay import with_delay
+from baselines.design.delay import MOST_LATE, with_delay
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
 from baselines.design.load_model import Load, checked_loads
 from baselines.design.objects import instance
-from baselines.design.rate_penalty import with_rate_penalty
-from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
-from baselines.design.verification import solvable, verified
-from baselines.laws.lqg import compensator, known_sensor_noise, sampled_with_loads
+from baselines.design.riccati import Solution
+from baselines.design.verification import verified
+from baselines.laws.lqg import compensator, sampled_design
 from beamenv.configuration import Count, Flag, Number, Text, checked, configuration
-from beamenv.plant.plant import Plant
-
-MOST_LATE = 20
-"""Intervals of delay that a law keeps in mind at most: each adds as many numbers to its memory as there are voltages."""
+from beamenv.plant.plant import Plant, SampledPlant, sample
 
 
 @configuration("detuning")
@@ -43,17 +39,15 @@ def detuned_lqg(plant: Plant, detuning: Detuning, *loads: Load, name: str = "det
     Robustness by fictitious noise and weights is loop transfer recovery's idea (Doyle and Stein, IEEE Trans. Automatic Control 24,
     1979; Anderson and Moore, Optimal Control, 1990, ch. 8). Raises ``ValueError`` as ``lqg`` does.
     """
+    held, regulated, filtered = detuned_design(plant, detuning, *loads)
+    law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
+    return verified(law, with_delay(sample(plant), detuning.delay), regulated, filtered, instead="another detuning")
+
+
+def detuned_design(plant: Plant, detuning: Detuning, *loads: Load) -> tuple[SampledPlant, Solution, Solution]:
+    """The sampled plant that the design is told of, its regulator and its filter; ``ValueError`` as ``sampled_design``."""
     detuning = instance("detuning", detuning, Detuning, "a Detuning, such as Detuning(delay=2)")
     loads = checked_loads("loads", list(loads))
     told = replace(checked_plant(plant), sensor_noise=detuning.noise**2 * plant.sensor_noise)
     told = replace(told, input_weight=detuning.effort * plant.input_weight)
-    held = sampled_with_loads(told, *(loads if detuning.foresees else ()))
-    if detuning.rate:
-        held = with_rate_penalty(held, detuning.rate)
-    held = with_delay(held, detuning.delay)
-    E, V = held.disturbance_input, known_sensor_noise(told) / held.interval
-    with solvable(plant):
-        regulated = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-        filtered = sampled_kalman_filter(held.A, held.C, E @ held.process_noise @ E.T, V)
-    law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
-    return verified(law, with_delay(sampled_with_loads(told), detuning.delay), regulated, filtered, instead="another detuning")
+    return sampled_design(told, *(loads if detuning.foresees else ()), rate_weight=detuning.rate, delay=detuning.delay)

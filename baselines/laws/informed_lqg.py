@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import csv
-import json
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, replace
-from functools import lru_cache
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from baselines.design.delay import MOST_LATE
 from baselines.design.linear import LinearController
 from baselines.design.objects import instance
-from baselines.laws.detuned_lqg import MOST_LATE, Detuning, detuned_lqg
+from baselines.laws.detuned_lqg import Detuning, detuned_lqg
+from baselines.laws.detuning_search import LOST, TRIALS, coordinate_search, kept_detuning
 from baselines.laws.foreseen_load import foreseen_loads
 from beamenv.blade.files import to_dict
-from beamenv.configuration import read
-from beamenv.configuration.cache import keep, kept_at, key_of
 from beamenv.knowledge import Prior
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.scenario import Scenario
@@ -28,15 +24,6 @@ VERSION = 1
 
 EPISODES = 64
 """Of tuning: on plants of the training bank, with the first seeds from ``beamenv.knowledge.TUNING`` on."""
-
-TRIALS = 40
-"""Designs that are tried at most."""
-
-GAIN = 1e-3
-"""Share of the cost by which a design must be better than the best so far."""
-
-LOST = 100.0
-"""What a blade that fails is charged, over the mean cost without control."""
 
 SHIPPED = Path(__file__).with_name("informed_lqg.csv")
 """What the rule chose for the default blade in the scenarios that ship, each with its key."""
@@ -53,16 +40,7 @@ def informed_lqg(prior: Prior) -> LinearController:
 
 def chosen_detuning(prior: Prior) -> Detuning:
     """What the rule chooses: as it shipped or was kept in the user's cache, or searched for now, which takes a minute or two."""
-    depends_on = _depends_on(prior)
-    if (shipped := _shipped().get(key_of(*depends_on))) is not None:
-        return shipped
-    kept = kept_at("informed-lqg", *depends_on)
-    try:
-        return read(Detuning(), json.loads(kept.read_text(encoding="utf-8")), "detuning")
-    except (OSError, ValueError):
-        found, _ = searched_detuning(prior)
-    keep(kept, asdict(found))
-    return found
+    return kept_detuning("informed-lqg", SHIPPED, _depends_on(prior), lambda: searched_detuning(prior)[0])
 
 
 def searched_detuning(prior: Prior) -> tuple[Detuning, dict[Detuning, float]]:
@@ -72,39 +50,7 @@ def searched_detuning(prior: Prior) -> tuple[Detuning, dict[Detuning, float]]:
     """
     loads = bool(_loads(prior))
     start = Detuning(delay=min(MOST_LATE, round(sum(prior.scenario.drive.delay) / 2.0)), foresees=loads)
-    return coordinate_search(_cost(prior), start, loads)
-
-
-def coordinate_search(cost: Callable[[Detuning], float], start: Detuning, loads: bool) -> tuple[Detuning, dict[Detuning, float]]:
-    """From a start on, in one coordinate after the other as far as that is better, again and again until nothing is; all trials."""
-    tried = {start: cost(start)}
-    best, moved = start, True
-    while moved and len(tried) < TRIALS:
-        moved = False
-        for direction in _directions(loads):
-            while len(tried) < TRIALS:
-                further = direction(best)
-                if further in tried:
-                    break
-                tried[further] = cost(further)
-                if not tried[further] < (1.0 - GAIN) * tried[best]:
-                    break
-                best, moved = further, True
-    return best, tried
-
-
-def _directions(loads: bool) -> Iterator[Callable[[Detuning], Detuning]]:
-    """Steps in each coordinate, the most telling first."""
-    if loads:
-        yield lambda each: replace(each, foresees=not each.foresees)
-    yield lambda each: replace(each, rate=3.0 * each.rate)
-    yield lambda each: replace(each, rate=each.rate / 3.0)
-    yield lambda each: replace(each, noise=2.0 * each.noise)
-    yield lambda each: replace(each, noise=0.5 * each.noise)
-    yield lambda each: replace(each, effort=1.5 * each.effort)
-    yield lambda each: replace(each, effort=each.effort / 1.5)
-    yield lambda each: replace(each, delay=min(MOST_LATE, each.delay + 1))
-    yield lambda each: replace(each, delay=max(0, each.delay - 1))
+    return coordinate_search(_cost(prior), start, loads, TRIALS)
 
 
 def _loads(prior: Prior) -> tuple[Any, ...]:
@@ -112,7 +58,7 @@ def _loads(prior: Prior) -> tuple[Any, ...]:
 
 
 def _law(prior: Prior, detuning: Detuning) -> LinearController:
-    return detuned_lqg(prior.bank.plant, detuning, *_loads(prior), name="informed LQG")
+    return detuned_lqg(prior.blade.truth, detuning, *_loads(prior), name="informed LQG")
 
 
 def _cost(prior: Prior) -> Callable[[Detuning], float]:
@@ -155,15 +101,3 @@ def _departing(table: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, 
     """What of a table is not as usual: a field that is yet to come leaves the key of a scenario without it as it is."""
     own = {name: value for name, value in table.items() if value != usual[name]}
     return {name: _departing(value, usual[name]) if isinstance(value, dict) else value for name, value in own.items()}
-
-
-@lru_cache(maxsize=1)
-def _shipped() -> dict[str, Detuning]:
-    with SHIPPED.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {row["key"]: _detuning(row) for row in rows}
-
-
-def _detuning(row: dict[str, str]) -> Detuning:
-    numbers = {name: float(row[name]) for name in ("effort", "noise", "rate")}
-    return Detuning(delay=int(row["delay"]), foresees=row["foresees"] == "True", **numbers)

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from baselines.design.delay import checked_delay, with_delay
 from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController
 from baselines.design.load_model import Load, with_load
@@ -82,13 +83,16 @@ def sampled_with_loads(plant: Plant, *loads: Load | None) -> SampledPlant:
     return with_load(sample(plant), reduce(add, models)) if models else sample(plant)
 
 
-def sampled_design(plant: Plant, *loads: Load | None, rate_weight: float = 0.0) -> tuple[SampledPlant, Solution, Solution]:
-    """The sampled plant with its loads and, where quick changes have a price, the voltages before; its regulator, P and K, and its
-    filter, S and L. Raises ValueError where one of them has none.
+def sampled_design(
+    plant: Plant, *loads: Load | None, rate_weight: float = 0.0, delay: int = 0
+) -> tuple[SampledPlant, Solution, Solution]:
+    """The sampled plant with its loads, with the voltages before where quick changes have a price, and with those that come late;
+    its regulator, P and K, and its filter, S and L. Raises ValueError where one of them has none.
     """
     held = sampled_with_loads(plant, *loads)
     if checked("rate_weight", rate_weight, Number(ge=0.0)) > 0.0:
         held = with_rate_penalty(held, rate_weight)
+    held = with_delay(held, checked_delay(delay))
     return held, optimal_regulator(plant, held), optimal_filter(plant, held)
 
 

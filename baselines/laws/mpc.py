@@ -10,16 +10,18 @@ from numpy.typing import ArrayLike
 
 from baselines.design.box_qp import BoxQP
 from baselines.design.controller import Array
-from baselines.design.instruments import Instruments, checked_plant
+from baselines.design.delay import checked_delay, with_delay
+from baselines.design.instruments import Instruments
 from baselines.design.law import Law
 from baselines.design.matrix import keep_matrices, rows
 from baselines.design.objects import instance
 from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
+from baselines.design.riccati import Solution
 from baselines.design.verification import verified
 from baselines.design.weights import weighted
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.configuration import Count, Numbers, Refused, checked
-from beamenv.plant.plant import Plant, SampledPlant
+from beamenv.plant.plant import Plant, SampledPlant, sample
 
 LONGEST = 1000
 """Control intervals of a horizon that is given: half a second at 0.5 ms, an episode as it is by default."""
@@ -102,6 +104,7 @@ def mpc(
     move_blocks: Sequence[int] | None = None,
     *,
     rate_weight: float = 0.0,
+    delay: int = 0,
     Q: ArrayLike | None = None,
     R: ArrayLike | None = None,
     verify: bool = True,
@@ -114,17 +117,35 @@ def mpc(
 
     The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h, at most 1000; by default they are
     ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike;
-    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``; ``Q`` and ``R`` are other weights than the plant's, as in
-    ``lqg``. What it is while no limit is in sight, LQG, is ``verified`` on ``plant`` unless ``verify=False``. One law may serve
-    several threads at once. Raises ValueError for blocks that are not positive whole numbers and as ``lqg`` does,
-    ModuleNotFoundError without DAQP.
+    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``; voltages act ``delay`` control intervals after they are
+    asked for; ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. What it is while no limit is in sight, LQG, is
+    ``verified`` on ``plant`` unless ``verify=False``. One law may serve several threads at once. Raises ValueError for blocks that
+    are not positive whole numbers, for a delay that is not from 0 to 20, and as ``lqg`` does, ModuleNotFoundError without DAQP.
     """
-    blocks = doubling_blocks(checked_plant(plant)) if move_blocks is None else _checked(move_blocks)
     load = checked_persistent_load(persistent_load)
     name = "MPC" if load is None else "MPC with load estimate"
-    held, regulated, filtered = sampled_design(weighted(plant, Q, R), load, rate_weight=rate_weight)
+    blocks = None if move_blocks is None else _checked(move_blocks)
+    delay = checked_delay(delay)
+    design = sampled_design(weighted(plant, Q, R), load, rate_weight=rate_weight, delay=delay)
+    return predictive(plant, name, design, delay, blocks, verify=verify)
+
+
+def predictive(
+    plant: Plant,
+    name: str,
+    design: tuple[SampledPlant, Solution, Solution],
+    delay: int,
+    blocks: Sequence[int] | None = None,
+    *,
+    verify: bool = True,
+) -> PredictiveController:
+    """The law of a ``sampled_design`` of ``plant`` within the drive limits, ``verified`` with its ``delay`` unless
+    ``verify=False``; its blocks are ``doubling_blocks`` unless given.
+    """
+    blocks = doubling_blocks(plant) if blocks is None else blocks
+    held, regulated, filtered = design
     (P, K), L = regulated, filtered.gain
-    verified(compensator(plant, name, held, K, L), plant, regulated, filtered, verify=verify)
+    verified(compensator(plant, name, held, K, L), with_delay(sample(plant), delay), regulated, filtered, verify=verify)
     deviation, moves = _deviation(held, P, K, blocks), len(blocks)
     by_state, by_move = np.split(deviation, [len(held.A)], axis=1)
     lowest, highest = (np.tile(limit, moves) for limit in plant.voltage_limits)

@@ -10,6 +10,8 @@ import beamenv
 from baselines import Detuning, PersistentLoad, detuned_lqg, full_order_lqg, informed_lqg, lqg, stationary_cost
 from baselines.design.delay import with_delay
 from baselines.laws import informed_lqg as rule
+from baselines.laws.detuning_search import shipped_detunings
+from beamenv.configuration.cache import key_of
 from beamenv.plant.plant import sample
 from beamenv.task import resolve_task
 
@@ -91,7 +93,7 @@ def test_what_was_chosen_is_kept_for_the_next_time_and_for_nothing_else(tmp_path
 @pytest.mark.parametrize("name", ["nominal", "delay", "failure", "hysteresis", "spillover", "rotor"])
 def test_what_ships_is_of_todays_blade_and_scenarios(name):
     prior = resolve_task(scenario=name).prior
-    assert rule.key_of(*rule._depends_on(prior)) in rule._shipped()
+    assert key_of(*rule._depends_on(prior)) in shipped_detunings(rule.SHIPPED)
 
 
 def test_what_ships_costs_on_the_episodes_of_tuning_what_it_says():

@@ -8,9 +8,12 @@ import pytest
 from scipy.optimize import lsq_linear
 
 import beamenv
-from baselines import PersistentLoad, evaluate, lqg, mpc
+from baselines import Detuning, PersistentLoad, detuned_lqg, evaluate, informed_lqg, informed_mpc, lqg, mpc
+from baselines.design.delay import with_delay
 from baselines.laws.lqg import sampled_design
 from baselines.laws.mpc import doubling_blocks
+from beamenv.plant.plant import sample
+from beamenv.task import resolve_task
 
 LOADS = {"no load estimate": None, "load estimate": PersistentLoad()}
 BLOCKS = {"every interval": [1] * 6, "blocks": [1, 1, 2, 3], "one move held": [4]}
@@ -69,6 +72,44 @@ def test_without_a_limit_in_sight_it_is_lqg(small_plant, load):
         action, memory = law.predict(observation, memory)
         expected, reference_memory = reference.predict(observation, reference_memory)
         np.testing.assert_allclose(action, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("delay", [1, 3])
+def test_told_of_a_delay_it_is_the_lqg_of_that_delay_without_a_limit_in_sight(small_plant, delay):
+    """And that is the optimum of the delayed plant, which `test_informed_lqg` shows."""
+    plant, seen = small_plant(), 1e-3 * np.random.default_rng(3).normal(size=(30, 4, 2))
+    laws = mpc(plant, rate_weight=1.0, delay=delay), detuned_lqg(plant, Detuning(delay=delay))
+    memories = [None, None]
+    for each in seen:
+        (planned, memories[0]), (linear, memories[1]) = (
+            law.predict(each, memory) for law, memory in zip(laws, memories, strict=True)
+        )
+        assert np.abs(linear).max() < 0.3
+        assert planned == pytest.approx(linear, rel=1e-9, abs=1e-12)
+    assert laws[0].solver_failures == 0
+
+
+def test_told_of_a_delay_its_plan_is_the_best_within_the_limits_for_voltages_that_come_late(small_plant):
+    """Against bounded least squares over the voltages asked for, with the blade simulated two intervals behind them."""
+    plant, blocks, delay = small_plant(), [1] * 5, 2
+    law, held = mpc(plant, None, blocks, delay=delay), sample(plant)
+    P = sampled_design(plant, delay=delay)[1].matrix
+    late = with_delay(held, delay)
+    root, last = square_root(late.cost[: len(late.A) + 2, : len(late.A) + 2]), square_root(P)
+    begin = np.concatenate([states(1, 6)[0], 200.0, -100.0, 300.0, 50.0], axis=None)
+
+    def residual(moves):
+        x, coming, rows = begin[:6], [begin[6:8], begin[8:10]], []
+        for u in moves.reshape(-1, 2):
+            rows.append(root @ np.concatenate([x, *coming, u]))
+            x, coming = held.A @ x + held.B @ coming[-1], [u, coming[0]]
+        return np.concatenate([*rows, last @ np.concatenate([x, *coming])])
+
+    offset = residual(np.zeros(10))
+    matrix = np.stack([residual(each) - offset for each in np.eye(10)], axis=1)
+    bounds = tuple(np.tile(limit, 5) for limit in plant.voltage_limits)
+    best = lsq_linear(matrix, -offset, bounds, tol=1e-14).x[:2]
+    assert decide(law, begin[None])[0] == pytest.approx(best, abs=0.5)
 
 
 def test_one_move_of_one_voltage_is_lqg_clipped(scalar_plant):
@@ -195,3 +236,16 @@ def test_one_law_in_eight_threads_drives_each_blade_as_if_alone(small_plant):
         for _ in range(5):
             np.testing.assert_array_equal(list(threads.map(lambda memory: decide(law, memory), memories)), alone)
     assert law.solver_failures == 0
+
+
+def test_informed_it_is_the_informed_lqg_without_a_limit_in_sight():
+    prior = resolve_task(scenario="delay").prior
+    laws, reading = (informed_mpc(prior), informed_lqg(prior)), np.array([1e-3, -2e-3, 0.0, 1e-3])
+    memories = [None, None]
+    for _ in range(10):
+        (planned, memories[0]), (linear, memories[1]) = (
+            law.predict(reading, memory) for law, memory in zip(laws, memories, strict=True)
+        )
+        assert planned == pytest.approx(linear, rel=1e-6, abs=1e-9)
+    with pytest.raises(ValueError, match="^prior is None, but must be a beamenv.Prior"):
+        informed_mpc(None)

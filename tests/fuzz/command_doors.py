@@ -111,8 +111,16 @@ COMMANDS = {
             "--model": None,
             "--jobs": "1",
             "--docs": None,
+            "--submit": None,
+            "--tier": None,
         },
-        ("--json", "--trust"),
+        ("--json", "--trust", "--quick", "--overwrite"),
+        ("train.benchmark.campaign._cells",),
+    ),
+    "benchmark --submit": (
+        (),
+        {"--submit": "lqg", "--tier": None, "--folder": "made", "--docs": "made", "--jobs": "1"},
+        ("--json", "--trust", "--overwrite"),
         ("train.benchmark.campaign._cells",),
     ),
     "place": (
@@ -166,7 +174,7 @@ def invoked(command):
         Path("folder").mkdir(exist_ok=True)
         before = files()
         with work_left_out(left_out):
-            result = CliRunner().invoke(app, [command, *given])
+            result = CliRunner().invoke(app, [command.split()[0], *given])
         untouched = files() == before
         for each in Path.cwd().iterdir():
             shutil.rmtree(each) if each.is_dir() else each.unlink()

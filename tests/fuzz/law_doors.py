@@ -11,6 +11,7 @@ from baselines import placement
 from baselines.design.instruments import Instruments
 from baselines.design.linear import MATRICES
 from beamenv.blade import BladeConfig
+from beamenv.blade.design import Design
 from beamenv.knowledge import Prior, Truth
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
@@ -52,6 +53,11 @@ LINEAR = Kind(
     "linear law",
     lambda value: value if isinstance(value, baselines.LinearController) else NOTHING,
     st.sampled_from(["clipped", "true"]).map(lambda name: clipped() if name == "clipped" else small.law().__class__),
+)
+PLANTS = Kind(
+    "plants",
+    lambda value: value if isinstance(value, (list, tuple)) and value and all(isinstance(one, Plant) for one in value) else NOTHING,
+    st.sampled_from([[], [None], ()]),
 )
 HYPOTHESES = Kind(
     "hypotheses",
@@ -149,10 +155,11 @@ DOORS = [
     weighted("clipped_lqg", {"persistent_load": LOAD, "rate_weight": NUMBER}, persistent_load=None, rate_weight=0.1),
     weighted(
         "mpc",
-        {"move_blocks": maybe(COUNTS), "persistent_load": LOAD, "rate_weight": NUMBER},
+        {"move_blocks": maybe(COUNTS), "persistent_load": LOAD, "rate_weight": NUMBER, "delay": COUNT},
         move_blocks=[1, 1, 2],
         persistent_load=None,
         rate_weight=0.1,
+        delay=1,
     ),
     weighted("h_infinity", {"back_off": NUMBER}, back_off=1.5),
     law("no_control"),
@@ -230,6 +237,23 @@ DOORS = [
         lambda: {"prior": small.env().unwrapped.task.prior},
         told=("prior",),
         public="informed_lqg",
+    ),
+    Door(
+        "informed_mpc",
+        baselines.informed_mpc,
+        {"prior": instance(Prior)},
+        lambda: {"prior": small.env().unwrapped.task.prior},
+        told=("prior",),
+        plain=False,
+        public="informed_mpc",
+    ),
+    Door(
+        "robust_lqg",
+        baselines.robust_lqg,
+        {"design": instance(Design)},
+        lambda: {"design": small.env().unwrapped.task.design},
+        told=("design",),
+        public="robust_lqg",
     ),
     Door(
         "run_up_lqg",
@@ -405,6 +429,14 @@ DOORS = [
         {"plant": PLANT, "controller": LINEAR, "at": TEXT},
         lambda: {"plant": small.plant(), "controller": small.law(), "at": "input"},
         public="stability_margins",
+    ),
+    Door(
+        "small_gain",
+        baselines.small_gain,
+        {"plant": PLANT, "controller": LINEAR, "others": PLANTS},
+        lambda: {"plant": small.plant(), "controller": small.law(), "others": [small.plant()]},
+        told=("others",),
+        public="small_gain",
     ),
     Door(
         "evaluate",

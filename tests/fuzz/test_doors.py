@@ -111,7 +111,7 @@ def test_every_argument_of_an_environment_is_among_those_tried(name, made):
 
 def test_every_option_of_every_command_is_among_those_tried():
     commands = typer.main.get_command(app).commands
-    assert set(commands) == set(command_doors.COMMANDS)
+    assert set(commands) == {name for name in command_doors.COMMANDS if " " not in name}
     for name, command in commands.items():
         positional, options, flags, _ = command_doors.COMMANDS[name]
         told = {option for each in command.params for option in (*each.opts, *each.secondary_opts) if option.startswith("--")}

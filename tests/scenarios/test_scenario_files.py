@@ -16,7 +16,7 @@ from gymnasium.utils.env_checker import check_env
 import beamenv
 from beamenv import BENCHMARK_SCENARIOS, OPEN_SCENARIOS, UNSEEN_SCENARIOS, RotatingBeamEnv
 from beamenv.configuration import files
-from beamenv.scenarios.named import NAMES
+from beamenv.scenarios.named import GROUPS, NAMES, expanded
 from beamenv.scenarios.scenario import SCENARIOS, load_scenario, scenario
 
 GUST = """
@@ -47,6 +47,13 @@ def test_what_is_kept_for_judging_is_not_what_is_learnt_on():
     assert sorted({name for group in groups for name in group}) == list(NAMES)
     assert not set(OPEN_SCENARIOS) & {*BENCHMARK_SCENARIOS, *UNSEEN_SCENARIOS}
     assert set(BENCHMARK_SCENARIOS) & set(UNSEEN_SCENARIOS) == {"solid", "solid-20"}
+
+
+def test_groups_hold_every_scenario_once_and_are_called_like_none():
+    assert set(GROUPS) == {"benchmark", "open", "unseen", "all"} and not set(GROUPS) & set(SCENARIOS)
+    assert sorted(GROUPS["all"]) == list(NAMES)
+    assert expanded(["unseen", "delay", "solid", "open.toml"]) == (*UNSEEN_SCENARIOS, "delay", "open.toml")
+    assert expanded(["open", "benchmark", "open"]) == (*OPEN_SCENARIOS, *BENCHMARK_SCENARIOS)
 
 
 def _few(name):

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import beamenv
+from beamenv.scenarios.named import NAMES
 from train.benchmark import benchmark
-from train.benchmark.campaign import environment_json
+from train.benchmark.campaign import environment_json, read_scenarios
 
 
 @pytest.mark.parametrize(
@@ -53,3 +54,14 @@ def test_numbers_of_numpy_and_whole_blades_are_the_same_environment():
     listed = {"speed": np.float32(150.0), "voltage_limits": np.array([-100.0, 100.0])}
     of = [environment_json({"blade": given}) for given in (blade, listed)]
     assert [beamenv.blade_config(overrides=json.loads(each)["blade"]) for each in of] == [blade, blade]
+
+
+def test_groups_stand_for_their_scenarios_and_nothing_given_for_all_of_them():
+    assert sorted(read_scenarios(None)[0]) == sorted(read_scenarios(["all"])[0]) == list(NAMES)
+    assert tuple(read_scenarios(["open", "delay"])[0]) == (*beamenv.OPEN_SCENARIOS, "delay")
+
+
+def test_a_file_called_like_a_group_is_a_scenario(tmp_path):
+    (tmp_path / "open.toml").write_text('preset = "delay"\n')
+    known, refused = read_scenarios([str(tmp_path / "open.toml"), "drift"])
+    assert known["open"] == beamenv.scenario("delay") and set(known) == {"open", "drift"} and not refused

@@ -1,11 +1,22 @@
 """The command ``beamenv benchmark`` as a shell meets it."""
 
 import json
+import re
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from beamenv.plant.fingerprint import fingerprint
+from beamenv.scenarios.named import GROUPS
+from beamenv.task import resolve_task
+from train.benchmark.table import BenchmarkTable, Row
 from train.cli.app import app
+from train.cli.benchmark_table import blocks
+from train.cli.quick import QUICK_LAWS, QUICK_SCENARIOS, QUICK_SEEDS
+from train.controllers.named import named
+from train.controllers.policies import HistoryPolicy
+from train.controllers.policy_files import save_policy
 
 SMALL = ("benchmark", "--scenario", "deflection", "--controller", "lqg", "--seeds", "2", "--jobs", "1")
 
@@ -31,7 +42,7 @@ def test_what_could_not_be_served_is_told_and_the_rest_shown(tmp_path):
     result = run(*SMALL, "--scenario", str(tmp_path / "mine.toml"), "--folder", str(tmp_path / "results"))
     assert result.exit_code == 1
     assert "scenario has no field 'stepp'" in result.stderr
-    assert "deflection, tier 0: lowest J by lqg (fixed)" in " ".join(result.stdout.split())
+    assert "Tier 0, the nominal plant: least J of 1 scenarios by lqg in 1, clearly in 1." in " ".join(result.stdout.split())
 
 
 @pytest.mark.parametrize(
@@ -50,3 +61,48 @@ def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, mo
     assert result.stdout == ""
     assert named in result.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_quick_is_a_dozen_rows_of_every_tier_in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = {}
+
+    def measured(**arguments):
+        asked.update(arguments)
+        return benchmark(["none", "lqg"], ["deflection"])
+
+    monkeypatch.setattr("train.cli.benchmark._measured", measured)
+    result = run("benchmark", "--quick")
+    assert result.exit_code == 0, result.output
+    assert asked["folder"].as_posix() == "results/benchmark-quick"
+    assert tuple(asked["scenarios"]) == QUICK_SCENARIOS and asked["seeds"] == QUICK_SEEDS < 128
+    assert {named(name).tier for name in QUICK_LAWS} == {0, 1, 2, 3} and set(QUICK_LAWS) <= set(asked["controllers"])
+    assert set(QUICK_SCENARIOS) <= set(GROUPS["all"])
+    assert re.search("2 episodes a cell: intervals are wide, ±[0-9]+ % of J / J₀", " ".join(result.stdout.split()))
+    run("benchmark", "--quick", "--scenario", "open", "--seeds", "5")
+    assert (asked["scenarios"], asked["seeds"], asked["folder"].name) == (["open"], 5, "benchmark-quick-open-5")
+
+
+def benchmark(controllers, scenarios):
+    from train.benchmark import benchmark as run
+
+    return run(scenarios=scenarios, controllers=controllers, seeds=2, environment={"duration": 0.02})
+
+
+def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for():
+    names = ("nominal", "two-dead-actuators", "off-speed-failure", "delay")
+    rows = [Row(name, law, law, "fixed", 0, 1, 2) for name in names for law in ("none", "positive-position-feedback")]
+    table = BenchmarkTable(tuple(rows), {}, {})
+    assert list(blocks(table, 200)) == [names]
+    assert list(blocks(table, 80)) == [names[:3], names[3:]]
+    assert list(blocks(table, 20)) == [(name,) for name in names]
+
+
+def test_the_folder_of_a_trained_agent_takes_part_by_the_folder_s_name(tmp_path):
+    weights = {"weight0": np.zeros((4, 8), np.float32), "bias0": np.zeros(4, np.float32)}
+    policy = HistoryPolicy("idle", weights, {"input_gain": 1.0, "held": 1}, -np.ones(4, np.float32), np.ones(4, np.float32))
+    (tmp_path / "mine").mkdir()
+    save_policy(policy, tmp_path / "mine", {"plants": {"nominal": fingerprint(resolve_task().design_plant)}, "tier": 2})
+    row = benchmark([str(tmp_path / "mine")], ["deflection"]).row("deflection", "mine")
+    assert (row.kind, row.tier, row.runs) == ("learned", 2, 1)
+    assert row.estimates["relative_cost"].value == 1.0

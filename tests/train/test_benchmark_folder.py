@@ -163,6 +163,7 @@ def test_each_choice_of_the_command_has_a_folder_of_its_own(tmp_path, monkeypatc
 
 def test_the_folders_of_the_command_differ_from_the_full_benchmark_s():
     assert default_folder((), (), 128, ()).as_posix() == "results/benchmark"
+    assert default_folder(("all",), (), 128, ()).as_posix() == "results/benchmark"
     assert default_folder(("delay",), (), 128, ()).as_posix() == "results/benchmark-delay"
     assert default_folder(("../my/gusty.toml",), (), 16, ()).as_posix() == "results/benchmark-gusty-16"
     long = [default_folder(tuple("abcdefghij" * 3), (last,), 128, ()) for last in ("x", "y")]

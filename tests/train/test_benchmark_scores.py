@@ -136,7 +136,7 @@ def table_of(costs, homes=None):
         for name in costs:
             if name in names:
                 metrics = {each: np.zeros(4) for each in SERIES} | {"cost": costs[name] * UNCONTROLLED}
-                cells.append(Cell(scenario, name, "", uncontrolled=UNCONTROLLED, lost=np.zeros(4), metrics=metrics))
+                cells.append(Cell(scenario, name, "", uncontrolled=UNCONTROLLED, fails=np.zeros(4), metrics=metrics))
             elif name == "clairvoyant":
                 cells.append(Cell(scenario, name, "", sentence="truth has plants that wander"))
     return tabulate(cells, listed, {}, {"seeds": [0, 3], "versions": {}})

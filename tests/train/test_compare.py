@@ -1,17 +1,21 @@
 """The comparison in small: what it writes, what it resumes from, what it refuses."""
 
 import csv
+import html
+import io
 import json
 import re
 
 import gymnasium
 import pytest
+from rich.console import Console
 
 import beamenv
 import train.comparison.compare
 import train.learning.job
 from beamenv.task import resolve_task
-from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, trained
+from train.cli.evaluations import screen_table
+from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, tiers_of, trained
 from train.comparison.page import shown_pair
 from train.controllers.named import named
 from train.controllers.policy_files import load_policy
@@ -63,6 +67,23 @@ def test_the_table_has_every_controller_on_the_same_seeds(finished):
     assert len({evaluation.episodes.seeds for evaluation in evaluations}) == 1
     markdown = (folder / "table.md").read_text()
     assert all(row["controller"] in markdown for row in rows)
+
+
+def test_every_table_shows_the_tiers_of_laws_and_agents(finished):
+    folder, evaluations, notes = finished
+    with (folder / "table.csv").open() as file:
+        tiers = {row["controller"]: row["tier"] for row in csv.DictReader(file)}
+    expected = [str(named(name).tier) for name in CLASSICAL] + ["1", "1"]
+    assert tiers == dict(zip(notes.evaluated_names, expected, strict=True)) and expected.count("3") == 2
+    markdown = (folder / "table.md").read_text()
+    for name, tier in tiers.items():
+        assert f"| {name} | {tier} |" in markdown
+    told = "3 the episode's truth"
+    assert markdown.count(told) == 1
+    assert html.escape(told) in (folder / "report.html").read_text(encoding="utf-8")
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(screen_table(evaluations, tiers_of(evaluations)))
+    assert told in " ".join(console.export_text().split())
 
 
 def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished):

@@ -7,8 +7,7 @@ import torch
 
 import beamenv
 from baselines import PersistentLoad, RotorHarmonics, evaluate, reference_lqg
-from baselines.laws.lqg import sampled_design
-from baselines.laws.reference_lqg import full_order_lqg
+from baselines.laws.lqg import sampled_with_loads
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import normalised
@@ -17,7 +16,7 @@ from beamenv.simulation.kernel import Operators, advance
 from beamenv.task import resolve_task
 from train.learning.through_plant.actors import ActorSettings
 from train.learning.through_plant.gradient import GradientSettings, new_actor, train_gradient
-from train.learning.through_plant.linear_base import innovations_of, linear_base
+from train.learning.through_plant.linear_base import SPREAD, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import on_training_bank, uncontrolled_cost
 
@@ -157,14 +156,20 @@ def test_an_idle_actor_asks_for_nothing(kind):
     assert not action.any() and memory.any()
 
 
-def test_innovations_of_an_unreduced_law_are_as_large_as_its_kalman_filter_s():
-    """C S Cᵀ + V on the plant and the load that it is designed for."""
-    plant, load = task_of().design.full_plant, PersistentLoad()
-    held, _, filtered = sampled_design(plant, load, rate_weight=1.0)
-    law = full_order_lqg(plant, load=load)
-    variance = np.diag(held.C @ filtered.matrix @ held.C.T) + np.diag(plant.sensor_noise) / held.interval
-    found = innovations_of(law, held.C.T / plant.sensor_full_scale, plant)
-    np.testing.assert_allclose(found, np.sqrt(variance) / plant.sensor_full_scale, rtol=1e-6)
+def test_a_base_moves_as_its_scale_says_in_the_design_s_own_noise():
+    """Largest root mean square of its memory, simulated with the plant's white noise and a load that lasts."""
+    plant, base = task_of().design.full_plant, linear_base("lqg", task_of())
+    held, generator, order = sampled_with_loads(plant, PersistentLoad()), np.random.default_rng(0), base.feedback.shape[1]
+    state, memory, squares = np.zeros((200, len(held.A))), np.zeros((200, order)), []
+    factors = [np.linalg.cholesky(each) for each in (held.process_noise, held.sensor_noise)]
+    for k in range(2500):
+        load, noise = (generator.standard_normal((200, len(each))) @ each.T for each in factors)
+        product = np.hstack([memory, (state @ held.C.T + noise) / plant.sensor_full_scale]) @ base.fused
+        voltages = product[:, order:]
+        memory = product[:, :order] + voltages @ base.feedback
+        state = state @ held.A.T + 1500.0 * voltages @ held.B.T + load @ held.disturbance_input.T
+        squares += [(memory**2).mean(axis=0)] if k >= 1000 else []
+    assert np.sqrt(np.mean(squares, axis=0)).max() == pytest.approx(SPREAD, rel=0.05)
 
 
 def test_a_filter_that_knows_that_readings_clip_takes_one_at_full_scale_for_what_it_expects():

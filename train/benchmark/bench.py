@@ -15,7 +15,7 @@ from baselines import Episodes, roll_out
 from baselines.evaluation.metrics import cost_without_control, settling_band
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.named import named
-from train.shared.held_out import held_out
+from train.shared.held_out import held_out, validation
 
 Array = NDArray[np.float64]
 
@@ -30,6 +30,13 @@ class Setting:
     seeds: int
     arguments: str = "{}"
     """Of the environment besides, as JSON."""
+    validation: bool = False
+    """Whether the seeds are those that choose."""
+
+    @property
+    def episodes(self) -> range:
+        """Their seeds."""
+        return validation(self.seeds) if self.validation else held_out(self.seeds)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,5 +75,5 @@ class Bench:
 def _made(setting: Setting) -> Blades:
     arguments = {"dtype": "float64", **json.loads(setting.arguments)}
     envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **arguments)
-    reference = roll_out(named("none").build_for(envs.unwrapped.task), envs, held_out(setting.seeds))
+    reference = roll_out(named("none").build_for(envs.unwrapped.task), envs, setting.episodes)
     return Blades(envs, reference, cost_without_control(reference), settling_band(reference))

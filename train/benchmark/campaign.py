@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-import beamenv
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
 from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
+from beamenv.scenarios.named import expanded
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.task import resolve_task
 from train.benchmark.bench import Setting
@@ -27,7 +27,7 @@ from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import as_path, check_folder
-from train.shared.held_out import SEEDS, held_out
+from train.shared.held_out import SEEDS
 from train.shared.lock import alone_in
 from train.shared.versions import versions
 
@@ -49,19 +49,21 @@ def benchmark(
     jobs: int = 1,
     trained: Path = FOLDER,
     environment: Mapping[str, Any] | None = None,
+    validation: bool = False,
     progress: Progress | None = None,
 ) -> BenchmarkTable:
     """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
 
     - ``own``: objects with Stable-Baselines3's ``predict``, or plain functions, by the names they are to have. They are given the
       readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
-    - ``scenarios``: names or files; the benchmark's ten if None. One that cannot be read is refused in one sentence, and
-      the others go on.
+    - ``scenarios``: names, files, and the groups "benchmark", "open", "unseen" and "all"; "all" if None. One that cannot be read is
+      refused in one sentence, and the others go on.
     - ``controllers``: names of controllers and shipped agents, all of them if None. No control and LQG are always among them.
     - ``seeds``: held-out episodes, equal for every controller.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
+    - ``validation``: on the seeds that contenders are chosen on, in place of those that they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
@@ -70,8 +72,7 @@ def benchmark(
     be written or another process is at work.
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
-    if progress is not None and not callable(progress):
-        raise Refused("progress", progress, "None, or a function of cells done, their number, and the cell")
+    progress, validation = checked_progress(progress), checked("validation", validation, Flag())
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
@@ -81,14 +82,32 @@ def benchmark(
     if folder is not None:
         check_folder(folder)
     listed = listed_controllers(controllers, own, models, trusted, trained)
+    return of_listed(listed, scenarios, seeds, folder, jobs=jobs, arguments=arguments, validation=validation, progress=progress)
+
+
+def checked_progress(progress: Any) -> Progress | None:
+    """None, or something to call."""
+    if progress is not None and not callable(progress):
+        raise Refused("progress", progress, "None, or a function of cells done, their number, and the cell")
+    found: Progress | None = progress
+    return found
+
+
+def of_listed(
+    listed: Sequence[ListedController],
+    scenarios: Sequence[str] | None,
+    seeds: int,
+    folder: Path | None,
+    *,
+    jobs: int = 1,
+    arguments: str = "{}",
+    validation: bool = False,
+    progress: Progress | None = None,
+) -> BenchmarkTable:
+    """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON."""
     known, refused = read_scenarios(scenarios)
-    settings = [Setting(name, each, seeds, arguments) for name, each in known.items()]
-    queue = [
-        Job(setting, each.name, name, source)
-        for setting in settings
-        for each in listed
-        for name, source in each.runs(setting.name).items()
-    ]
+    settings = [Setting(name, each, seeds, arguments, validation) for name, each in known.items()]
+    queue = [job for setting in settings for each in listed for job in jobs_of(each, setting)]
     check_paths(queue)
     made = configuration(settings, listed)
     with nullcontext() if folder is None else alone_in(folder):
@@ -99,6 +118,11 @@ def benchmark(
         if folder is not None:
             write_all(folder, table)
     return table
+
+
+def jobs_of(listed: ListedController, setting: Setting) -> list[Job]:
+    """The cells of one controller in one scenario, one for each training run."""
+    return [Job(setting, listed.name, run, source) for run, source in listed.runs(setting.name).items()]
 
 
 def check_paths(queue: Sequence[Job]) -> None:
@@ -135,8 +159,8 @@ def _plain(value: Any) -> Any:
 
 
 def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
-    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read."""
-    read = {name: _read(name) for name in (beamenv.BENCHMARK_SCENARIOS if names is None else names)}
+    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read; all of them if None."""
+    read = {name: _read(name) for name in expanded(["all"] if names is None else names)}
     titles = {name: Path(name).stem if name.endswith(ENDINGS) else name for name in read}
     known = {checked("scenario", titles[name], FileName()): each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}
@@ -171,7 +195,7 @@ def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progr
 
 def configuration(settings: Sequence[Setting], listed: Sequence[ListedController]) -> dict[str, Any]:
     """How the table was made, as JSON can hold it."""
-    seeds = held_out(settings[0].seeds)
+    seeds = settings[0].episodes
     return {
         "seeds": [seeds[0], seeds[-1]],
         "environment": json.loads(settings[0].arguments),

@@ -20,7 +20,6 @@ from train.benchmark.bench import Bench, Blades, Setting
 from train.controllers.sources import Source
 from train.shared.digests import CONTROLLERS, digest, source_digest
 from train.shared.files import read_json, write_json
-from train.shared.held_out import held_out
 from train.shared.versions import installed_version
 
 Array = NDArray[np.float64]
@@ -40,7 +39,7 @@ SERIES = tuple(each.name for each in fields(EpisodeMetrics))
 ABOUT = ("scenario", "controller", "run", "title", "sentence")
 """Fields of a cell that are text."""
 
-BESIDE = ("uncontrolled", "lost")
+BESIDE = ("uncontrolled", "fails")
 """Fields of a cell with a number for each seed, besides its metrics."""
 
 
@@ -77,7 +76,7 @@ class Cell:
     """Why it failed; or, beside metrics, what went wrong on the way."""
     uncontrolled: Array | None = None
     """(N,), J s: J₀, J without control; a blade that fails is charged to its episode's end as in its last interval."""
-    lost: Array | None = None
+    fails: Array | None = None
     """(N,): 1 where the blade fails without control."""
     metrics: Mapping[str, Array] | None = None
     """(N,) each, as in ``EpisodeMetrics``."""
@@ -97,7 +96,7 @@ def _measured(job: Job, blades: Blades) -> Cell:
         raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")
     if not np.isfinite(blades.uncontrolled).all():
         raise ValueError("J without control is infinite in an episode of this scenario: no other can be relative to it.")
-    episodes = roll_out(controller, blades.envs, held_out(job.setting.seeds))
+    episodes = roll_out(controller, blades.envs, job.setting.episodes)
     metrics = measure(episodes, blades.band)
     gave_up = getattr(controller, "solver_failures", 0)
     return Cell(
@@ -107,7 +106,7 @@ def _measured(job: Job, blades: Blades) -> Cell:
         title=name_of(controller),
         sentence=f"the solver gave up at {gave_up} instants; the law's substitute was applied there." if gave_up else "",
         uncontrolled=blades.uncontrolled,
-        lost=blades.reference.failed.astype(float),
+        fails=blades.reference.failed.astype(float),
         metrics={name: getattr(metrics, name) for name in SERIES},
     )
 
@@ -143,11 +142,13 @@ def read_cell(folder: Path, job: Job) -> Cell | None:
     with of_file(path):
         about = checked_table("cell", content, ("digest", *ABOUT, "series"))
         texts = {name: checked(f"cell.{name}", about.get(name), Text()) for name in ("digest", *ABOUT)}
+        if texts.pop("digest") != wanted:
+            return None  # whatever series a cell had when it was written
         series = checked_table("cell.series", about.get("series"), (*BESIDE, *SERIES))
-        if texts.pop("digest") != wanted or not series:
+        if not series:
             return None
         found = {name: _numbers(f"cell.series.{name}", series.get(name), job.setting.seeds) for name in (*BESIDE, *SERIES)}
-    return Cell(**texts, uncontrolled=found.pop("uncontrolled"), lost=found.pop("lost"), metrics=found)
+    return Cell(**texts, uncontrolled=found.pop("uncontrolled"), fails=found.pop("fails"), metrics=found)
 
 
 def _numbers(name: str, values: Any, count: int) -> Array:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from baselines.design.controller import LEAST_TIER, as_controller
-from beamenv.configuration import FileName, Refused, checked
+from beamenv.configuration import Count, FileName, Refused, checked
+from beamenv.configuration.files import of_file
+from beamenv.knowledge import TRUTH
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, discover
+from train.controllers.policy_files import read_about
+from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
+from train.controllers.tiers import LEARNT as LEARNT
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
@@ -20,8 +26,8 @@ GENERALIST = "generalist"
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
 
-LEARNT = 1
-"""The tier of agents: what they train on is the scenario's distribution, and they see the readings alone."""
+TIER = "tier"
+"""What an agent's own file may tell."""
 
 INDISPENSABLE = ("none", "lqg")
 """What every cost is relative to, and what everyone is compared with in pairs."""
@@ -50,6 +56,7 @@ def listed_controllers(
 ) -> list[ListedController]:
     """Everyone named, all controllers and shipped agents if ``controllers`` is None, and what the caller brings.
 
+    A name may also be the folder of a trained agent, or of its runs: a name that is known comes first.
     No control and LQG are always among them. Raises ValueError for an unknown name, two of one name, an object without
     ``predict``, and models that nobody vouches for.
     """
@@ -58,14 +65,36 @@ def listed_controllers(
     classical = [ListedController(name, each.kind, each.tier, {"": Classical(each)}) for name, each in discover().items()]
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
+    known |= {name: of_folder(Path(name)) for name in names if name not in known and os.path.isdir(name)}
     if unknown := [name for name in names if name not in known]:
-        raise Refused("controller", unknown[0], f"one of {', '.join(known)}")
+        raise Refused("controller", unknown[0], f"one of {', '.join(known)}, or the folder of a trained agent")
     brought = [ListedController(name, "own", own_tier(each), {"": _given(name, each)}) for name, each in own.items()]
     brought += [ListedController(checked("model", path.stem, FileName()), "own", LEARNT, {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]
     if doubled := [each.name for index, each in enumerate(chosen) if each.name in {other.name for other in chosen[:index]}]:
         raise ValueError(f"controller {doubled[0]!r} is there twice: give yours another name.")
     return sorted(chosen, key=lambda each: place(each.tier, each.kind))
+
+
+def of_folder(folder: Path, tier: int | None = None) -> ListedController:
+    """The agent in a folder, with all runs that lie there, by the folder's name.
+
+    Its tier is ``tier``, or else what its own file tells, or else ``LEARNT``. ``ValueError`` of one sentence if there is no agent,
+    and for a ``tier`` below what its file tells.
+    """
+    name, places = checked("controller", folder.resolve().name, FileName()), runs_in(folder)
+    told = max((each for place in places.values() if (each := told_tier(place)) is not None), default=None)
+    if tier is not None and told is not None and tier < told:
+        raise Refused("tier", tier, f"at least {told}, as the agent in {str(folder)!r} says of itself")
+    known = (LEARNT if told is None else told) if tier is None else tier
+    return ListedController(name, "learned", known, {run: Trained(place) for run, place in places.items()})
+
+
+def told_tier(folder: Path) -> int | None:
+    """The tier that an agent's own file tells; None if it tells none."""
+    about = read_about(folder)
+    with of_file(folder / AGENT):
+        return checked(TIER, about[TIER], Count(0, TRUTH - 1)) if TIER in about else None
 
 
 def place(tier: int, kind: str) -> tuple[int, int]:

@@ -13,6 +13,7 @@ from baselines import Estimate
 from baselines.evaluation.metrics import judged
 from train.benchmark import statistics
 from train.benchmark.cells import SERIES, Cell
+from train.benchmark.failures import Failures, failures
 from train.benchmark.listed import ListedController, place
 
 Array = NDArray[np.float64]
@@ -50,6 +51,8 @@ class Row:
     """(runs, N), J s; J₀ where a blade fails with and without control, infinite where it fails under the controller alone."""
     uncontrolled: Array | None = None
     """(N,), J s: J₀."""
+    failures: Failures | None = None
+    """How many blades fail without control, and are saved or lost; None where nothing was measured."""
     scored: Array | None = None
     """(1 + R,): the score and those of R resamples; None without."""
 
@@ -120,8 +123,8 @@ def costs(cells: Sequence[Cell]) -> Array | None:
 
 
 def _judged(cell: Cell) -> Array:
-    assert cell.metrics is not None and cell.uncontrolled is not None and cell.lost is not None
-    return judged(cell.metrics["cost"], cell.uncontrolled, cell.lost > 0.0)
+    assert cell.metrics is not None and cell.uncontrolled is not None and cell.fails is not None
+    return judged(cell.metrics["cost"], cell.uncontrolled, cell.fails > 0.0)
 
 
 def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None, bound: Array | None) -> Row:
@@ -136,11 +139,13 @@ def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None, bo
     if not served:
         return empty
     series = {name: np.stack([cell.metrics[name] for cell in served if cell.metrics]) for name in SERIES}
-    uncontrolled = served[0].uncontrolled
-    assert uncontrolled is not None
+    uncontrolled, fails = served[0].uncontrolled, served[0].fails
+    assert uncontrolled is not None and fails is not None
     cost = np.stack([_judged(cell) for cell in served])
     found = estimates(series, cost, uncontrolled, rival)
-    measured = replace(empty, runs=len(served), seeds=len(uncontrolled), estimates=found, cost=cost, uncontrolled=uncontrolled)
+    counted = failures(series["cost"], fails)
+    measured = replace(empty, runs=len(served), seeds=len(uncontrolled), estimates=found, failures=counted)
+    measured = replace(measured, cost=cost, uncontrolled=uncontrolled)
     scored = None if bound is None else statistics.scores(cost, bound, uncontrolled, "" if everywhere else scenario)
     if scored is None:
         return measured

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from baselines import Estimate
 from beamenv.knowledge import TIERS
 from train.benchmark import statistics
-from train.benchmark.listed import GENERALIST
+from train.benchmark.contests import AHEAD, BEHIND, Contest, contests, gap
+from train.benchmark.listed import GENERALIST, LEARNT
+from train.benchmark.score import SPLITS, split_of
 from train.benchmark.table import RIVAL, BenchmarkTable, Row
 
 NOMINAL = "nominal"
@@ -23,17 +24,81 @@ class Finding:
     met: bool | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Leader:
+    """Who has the least mean J of a tier in a scenario, of all kinds."""
+
+    row: Row
+    rivals: int
+    """Others of the tier that were measured there."""
+    clear: bool
+    """Whether it is below every one of these, each by the paired interval."""
+
+
 def findings(table: BenchmarkTable) -> list[Finding]:
-    """All of them: the generalists where LQG is at home, the best agent against who is told no more, and who wins in each tier."""
-    found = [nominal(each, rival) for each, rival in _generalists(table)]
-    others = [name for name in table.scenarios if name != NOMINAL]
-    contests = [contest for name in others if (contest := _contest(table.within(name)))]
-    if contests:
-        ahead = [agent.scenario for agent, _, gap in contests if gap.high < 0.0]
-        where = f"{len(ahead)} of {len(contests)} scenarios besides nominal{': ' if ahead else ''}{', '.join(ahead)}"
-        found.append(Finding(f"The best agent is ahead of the best other controller that is told no more in {where}."))
-        found += [Finding(_sentence(*contest)) for contest in contests]
-    return found + [Finding(sentence) for name in table.scenarios for sentence in winners(table.within(name))]
+    """All of them: what learning buys, who leads in each tier, and the generalists where LQG is at home."""
+    told = [claim(table, contests(table)), *(leading(table, tier) for tier in TIERS)]
+    return [Finding(each) for each in told if each] + [nominal(agent, rival) for agent, rival in _generalists(table)]
+
+
+def claim(table: BenchmarkTable, found: Sequence[Contest]) -> str:
+    """In how many scenarios of each split the agent is ahead of all laws that are told no more, and behind; empty without any."""
+    if not found:
+        return ""
+    parts = [
+        part for split in (*SPLITS, "") if (part := _of_split(split, [c for c in found if split_of(table, c.scenario) == split]))
+    ]
+    agent = (
+        "the agent chosen on validation seeds"
+        if all(each.agent_chosen for each in found)
+        else (
+            "the agent, where none was chosen on validation seeds the one with the least J on these very seeds, which favours it,"
+        )
+    )
+    return f"Tier {LEARNT} and below, by paired intervals of J: {agent} is ahead of every law in {'; in '.join(parts)}."
+
+
+def _of_split(split: str, found: Sequence[Contest]) -> str:
+    """Empty where there is no contest."""
+    if not found:
+        return ""
+    ahead, behind = ([each.scenario for each in found if each.verdict == verdict] for verdict in (AHEAD, BEHIND))
+    return f"{len(ahead)} of {len(found)} {split or 'other'} scenarios{_listed(ahead)}, behind in {len(behind)}{_listed(behind)}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return f" ({', '.join(names)})" if names else ""
+
+
+def leading(table: BenchmarkTable, tier: int) -> str:
+    """Who has the least mean J of a tier in how many scenarios, and in how many clearly; empty without anyone."""
+    leaders = [each for name in table.scenarios if (each := leader(table.within(name), tier))]
+    wins: dict[str, list[Leader]] = {}
+    for each in leaders:
+        wins.setdefault(each.row.controller, []).append(each)
+    parts = [f"{name} in {_won(each)}" for name, each in sorted(wins.items(), key=lambda item: -len(item[1]))]
+    return f"Tier {tier}, {TIERS[tier]}: least J of {len(leaders)} scenarios by {'; '.join(parts)}." if parts else ""
+
+
+def _won(leaders: Sequence[Leader]) -> str:
+    if not any(each.rivals for each in leaders):
+        return f"{len(leaders)}, alone"
+    return f"{len(leaders)}, clearly in {sum(each.clear for each in leaders)}"
+
+
+def leader(rows: Sequence[Row], tier: int) -> Leader | None:
+    """Of a tier in one scenario; None if nobody of it was measured."""
+    own = [row for row in rows if row.measured and row.tier == tier]
+    first = best(own)
+    if first is None:
+        return None
+    others = [row for row in own if row is not first]
+    return Leader(first, len(others), bool(others) and all(gap(first, other).high < 0.0 for other in others))
+
+
+def best(rows: Iterable[Row]) -> Row | None:
+    """The least mean J; None if none of them was measured."""
+    return min((row for row in rows if row.measured), key=lambda row: row.mean_cost, default=None)
 
 
 def nominal(agent: Row, rival: Row) -> Finding:
@@ -47,54 +112,10 @@ def nominal(agent: Row, rival: Row) -> Finding:
     return Finding(sentence, excess.value <= 1.0 + MARGIN)
 
 
-def best(rows: Iterable[Row]) -> Row | None:
-    """The least mean J; None if none of them was measured."""
-    return min((row for row in rows if row.measured), key=lambda row: row.mean_cost, default=None)
-
-
-def winners(rows: Sequence[Row]) -> list[str]:
-    """Who has the least mean J of each tier, whatever its kind, and how far ahead of LQG."""
-    return [sentence for tier in TIERS if (sentence := _winner([row for row in rows if row.tier == tier]))]
-
-
-def _winner(rows: Sequence[Row]) -> str:
-    """Empty without one."""
-    first = best(rows)
-    gap = first.estimates.get("difference_to_lqg") if first else None
-    if first is None or gap is None:
-        return ""
-    where = f"{first.scenario}, tier {first.tier}"
-    if first.mean_cost == float("inf"):
-        return f"{where}: every controller breaks blades."
-    unstable = first.estimates["unstable"].value
-    doubt = f"; unstable in {100.0 * unstable:.0f} % of its episodes" if unstable else ""
-    return f"{where}: lowest J by {first.controller} ({first.kind}), {_gap(gap)} against LQG{doubt}."
-
-
 def _generalists(table: BenchmarkTable) -> list[tuple[Row, Row]]:
     rival = table.row(NOMINAL, RIVAL)
     rows = [row for row in table.within(NOMINAL) if row.controller.endswith(GENERALIST) and row.measured]
     return [(row, rival) for row in rows] if rival is not None and rival.measured else []
-
-
-def _contest(rows: Sequence[Row]) -> tuple[Row, Row, Estimate] | None:
-    """Best agent, the best of all others that are told no more than it, and the paired difference of their relative costs."""
-    agent = best(row for row in rows if row.kind == "learned")
-    rival = best(row for row in rows if row.kind != "learned" and agent is not None and row.tier <= agent.tier)
-    if agent is None or rival is None:
-        return None
-    assert agent.cost is not None and rival.cost is not None and rival.uncontrolled is not None
-    return agent, rival, statistics.difference(agent.cost, rival.cost, rival.uncontrolled)
-
-
-def _sentence(agent: Row, rival: Row, gap: Estimate) -> str:
-    verdict = "ahead" if gap.high < 0.0 else "behind" if gap.low > 0.0 else "no clear difference"
-    rivals = f"best agent {agent.controller}, best other {rival.controller} (tier {rival.tier})"
-    return f"{agent.scenario}: {rivals}: {_gap(gap)}, {verdict}."
-
-
-def _gap(gap: Estimate) -> str:
-    return f"J / J without control {gap.value:+.3f} [{gap.low:+.3f}, {gap.high:+.3f}]"
 
 
 def _percent(share: float) -> str:

@@ -177,7 +177,7 @@ def compare(
         from beamenv.configuration import Number, checked
         from train.cli.evaluations import screen_table
         from train.cli.progress import Progressbar
-        from train.comparison.compare import Comparison
+        from train.comparison.compare import Comparison, tiers_of
         from train.comparison.compare import compare as run
 
         default = Comparison().budget
@@ -187,9 +187,9 @@ def compare(
         with Progressbar(budget) as bar:
             evaluations = run(comparison, folder, bar)
     if as_json:
-        print_json([evaluation.row() for evaluation in evaluations])
+        print_json([{"tier": tiers_of(evaluations)[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:
-        print_table(screen_table(evaluations))
+        print_table(screen_table(evaluations, tiers_of(evaluations)))
         Console().print(f"written to {folder}", markup=False)
 
 

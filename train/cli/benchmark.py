@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,12 +12,15 @@ import typer
 from rich.console import Console
 
 from beamenv.configuration.files import ENDINGS
-from train.cli.options import RESUMES, JsonOption, one_sentence, print_json, print_table
+from beamenv.scenarios.named import GROUPS
+from train.cli.benchmark_table import finite_row, show_entry, show_table
+from train.cli.options import RESUMES, JsonOption, one_sentence, print_json
+from train.cli.quick import QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
 from train.shared.digests import digest
 from train.shared.files import check_folder
 
 if TYPE_CHECKING:
-    from train.benchmark.table import BenchmarkTable, Row
+    from train.benchmark.table import BenchmarkTable
 
 SEEDS = 128
 
@@ -27,12 +30,16 @@ LONGEST = 60
 
 def benchmark(
     scenario: Annotated[
-        list[str] | None, typer.Option(help="Name or TOML file of a scenario; repeat for more. All of the benchmark's if left out.")
+        list[str] | None,
+        typer.Option(help=f"Name or TOML file of a scenario, or {', '.join(GROUPS)} of them; repeat for more. All if left out."),
     ] = None,
     controller: Annotated[
-        list[str] | None, typer.Option(help="Name of a controller or shipped agent; repeat for more. All of them if left out.")
+        list[str] | None,
+        typer.Option(
+            help="Name of a controller or shipped agent, or a trained one's folder; repeat for more. All with a name if left out."
+        ),
     ] = None,
-    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = SEEDS,
+    seeds: Annotated[int | None, typer.Option(min=2, help=f"How many held-out episodes; {SEEDS} if left out.")] = None,
     folder: Annotated[
         Path | None,
         typer.Option(
@@ -43,24 +50,44 @@ def benchmark(
         list[Path] | None,
         typer.Option(help="Stable-Baselines3 model to take part. Such a file can run code when it is loaded: see --trust."),
     ] = None,
-    trust: Annotated[bool, typer.Option("--trust", help="Load --model files: I know where they are from.")] = False,
+    trust: Annotated[bool, typer.Option("--trust", help="Load model files: I know where they are from.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help=f"At most a minute: {told()}. What else is given comes first.")] = False,
+    submit: Annotated[
+        str | None,
+        typer.Option(
+            help="Enter a trained agent's folder, a model's .zip or a controller by name on the leaderboard, once it has been run "
+            "in every scenario."
+        ),
+    ] = None,
+    tier: Annotated[int | None, typer.Option(help="Of the entry: 0, 1 or 2; what it says of itself, or 1, if left out.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace another entry of the same name.")] = False,
     jobs: Annotated[int, typer.Option(min=1, help="Processes at work side by side.")] = 2,
-    docs: Annotated[Path | None, typer.Option(help="Folder that gets benchmark.md and its heat map.")] = None,
+    docs: Annotated[
+        Path | None,
+        typer.Option(help="Folder that gets benchmark.md and its heat map; with --submit that of the leaderboard, else results."),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Every controller in every scenario on the same held-out episodes. At most ten minutes on two cores.
+    """Every controller in every scenario on the same held-out episodes; with --quick a few, with --submit one of yours.
 
     An interrupted run resumes from what its folder holds; a folder with a benchmark of other settings is refused. What cannot be
     measured is reported in one sentence each, the rest is measured, and the status is then 1.
     """
     with one_sentence(RESUMES):
+        chosen = {"scenario": scenario, "controller": controller, "seeds": seeds, "model": model, "quick": quick}
+        if submit is not None:
+            entered(submit, chosen, folder, docs, as_json, tier=tier, trusted=trust, overwrite=overwrite, jobs=jobs)
+            return
+        for name, given in {"tier": tier, "overwrite": overwrite or None}.items():
+            if given is not None:
+                raise ValueError(f"{name} = {given} is of an entry on the leaderboard: name that with --submit.")
         if docs is not None:
             check_folder(docs, "docs")
-        home = default_folder(scenario or (), controller or (), seeds, model or ()) if folder is None else folder
+        home = default_folder(scenario or (), controller or (), seeds or SEEDS, model or (), quick) if folder is None else folder
         table = _measured(
-            scenarios=scenario or None,
-            controllers=controller or None,
-            seeds=seeds,
+            scenarios=scenario or (QUICK_SCENARIOS if quick else None),
+            controllers=controller or (quick_controllers() if quick else None),
+            seeds=seeds or (QUICK_SEEDS if quick else SEEDS),
             folder=home,
             models=model or (),
             trusted=trust,
@@ -71,8 +98,28 @@ def benchmark(
 
             write_docs(docs, table, shlex.join(["beamenv", *sys.argv[1:]]))
     _show(table, None if as_json else home)
+    if quick and not as_json:
+        Console().print(wide(table), highlight=False, markup=False)
     if table.sentences:
         raise typer.Exit(1)
+
+
+def entered(
+    submit: str, chosen: Mapping[str, Any], folder: Path | None, docs: Path | None, as_json: bool, **arguments: Any
+) -> None:
+    """Run an entry, append it to the leaderboard, and say where it stands."""
+    from train.benchmark.submission import submit as run
+
+    if others := [name for name, given in chosen.items() if given]:
+        raise ValueError(f"submit = {submit!r} runs what every entry is put through, so leave out {' and '.join(others)}.")
+    board = Path("results") if docs is None else docs
+    home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
+    with _Bar() as bar:
+        entry, table = run(submit, board, folder=home, progress=bar.show, **arguments)
+    if as_json:
+        print_json(finite_row(entry))
+    else:
+        show_entry(entry, table, board, home)
 
 
 def _measured(**arguments: Any) -> BenchmarkTable:
@@ -83,11 +130,14 @@ def _measured(**arguments: Any) -> BenchmarkTable:
         return run(**arguments, progress=bar.show)
 
 
-def default_folder(scenarios: Sequence[str], controllers: Sequence[str], seeds: int, models: Sequence[Path]) -> Path:
+def default_folder(
+    scenarios: Sequence[str], controllers: Sequence[str], seeds: int, models: Sequence[Path], quick: bool = False
+) -> Path:
     """``results/benchmark``, with what is chosen behind it: each choice has a folder of its own."""
+    scenarios = () if list(scenarios) == ["all"] else scenarios
     chosen = [Path(name).stem if name.endswith(ENDINGS) else name for name in (*scenarios, *controllers)]
     chosen += [path.stem for path in models] + ([] if seeds == SEEDS else [str(seeds)])
-    name = "-".join(["benchmark", *chosen])
+    name = "-".join(["benchmark", *(["quick"] if quick else []), *chosen])
     short = name if len(name) <= LONGEST else f"{name[:LONGEST]}-{digest(name.encode())}"
     return Path("results", "".join(letter if letter.isalnum() or letter in "-_. " else "_" for letter in short))
 
@@ -124,37 +174,6 @@ def _show(table: BenchmarkTable, folder: Path | None) -> None:
     if folder is None:
         print_json(as_json(table))
     else:
-        _print(table, folder)
+        show_table(table, folder)
     for where, sentence in table.sentences.items():
         print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
-
-
-def _print(table: BenchmarkTable, folder: Path) -> None:
-    """Two digits of each cell, never cut off however narrow the terminal is; the files hold the rest."""
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
-    from train.benchmark.targets import findings
-
-    caption = f"▲ some episodes unstable. Written to {folder}"
-    shown = Table(title="J / J without control", caption=Text(caption), box=box.SIMPLE, padding=(0, 1, 0, 0))
-    shown.add_column("controller", no_wrap=True)
-    shown.add_column("tier", justify="right")
-    tiers = {row.controller: str(row.tier) for row in table.rows}
-    for name in table.scenarios:
-        shown.add_column(Text(name), justify="right", no_wrap=True)
-    for name in table.controllers:
-        shown.add_row(Text(name), tiers[name], *(_brief(table.row(scenario, name)) for scenario in table.scenarios))
-    print_table(shown)
-    for each in findings(table):
-        Console().print(each.sentence, highlight=False, markup=False)
-
-
-def _brief(row: Row | None) -> str:
-    from train.shared.columns import number
-
-    if row is None or not row.measured:
-        return "–" if row is None else "✕"
-    value = row.estimates["relative_cost"].value
-    return number(value, "{:.2f}" if value < 10.0 else "{:.0f}") + ("▲" if row.estimates["unstable"].value else "")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, field
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,6 +22,7 @@ from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
 from train.controllers.named import named
 from train.controllers.policy_files import load_policy, read_about
+from train.controllers.tiers import LEARNT
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.job import Job, run
@@ -117,13 +119,20 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
             evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener, alone)
     finally:
         envs.close()
-    write_tables(folder, evaluations)
+    tiers = tiers_of(evaluations)
+    write_tables(folder, evaluations, tiers)
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
     levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
     drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "positive-position-feedback", "lqg")]
     write_figures(folder, plant, evaluations, drawn, curves, levels)
-    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, content)
+    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, content, tiers)
     return evaluations
+
+
+def tiers_of(evaluations: Sequence[Evaluation]) -> dict[str, int]:
+    """Tiers of information by the controllers' names, in the order in which a comparison evaluates: its laws, then the agents."""
+    tiers = chain((named(name).tier for name in CLASSICAL), repeat(LEARNT))
+    return {evaluation.name: tier for evaluation, tier in zip(evaluations, tiers, strict=False)}
 
 
 def described(comparison: Comparison, task: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from baselines import Controller, Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.comparison.figures import clearest_episode
-from train.comparison.table import HEADINGS, caption, cells, ranked
+from train.comparison.table import Tiers, caption, cells, headings, ranked
 from train.page import Cell, LearningCurves, PageContent, Table, record_episode, write_page
 from train.shared.columns import EVALUATION
 
@@ -27,6 +27,7 @@ def write_comparison_page(
     curves: Mapping[str, Array],
     levels: Mapping[str, float],
     configuration: Mapping[str, Any],
+    tiers: Tiers = None,
 ) -> None:
     """Write ``report.html``; ``controllers`` are in the order of the ``evaluations``, ``curves`` and ``levels`` as in ``figures``.
 
@@ -37,7 +38,7 @@ def write_comparison_page(
     linear = {law.name: law for law in controllers.values() if isinstance(law, LinearController)}
     content = PageContent(
         title="Controllers compared on a rotating blade",
-        table=page_table(evaluations),
+        table=page_table(evaluations, tiers),
         episode=record_episode(configuration["comparison"]["environment"], seed, shown_pair(evaluations, controllers)),
         episode_note=f"Held-out episode of seed {seed}, whose load makes the tip swing most.",
         poles={name: closed_loop_poles(plant, law) for name, law in linear.items() if law.observes == "observation"},
@@ -47,14 +48,15 @@ def write_comparison_page(
     write_page(folder / "report.html", content)
 
 
-def page_table(evaluations: Sequence[Evaluation]) -> Table:
+def page_table(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> Table:
     """Controllers, best first, to be sorted by a click."""
     rows = []
     for evaluation in ranked(evaluations):
-        name, *texts = cells(evaluation)
-        numbers = [getattr(evaluation, column.name).value for column in EVALUATION]
+        name, *texts = cells(evaluation, tiers)
+        numbers = [float(tiers[name])] if tiers else []
+        numbers += [getattr(evaluation, column.name).value for column in EVALUATION]
         rows.append((Cell(name), *(Cell(text, number) for text, number in zip(texts, numbers, strict=True))))
-    return Table(HEADINGS, tuple(rows), caption(evaluations))
+    return Table(tuple(headings(tiers)), tuple(rows), caption(evaluations, tiers))
 
 
 def shown_pair(evaluations: Sequence[Evaluation], controllers: Mapping[str, Controller]) -> tuple[Controller, Controller]:

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from baselines import Evaluation
 from beamenv.configuration.writing import write_whole
+from train.controllers.tiers import tiers_told
 from train.shared import markdown
 from train.shared.columns import EVALUATION
 from train.shared.files import write_csv
 
-HEADINGS = ("controller", *(column.heading for column in EVALUATION))
+Tiers = Mapping[str, int] | None
+"""Of controllers by their names, for a column of its own; None where there is none."""
+
+
+def headings(tiers: Tiers = None) -> list[str]:
+    """Of all columns."""
+    return ["controller", *(["tier"] if tiers else []), *(column.heading for column in EVALUATION)]
 
 
 def ranked(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
@@ -19,29 +26,32 @@ def ranked(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
     return sorted(evaluations, key=lambda evaluation: evaluation.relative_cost.value)
 
 
-def cells(evaluation: Evaluation) -> list[str]:
+def cells(evaluation: Evaluation, tiers: Tiers = None) -> list[str]:
     """Name, then every column."""
-    return [evaluation.name, *(column.text(getattr(evaluation, column.name)) for column in EVALUATION)]
+    told = [str(tiers[evaluation.name])] if tiers else []
+    return [evaluation.name, *told, *(column.text(getattr(evaluation, column.name)) for column in EVALUATION)]
 
 
-def caption(evaluations: Sequence[Evaluation]) -> str:
+def caption(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:
     """What the table rests on."""
     first = evaluations[0]
     seeds = first.episodes.seeds
     return (
         f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]}), the same for every controller; "
         f"brackets: {100 * first.confidence:.0f} % bootstrap intervals over seeds. "
-        "Controllers marked (true state) see what no sensor shows: bounds, not rivals."
+        f"{tiers_told() if tiers else 'Controllers marked (true state) see what no sensor shows: bounds, not rivals.'}"
     )
 
 
-def markdown_table(evaluations: Sequence[Evaluation]) -> str:
+def markdown_table(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:
     """The table in Markdown, best first, with its caption."""
-    rows = [cells(evaluation) for evaluation in ranked(evaluations)]
-    return f"{markdown.table(HEADINGS, rows, words=1)}\n\n{caption(evaluations)}\n"
+    rows = [cells(evaluation, tiers) for evaluation in ranked(evaluations)]
+    return f"{markdown.table(headings(tiers), rows, words=1)}\n\n{caption(evaluations, tiers)}\n"
 
 
-def write_tables(folder: Path, evaluations: Sequence[Evaluation]) -> None:
+def write_tables(folder: Path, evaluations: Sequence[Evaluation], tiers: Tiers = None) -> None:
     """``table.csv``, in SI units with every interval, and ``table.md``."""
-    write_csv(folder / "table.csv", [evaluation.row() for evaluation in ranked(evaluations)])
-    write_whole(folder / "table.md", markdown_table(evaluations))
+    told = [{"controller": each.name, **({"tier": tiers[each.name]} if tiers else {})} for each in ranked(evaluations)]
+    rows = [{**about, **each.row()} for about, each in zip(told, ranked(evaluations), strict=True)]
+    write_csv(folder / "table.csv", rows)
+    write_whole(folder / "table.md", markdown_table(evaluations, tiers))

@@ -1,4 +1,4 @@
-"""The seeds that controllers are compared on, and that nothing is trained or chosen on."""
+"""The seeds that controllers are compared on, which nothing is trained or chosen on, and those that choose."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from beamenv.configuration import Count
 HELD_OUT = 1_000_000
 """The first of them: training draws from generators of its own."""
 
+VALIDATION = 3_000_000
+"""The first of those on which settings, checkpoints and contenders are chosen."""
+
 SEEDS = Count(2, MOST_SEEDS)
 """How many of them: intervals need more than one episode."""
 
@@ -15,3 +18,8 @@ SEEDS = Count(2, MOST_SEEDS)
 def held_out(seeds: int) -> range:
     """So many of them, the same for every controller."""
     return range(HELD_OUT, HELD_OUT + seeds)
+
+
+def validation(seeds: int) -> range:
+    """So many of those that choose."""
+    return range(VALIDATION, VALIDATION + seeds)

@@ -25,17 +25,24 @@ def alone_in(folder: Path) -> Iterator[None]:
     check_folder(folder)
     made = [each for each in (folder, *folder.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
-    handle = -1
     try:
-        handle = _locked(folder)
-        remove_unfinished(folder)
-        yield
+        with held(folder):
+            remove_unfinished(folder)
+            yield
     finally:
-        if handle >= 0:
-            _let_go(handle, folder / NAME)
         with suppress(OSError):  # one that is not empty stays
             for each in made:
                 each.rmdir()
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """The lock alone, of a folder that is there, say to change one file in it that others may want to change too."""
+    handle = _locked(folder)
+    try:
+        yield
+    finally:
+        _let_go(handle, folder / NAME)
 
 
 def _locked(folder: Path) -> int:

@@ -1,6 +1,8 @@
 """Scenarios as TOML files: their names are those of the files. A file takes part in the benchmark unless it is listed here."""
 
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
+from types import MappingProxyType
 
 NAMES: tuple[str, ...] = tuple(
     sorted(entry.name.removesuffix(".toml") for entry in files(__name__).iterdir() if entry.name.endswith(".toml"))
@@ -20,3 +22,13 @@ UNSEEN: tuple[str, ...] = (
 
 BENCHMARK: tuple[str, ...] = tuple(name for name in NAMES if name not in OPEN and (name not in UNSEEN or name in SOLIDS))
 """Those of the benchmark's table."""
+
+GROUPS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"benchmark": BENCHMARK, "open": OPEN, "unseen": UNSEEN, "all": tuple(dict.fromkeys((*BENCHMARK, *OPEN, *UNSEEN)))}
+)
+"""Words that stand for several, where several are asked for. No file here has such a name; one elsewhere is told by its ending."""
+
+
+def expanded(names: Iterable[str]) -> tuple[str, ...]:
+    """Names and files, and of groups their scenarios, each once."""
+    return tuple(dict.fromkeys(name for each in names for name in GROUPS.get(each, (each,))))

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from train.benchmark.showing.episode import shown_episode
 from train.benchmark.showing.heat_map import heat_map
-from train.benchmark.showing.report import COLUMNS, legend
+from train.benchmark.showing.legend import legend
+from train.benchmark.showing.report import COLUMNS, HEADINGS, about
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
@@ -46,11 +47,11 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
 
 def page_table(table: BenchmarkTable) -> Table:
     """All rows, to be sorted by a click."""
-    headings = ("scenario", "controller", "tier", "kind", "runs", *(column.heading for column in COLUMNS))
+    headings = ("scenario", *HEADINGS, *(column.heading for column in COLUMNS))
     return Table(headings, tuple(_cells(row) for row in table.rows), legend(table))
 
 
 def _cells(row: Row) -> tuple[Cell, ...]:
-    about = (Cell(row.scenario), Cell(row.controller), Cell(str(row.tier), row.tier), Cell(row.kind), Cell(str(row.runs), row.runs))
+    first = [Cell(str(each), each if isinstance(each, int) else None) for each in (row.scenario, *about(row))]
     found = [(column, row.estimates.get(column.name)) for column in COLUMNS]
-    return about + tuple(Cell(column.text(each), None if each is None else each.value) for column, each in found)
+    return (*first, *(Cell(column.text(each), None if each is None else each.value) for column, each in found))

@@ -8,12 +8,13 @@ from typing import Any
 
 from baselines import Estimate
 from baselines.evaluation.metrics import finite
-from baselines.evaluation.statistics import CONFIDENCE, RESAMPLES
 from beamenv.configuration.writing import write_whole
-from beamenv.knowledge import TIERS, TRUTH
-from train.benchmark.score import RULE, Aggregate, Headroom, aggregates, headrooms
+from train.benchmark.contests import Contest, contests
+from train.benchmark.score import Aggregate, Headroom, aggregates, headrooms
+from train.benchmark.showing.contests import agents_and_laws, leaders
+from train.benchmark.showing.legend import legend
 from train.benchmark.showing.scores import headroom, scores
-from train.benchmark.table import UNSTABLE, BenchmarkTable, Row
+from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.shared.columns import Column, number, share
 from train.shared.files import write_csv, write_json
@@ -36,8 +37,14 @@ COLUMNS = (
     Column("saturation", "saturated, %", 100.0, "{:.1f}"),
 )
 
+HEADINGS = ("controller", "tier", "kind", "runs", "saved", "lost")
+"""Of what ``about`` says of a row."""
+
 ABOUT = ("scenario", "controller", "title", "tier", "kind", "runs", "seeds")
 """Fields of a row besides its estimates."""
+
+COUNTS = ("fail_without", "saved", "lost")
+"""Episodes with a blade that fails, of ``Failures``."""
 
 
 def write_files(folder: Path, table: BenchmarkTable) -> None:
@@ -51,24 +58,30 @@ def write_files(folder: Path, table: BenchmarkTable) -> None:
 
 def csv_row(row: Row) -> dict[str, Any]:
     """One flat row in SI units: value, low and high of each estimate; infinite ones as "inf"."""
-    flat: dict[str, Any] = {name: getattr(row, name) for name in ABOUT}
+    flat: dict[str, Any] = {name: getattr(row, name) for name in ABOUT} | counts(row)
     for name, estimate in row.estimates.items():
         flat |= {name: estimate.value, f"{name}_low": estimate.low, f"{name}_high": estimate.high}
     return flat | {"sentence": " ".join(row.sentences)}
+
+
+def counts(row: Row) -> dict[str, int | None]:
+    """Blades that fail without control, that are saved and that are lost; None where nothing was measured."""
+    return {name: None if row.failures is None else getattr(row.failures, name) for name in COUNTS}
 
 
 def as_json(table: BenchmarkTable) -> dict[str, Any]:
     """Configuration, findings and rows; None for what is infinite."""
     rows = []
     for row in table.rows:
-        about = {name: getattr(row, name) for name in ABOUT}
+        fields = {name: getattr(row, name) for name in ABOUT}
         found = {name: estimate_json(each) for name, each in row.estimates.items()}
-        rows.append({**about, "estimates": found, "sentences": list(row.sentences)})
+        rows.append({**fields, **counts(row), "estimates": found, "sentences": list(row.sentences)})
     judged = [{"sentence": each.sentence, "met": each.met} for each in findings(table)]
     return {
         "configuration": dict(table.configuration),
         "findings": judged,
         "refused": dict(table.refused),
+        "contests": [contest_json(each) for each in contests(table)],
         "aggregates": [aggregate_json(each) for each in aggregates(table)],
         "headroom": [headroom_json(each) for each in headrooms(table)],
         "rows": rows,
@@ -80,11 +93,19 @@ def estimate_json(estimate: Estimate | None) -> dict[str, float | None] | None:
     return None if estimate is None else {name: finite(getattr(estimate, name)) for name in ("value", "low", "high")}
 
 
+def contest_json(one: Contest) -> dict[str, Any]:
+    """An agent against the laws of a scenario."""
+    names = {name: getattr(one, name).controller for name in ("agent", "law", "hardest")}
+    gaps = {name: estimate_json(getattr(one, name)) for name in ("gap", "least_clear")}
+    said = {name: getattr(one, name) for name in ("scenario", "verdict", "agent_chosen", "law_chosen")}
+    return {**said, **names, **gaps}
+
+
 def aggregate_json(one: Aggregate) -> dict[str, Any]:
     """A controller's score over a split."""
-    about = {name: getattr(one, name) for name in ("split", "controller", "tier", "kind")}
+    whose = {name: getattr(one, name) for name in ("split", "controller", "tier", "kind")}
     over = {"scenarios": list(one.scenarios), "without": list(one.without)}
-    return {**about, "score": estimate_json(one.score), "less_lqg": estimate_json(one.less_lqg), **over}
+    return {**whose, "score": estimate_json(one.score), "less_lqg": estimate_json(one.less_lqg), **over}
 
 
 def headroom_json(one: Headroom) -> dict[str, Any]:
@@ -95,7 +116,7 @@ def headroom_json(one: Headroom) -> dict[str, Any]:
 
 def markdown(table: BenchmarkTable) -> str:
     """Findings, overview, a table for each scenario, what went wrong, and how it was made."""
-    parts = [found(table), scores(table), headroom(table), overview(table), legend(table)]
+    parts = [found(table), agents_and_laws(table), leaders(table), scores(table), headroom(table), overview(table), legend(table)]
     parts += [f"### {escaped(name)}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
     if table.sentences:
         lines = "\n".join(f"- {escaped(where)}: {escaped(sentence)}" for where, sentence in table.sentences.items())
@@ -134,28 +155,21 @@ def scenario_table(rows: Sequence[Row]) -> str:
     lines = []
     for row in sorted(rows, key=lambda each: each.mean_cost):
         cells = [column.text(row.estimates.get(column.name)) for column in COLUMNS]
-        lines.append([row.controller, str(row.tier), row.kind, str(row.runs), *cells])
-    return markdown_table(["controller", "tier", "kind", "runs", *(column.heading for column in COLUMNS)], lines, words=3)
+        lines.append([*(str(each) for each in about(row)), *cells])
+    table = markdown_table([*HEADINGS, *(column.heading for column in COLUMNS)], lines, words=3)
+    return f"{without_control(rows)}\n\n{table}"
 
 
-def legend(table: BenchmarkTable) -> str:
-    """What the numbers are, and by which rules."""
-    first, last = table.configuration["seeds"]
-    return (
-        f"J₀ is J without control on the same episodes: {last - first + 1} held-out seeds, {first} to {last}, equal for every "
-        "controller; a blade that fails without control is charged to its episode's end as in its last interval. J / J₀: ratio of "
-        "the means over seeds and training runs. IQM: interquartile mean of J / J₀, seed by seed and run by run. Brackets: "
-        f"{100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
-        "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails, which makes J infinite, "
-        f"or J₀ where it fails without control too, or if J > {UNSTABLE:g} J₀; none is left out. Settling, peaks and effort "
-        f"are means over episodes. {RULE} {tiers()}"
-    )
+def about(row: Row) -> tuple[str | int, ...]:
+    """What a table says of a row before its estimates; dashes where nothing was counted."""
+    found = counts(row)
+    saved, lost = ("–" if each is None else each for each in (found["saved"], found["lost"]))
+    return row.controller, row.tier, row.kind, row.runs, saved, lost
 
 
-def tiers() -> str:
-    """What the tiers are, and how they are compared."""
-    known = ", ".join(f"{tier} {what}" for tier, what in TIERS.items())
-    return (
-        f"Tiers say what a controller is told and sees, each what those below it are too: {known}. The best of a tier is that of "
-        f"all its kinds; tier {TRUTH}, which no real blade offers, is a reference and no rival."
-    )
+def without_control(rows: Sequence[Row]) -> str:
+    """How many blades of a scenario fail without control."""
+    each = next((row.failures for row in rows if row.controller == "none"), None)
+    if each is None:
+        return "How many blades fail without control could not be measured."
+    return f"Without control the blade fails in {each.fail_without or 'none'} of {each.episodes} episodes."

@@ -14,7 +14,7 @@ from beamenv.configuration import Number, Positive, configuration
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.policies import Policy, RecurrentPolicy, ResidualPolicy, StateSpacePolicy
 from train.learning.ranges import UNITS
-from train.learning.through_plant.linear_base import SPREAD, LinearBase
+from train.learning.through_plant.linear_base import LinearBase
 from train.learning.through_plant.windows import Memory
 
 
@@ -209,25 +209,19 @@ class StateSpaceActor(Actor):
 
 
 class BeliefActor(Actor):
-    """A gain from the belief of a law's filter, which stays as it is: its memory ξ and the innovations y − clip(C ξ).
-
-    What the gain is from is scaled to equal root mean squares, ``SPREAD``, so that a step of the optimiser is as large a share of
-    what each number does: errors in the gains from the blade's high modes destabilise.
-    """
+    """A gain from the belief of a law's filter, which stays as it is: its memory ξ and the innovations y − clip(C ξ)."""
 
     onward: Tensor
     feedback: Tensor
     readout: Tensor
-    unit: Tensor
 
-    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase, innovations: Array, idle: bool) -> None:
+    def __init__(self, plant: Plant, settings: ActorSettings, runs: int, base: LinearBase, idle: bool) -> None:
         super().__init__(plant, settings, runs)
         order = base.feedback.shape[1]
-        asked, unit = base.fused[:, order:], innovations / SPREAD
-        gain = np.vstack([asked[:order] + base.readout @ asked[order:], unit[:, None] * asked[order:]])
+        asked = base.fused[:, order:]
+        gain = np.vstack([asked[:order] + base.readout @ asked[order:], asked[order:]])
         self.gain = nn.Parameter(_for_each(runs, gain * float(not idle)))
-        fixed = {"onward": base.fused[:, :order], "feedback": base.feedback, "readout": base.readout, "unit": unit}
-        for name, matrix in fixed.items():
+        for name, matrix in {"onward": base.fused[:, :order], "feedback": base.feedback, "readout": base.readout}.items():
             self.register_buffer(name, torch.tensor(matrix, dtype=torch.float32))
 
     @property
@@ -240,15 +234,15 @@ class BeliefActor(Actor):
         belief, _ = memory
         predicted = belief @ self.readout
         innovation = readings - torch.clamp(predicted, -1.0, 1.0)
-        voltages = self._within(_run_by_run(torch.cat([belief, innovation / self.unit], dim=1), self.gain))
+        voltages = self._within(_run_by_run(torch.cat([belief, innovation], dim=1), self.gain))
         onward = torch.cat([belief, predicted + innovation], dim=1) @ self.onward
         return voltages, (onward + voltages @ self.feedback, voltages)
 
     def policy(self, run: int) -> Policy:
         """What a run has learnt, as arrays: the same law of readings."""
         order = self.feedback.shape[1]
-        from_reading = self.gain[run, order:] / self.unit[:, None]
-        asked = torch.cat([self.gain[run, :order] - self.readout @ from_reading, from_reading])
+        from_belief, from_reading = self.gain[run, :order], self.gain[run, order:]
+        asked = torch.cat([from_belief - self.readout @ from_reading, from_reading])
         weights = {"fused": torch.cat([self.onward, asked], dim=1), "feedback": self.feedback, "readout": self.readout}
         return StateSpacePolicy("linear on the belief", {n: _array(w) for n, w in weights.items()}, {}, *self._bounds())
 

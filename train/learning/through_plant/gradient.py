@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 import torch
 
-from beamenv.configuration import Choice, Number, Positive, configuration
+from beamenv.configuration import Choice, Count, Number, Positive, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, PASSES, RATE
@@ -27,9 +27,13 @@ from train.learning.through_plant.actors import (
     ResidualActor,
     StateSpaceActor,
 )
-from train.learning.through_plant.linear_base import BASES, belief_base, linear_base
+from train.learning.through_plant.compositions import compositions
+from train.learning.through_plant.linear_base import BASES, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import Report, on_training_bank, uncontrolled_cost
+
+COMPOSED = 13
+"""Seed of the scenarios that generalists meet besides those with a name."""
 
 
 @configuration("settings")
@@ -55,6 +59,11 @@ class GradientSettings:
     """s: the cost of a joule left at a window's end."""
     gradient_norm: Positive = 1.0
     """Gradients are clipped to it."""
+    calm: Positive = 10.0
+    """Times no control: what a blade's window costs beyond that counts by its logarithm, so that unstable episodes neither drown
+    the others nor go unheard."""
+    compositions: Annotated[int, Count(0, 1000)] = 0
+    """Scenarios composed at random (``compositions``) that a training of several scenarios meets besides."""
 
 
 def new_actor(task: Task, settings: GradientSettings) -> Actor:
@@ -65,8 +74,13 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
     if settings.actor == "state-space":
         return StateSpaceActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
     if settings.actor == "belief":
-        return BeliefActor(plant, own, runs, *belief_base(settings.base, task), settings.start == "idle")
+        return BeliefActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
     return ResidualActor(plant, own, runs, linear_base(settings.base, task))
+
+
+def calmed(cost: torch.Tensor, calm: float) -> torch.Tensor:
+    """The costs where they are below ``calm``, and beyond it calm (1 + log(cost / calm)): as steep there, then flatter."""
+    return torch.where(cost > calm, calm * (1.0 + torch.log(cost.clamp(min=calm) / calm)), cost)
 
 
 class GradientTraining:
@@ -84,9 +98,10 @@ class GradientTraining:
         self.actor = new_actor(tasks[0], settings)
         self._parameters = [weights for weights in self.actor.parameters() if weights.requires_grad]
         self._optimiser = torch.optim.Adam(self._parameters, lr=settings.learning_rate)
-        apart = [on_training_bank(task) for task in tasks]
+        further = compositions(tasks[0], settings.compositions, COMPOSED) if len(tasks) > 1 else []
+        apart = [on_training_bank(task) for task in [*tasks, *further]]
         self._windows = [Windows(task, settings.runs * settings.episodes, settings.window, self._generator) for task in apart]
-        self._references = [uncontrolled_cost(task) for task in apart]
+        self._references = [uncontrolled_cost(task, 512 if len(apart) == 1 else 128) for task in apart]
         self._order: list[int] = []
         self.steps = 0
         """Control intervals so far."""
@@ -107,7 +122,8 @@ class GradientTraining:
         cost, left = windows.unroll(self.actor)
         scale = windows.count / reference
         self._optimiser.zero_grad()
-        loss = (cost + self.settings.energy_horizon * left).view(self.settings.runs, -1).mean(dim=1).sum() * scale
+        loss = calmed(scale * (cost + self.settings.energy_horizon * left), self.settings.calm)
+        loss = loss.view(self.settings.runs, -1).mean(dim=1).sum()
         torch.autograd.backward(loss)
         self._clip_gradients()
         self._optimiser.step()

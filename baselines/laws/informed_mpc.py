@@ -1,0 +1,22 @@
+"""Model-predictive control for a scenario: within the drive limits, and told of its delay, as ``informed_lqg`` is."""
+
+from __future__ import annotations
+
+from baselines.design.objects import instance
+from baselines.laws.detuned_lqg import detuned_design
+from baselines.laws.foreseen_load import foreseen_loads
+from baselines.laws.informed_lqg import chosen_detuning
+from baselines.laws.mpc import PredictiveController, predictive
+from beamenv.knowledge import Prior
+
+
+def informed_mpc(prior: Prior) -> PredictiveController:
+    """The predictive law of what ``informed_lqg``'s rule chooses: voltages that come late are part of what it predicts with.
+
+    As long as no limit is in sight it is ``informed_lqg``, but for a filter that knows that readings clip. ``ValueError`` for what
+    is no ``Prior``, ModuleNotFoundError without DAQP.
+    """
+    prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
+    detuning, plant = chosen_detuning(prior), prior.blade.truth
+    design = detuned_design(plant, detuning, *foreseen_loads(prior.scenario, prior.blade.config.speed))
+    return predictive(plant, "informed MPC", design, detuning.delay)

@@ -1,0 +1,79 @@
+"""Agents against laws that are told no more, scenario by scenario; who stands for them is chosen on other seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from baselines import Estimate
+from train.benchmark import choice, statistics
+from train.benchmark.choice import Choice
+from train.benchmark.table import BenchmarkTable, Row
+
+AHEAD, BEHIND, LEVEL = "ahead", "behind", "not told apart"
+
+RULE = (
+    "Agents against laws: one of each stands for its kind, chosen on validation seeds, which are others than these, by the least "
+    "mean J there; in scenarios that nothing may be chosen on, by the least interquartile mean of J / J₀ over those that may. "
+    "Where nobody was chosen, it is the least J on these very seeds, in brackets, which favours it. The agent is ahead if its J is "
+    "below that of every law told no more, each by the paired interval, and behind if J of the chosen law is below that of every "
+    "agent."
+)
+"""How agents and laws are compared, for whoever shows it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contest:
+    """One scenario."""
+
+    scenario: str
+    agent: Row
+    law: Row
+    agent_chosen: bool
+    """Whether on validation seeds; else it is the least mean J on the seeds that it is judged on."""
+    law_chosen: bool
+    gap: Estimate
+    """J / J₀ of the agent less the law's, in pairs."""
+    hardest: Row
+    """The law that the agent is least clearly ahead of."""
+    least_clear: Estimate
+    """J / J₀ of the agent less that law's."""
+    verdict: str
+
+
+@lru_cache(maxsize=1)
+def contests(table: BenchmarkTable) -> tuple[Contest, ...]:
+    """Of every scenario with an agent and a law, by the choice that ships."""
+    return contests_by(table, choice.read_choice())
+
+
+def contests_by(table: BenchmarkTable, chosen: Choice | None) -> tuple[Contest, ...]:
+    """The same by another choice, None for nobody chosen."""
+    found = (_contest(name, table.within(name), chosen) for name in table.scenarios)
+    return tuple(each for each in found if each is not None)
+
+
+def _contest(scenario: str, rows: Sequence[Row], chosen: Choice | None) -> Contest | None:
+    agents, laws = choice.agents(rows), choice.laws(rows)
+    if not agents or not laws:
+        return None
+    agent, agent_chosen = _champion(agents, "" if chosen is None else chosen.name("agents", scenario))
+    law, law_chosen = _champion(laws, "" if chosen is None else chosen.name("laws", scenario))
+    gaps = [(other, gap(agent, other)) for other in laws]
+    hardest, least_clear = max(gaps, key=lambda each: each[1].high)
+    behind = all(gap(other, law).low > 0.0 for other in agents)
+    verdict = AHEAD if least_clear.high < 0.0 else BEHIND if behind else LEVEL
+    return Contest(scenario, agent, law, agent_chosen, law_chosen, gap(agent, law), hardest, least_clear, verdict)
+
+
+def _champion(rows: Sequence[Row], name: str) -> tuple[Row, bool]:
+    """Who was chosen, or else the least mean J."""
+    named = next((row for row in rows if row.controller == name), None)
+    return (named, True) if named else (min(rows, key=lambda row: row.mean_cost), False)
+
+
+def gap(row: Row, other: Row) -> Estimate:
+    """The paired difference of relative costs."""
+    assert row.cost is not None and other.cost is not None and other.uncontrolled is not None
+    return statistics.difference(row.cost, other.cost, other.uncontrolled)
