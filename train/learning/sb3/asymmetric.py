@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import torch
 from gymnasium.spaces import Space
 from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
 from sb3_contrib.tqc.policies import TQCPolicy
@@ -61,8 +60,8 @@ class AsymmetricPolicy(ActorCriticPolicy):
         self._networks = {"seen": seen, "actor_gain": actor_gain, "units": units, "linear": linear}
         super().__init__(*args, **kwargs)
         if linear:  # it begins without voltages
-            with torch.no_grad():
-                self.action_net.weight.zero_()
+            assert isinstance(self.action_net, nn.Linear)
+            nn.init.zeros_(self.action_net.weight)
 
     def _build_mlp_extractor(self) -> None:
         seen = int(self._networks["seen"])
