@@ -107,7 +107,7 @@ def test_voltages_go_the_same_share_of_the_way_to_an_action_at_each_decision(tas
 
 def test_a_quadratic_of_state_and_load_is_found_as_it_is():
     torch.manual_seed(0)
-    critic, states = Quadratic(19, modes=6, voltages=3), torch.randn(4000, 19)
+    critic, states = Quadratic(19, modes=6, seen=3), torch.randn(4000, 19)
     matrix = torch.randn(19, 19)
     matrix[15:17], matrix[:, 15:17] = 0.0, 0.0  # of the electronics squares alone are features
     returns = torch.einsum("bi,ij,bj->b", states, matrix, states) + 0.7 * states[:, 15] ** 2 - 3.0

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Annotated, Any, ClassVar
 
+import numpy as np
 import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
@@ -95,7 +96,8 @@ def _layered(settings: PPOSettings, envs: Envs) -> dict[str, Any]:
     if settings.critic == "quadratic":
         if isinstance(envs, SideBySide):
             raise Refused("settings.critic", settings.critic, "'network' where several scenarios are trained on")
-        made["modes"] = envs.blades.plant.blade_states // 2
+        voltages = int(np.prod(envs.action_space.shape or ()))
+        made |= {"modes": envs.blades.plant.blade_states // 2, "crossed": envs.seen if settings.sees == "belief" else voltages}
     return made
 
 

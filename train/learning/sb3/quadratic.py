@@ -1,4 +1,4 @@
-"""A critic in closed form: values of a linear plant under a linear law are quadratic in its state, load and voltages held.
+"""A critic in closed form: values of a linear plant under a linear law are quadratic in its state, load, belief and voltages.
 
 Least squares fit it to the returns of a rollout before these are learnt from: no rate, no network, no value loss.
 """
@@ -16,7 +16,7 @@ from torch import Tensor, nn
 from train.learning.sb3.asymmetric import AsymmetricPolicy
 
 MODES = 6
-"""Of which all products, with each other and with loads and voltages, are features; of those above, which move little, squares."""
+"""Of which all products, with each other and with what is seen, are features; of those above, which move little, squares."""
 
 MEMORY = 0.7
 """Share that earlier rollouts keep in the sums of squares."""
@@ -26,17 +26,20 @@ RIDGE = 1e-4
 
 
 class Quadratic(nn.Module):
-    """V = Σ w_ij s_i s_j + Σ w_k s_k² + w on rows [voltages held (m) | displacements | velocities | electronics | loads (2)]."""
+    """V = Σ w_ij s_i s_j + Σ w_k s_k² + w on rows [seen | displacements | velocities | electronics | loads (2)].
+
+    ``seen`` is how many numbers of what the actor sees are in a row: a belief's, which may be wrong, and the voltages held.
+    """
 
     weight: Tensor
     squares: Tensor
     """Sums of features' products, and, last row, of features times returns; kept with the weights, to resume from."""
 
-    def __init__(self, width: int, modes: int, voltages: int) -> None:
+    def __init__(self, width: int, modes: int, seen: int) -> None:
         super().__init__()
         low = min(MODES, modes)
         slow = [*range(low), *range(modes, modes + low)]
-        crossed = [*range(voltages), *(voltages + place for place in slow), width - 2, width - 1]
+        crossed = [*range(seen), *(seen + place for place in slow), width - 2, width - 1]
         self.crossed, self.alone = crossed, sorted(set(range(width)) - set(crossed))
         self._first, self._second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
         count = len(self._first) + len(self.alone) + 1
@@ -64,14 +67,13 @@ class Quadratic(nn.Module):
 
 
 class QuadraticPolicy(AsymmetricPolicy):
-    """SB3's policy with an actor of `AsymmetricNetworks` and a `Quadratic` critic of the true state."""
+    """SB3's policy with an actor of `AsymmetricNetworks` and a `Quadratic` critic of the true state and ``crossed`` numbers."""
 
-    def __init__(self, *args: Any, seen: int, modes: int, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, seen: int, modes: int, crossed: int, **kwargs: Any) -> None:
         super().__init__(*args, seen=seen, **kwargs)
-        voltages = int(np.prod(self.action_space.shape or ()))
-        self.told = seen - voltages
-        """Where what the critic is told begins: with the voltages held, which the actor sees too."""
-        self.quadratic = Quadratic(self.features_dim - self.told, modes, voltages)
+        self.told = seen - crossed
+        """Where what the critic is told begins, with the last numbers that the actor sees."""
+        self.quadratic = Quadratic(self.features_dim - self.told, modes, crossed)
 
     def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
         """Actions, values and log-probabilities."""

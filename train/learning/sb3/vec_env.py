@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
 from beamenv import BladeVecEnv, VectorSensorHistory
-from beamenv.plant.plant import drive_limit, sample
+from beamenv.plant.plant import drive_limit, normalised, sample
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 from train.learning.sb3.belief import Belief, VectorBelief
@@ -69,6 +69,7 @@ class TrainingVecEnv(BladeVecEnv):
         """How many numbers of an observation sensors show; what follows is the state."""
         self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
         self._shows_loads, self.approach, self.belief = shows_loads, approach, belief
+        self._limits = normalised(self.blades.plant).voltage_limits
         self._voltages: Array = np.zeros((count, *(actions.shape or ())))
         width = self.seen + (0 if self._state_gain is None else len(self._state_gain) + 2 * shows_loads)
         self.observation_space = Box(-np.inf, np.inf, (width,), np.float32)
@@ -127,7 +128,7 @@ class TrainingVecEnv(BladeVecEnv):
         voltages = self._actions
         if self.approach < 1.0:
             self._voltages += self.approach * (voltages - self._voltages)
-            voltages = np.clip(self._voltages, self.action_space.low, self.action_space.high, out=self._voltages)
+            voltages = np.clip(self._voltages, *self._limits, out=self._voltages)
         for _ in range(self.held):
             windows, rewards, terminated, truncated, info = self.envs.step(voltages)
             ends, reached = terminated | truncated, info["energy"]
