@@ -93,7 +93,7 @@ MAY_BE_ZERO = {
     "smoothing",
     "validation",
 }
-"""Settings that mean something at zero: none, no wait or potential, a deviation of one, an idle start, one step ahead, a mean, none."""
+"""Settings that mean something at zero: none, no wait, potential or look, a deviation of one, an idle start, a mean."""
 
 NUMBERS = [
     (name, table, each.name)
