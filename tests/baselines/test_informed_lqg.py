@@ -90,7 +90,7 @@ def test_what_was_chosen_is_kept_for_the_next_time_and_for_nothing_else(tmp_path
     assert "bank" not in vars(task)  # the plants that judge were not even built
 
 
-@pytest.mark.parametrize("name", ["nominal", "delay", "failure", "hysteresis", "spillover", "rotor"])
+@pytest.mark.parametrize("name", sorted({*beamenv.BENCHMARK_SCENARIOS, *beamenv.OPEN_SCENARIOS} - {*beamenv.UNSEEN_SCENARIOS}))
 def test_what_ships_is_of_todays_blade_and_scenarios(name):
     prior = resolve_task(scenario=name).prior
     assert key_of(*rule._depends_on(prior)) in shipped_detunings(rule.SHIPPED)

@@ -11,6 +11,7 @@ from baselines import (
     Hypothesis,
     PersistentLoad,
     clipped_lqg,
+    inverse_hysteresis,
     lqg,
     lqr,
     mpc,
@@ -27,6 +28,8 @@ LAWS = {
     "ppf": positive_position_feedback,
     "mpc": mpc,
     "multiple model": lambda plant: multiple_model([Hypothesis(plant, delay=d) for d in (0, 1)], lqg(plant)),
+    "inverse hysteresis": lambda plant: inverse_hysteresis(lqg(plant), 0.2),
+    "mpc with delay": lambda plant: mpc(plant, delay=2),
     "mpc with load": lambda plant: mpc(plant, PersistentLoad()),
 }
 

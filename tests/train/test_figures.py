@@ -136,11 +136,28 @@ def test_a_heat_map_on_paper_writes_costs_instability_and_what_is_missing():
     )
     figure = paper_heat_map.heat_map(content)
     cells = {tuple(text.get_position()): text for text in figure.axes[0].texts}
-    written = {(round(y), x): text.get_text() for (x, y), text in cells.items() if y >= -0.5 and "▲" not in text.get_text()}
+    written = {(round(y), x): text.get_text() for (x, y), text in cells.items() if y < 1.5 and "▲" not in text.get_text()}
     assert written == {(0, 0): "0.40", (0, 1): "∞", (0, 2): "0.50", (1, 0): "0.60", (1, 1): "✕", (1, 2): "–"}
     assert [text.get_text() for text in cells.values() if "▲" in text.get_text()] == ["▲ < 1 %"]
     assert [cells[0, 0].get_weight(), cells[2, 0].get_weight()] == ["bold", "normal"]
-    assert {text.get_text() for (_, y), text in cells.items() if y < -0.5} == {"fixed", "learned"}
+    assert {text.get_text() for (_, y), text in cells.items() if y > 1.5} == {"fixed", "learned"}
+    pyplot.close(figure)
+
+
+def test_a_heat_map_has_a_panel_for_each_group_of_scenarios():
+    names, groups = tuple(f"scenario {line}" for line in range(23)), ("single fault",) * 10 + ("open",) * 4 + ("unseen",) * 9
+    cost = np.linspace(0.3, 30.0, 23 * 13).reshape(23, 13)
+    figure = paper_heat_map.heat_map(HeatMap(names, tuple(f"law {k}" for k in range(13)), cost, np.zeros((23, 13)), groups=groups))
+    panels = figure.axes[:3]
+    assert [axis.get_ylabel() for axis in panels] == ["single fault", "open", "unseen"]
+    assert [[text.get_text() for text in axis.get_yticklabels()] for axis in panels] == [
+        [*names[:10]],
+        [*names[10:14]],
+        [*names[14:]],
+    ]
+    assert [len(axis.get_xticklabels()) for axis in panels] == [13, 0, 0]
+    assert [panels[2].texts[-1].get_text(), panels[0].texts[0].get_text()] == ["30", "0.30"]
+    assert figure.get_size_inches()[0] < 8.5  # at the width of a page its numbers are to be read
     pyplot.close(figure)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
@@ -71,6 +72,14 @@ def split_of(table: BenchmarkTable, scenario: str) -> str:
     told = table.configuration.get("scenarios", {}).get(scenario)
     itself = scenario in SCENARIOS and told in (None, SCENARIOS[scenario].to_dict())
     return next((split for split, names in SPLITS.items() if itself and scenario in names), "")
+
+
+@lru_cache(maxsize=1)
+def by_split(table: BenchmarkTable) -> dict[str, str]:
+    """The splits of scenarios, in their order; "other" for those of none."""
+    splits = {name: split_of(table, name) or "other" for name in table.scenarios}
+    order = (*SPLITS, "other")
+    return dict(sorted(splits.items(), key=lambda item: order.index(item[1])))
 
 
 def aggregates(table: BenchmarkTable) -> list[Aggregate]:

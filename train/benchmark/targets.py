@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from beamenv.knowledge import TIERS
 from train.benchmark import statistics
@@ -72,7 +73,7 @@ def _listed(names: Sequence[str]) -> str:
 
 def leading(table: BenchmarkTable, tier: int) -> str:
     """Who has the least mean J of a tier in how many scenarios, and in how many clearly; empty without anyone."""
-    leaders = [each for name in table.scenarios if (each := leader(table.within(name), tier))]
+    leaders = [each for (_, place), each in leaders_of(table).items() if place == tier]
     wins: dict[str, list[Leader]] = {}
     for each in leaders:
         wins.setdefault(each.row.controller, []).append(each)
@@ -84,6 +85,13 @@ def _won(leaders: Sequence[Leader]) -> str:
     if not any(each.rivals for each in leaders):
         return f"{len(leaders)}, alone"
     return f"{len(leaders)}, clearly in {sum(each.clear for each in leaders)}"
+
+
+@lru_cache(maxsize=1)
+def leaders_of(table: BenchmarkTable) -> dict[tuple[str, int], Leader]:
+    """By scenario and tier."""
+    found = {(name, tier): leader(table.within(name), tier) for name in table.scenarios for tier in TIERS}
+    return {place: each for place, each in found.items() if each is not None}
 
 
 def leader(rows: Sequence[Row], tier: int) -> Leader | None:

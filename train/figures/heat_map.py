@@ -29,6 +29,8 @@ class HeatMap:
     """The controller that is pointed out in each scenario; may be left out."""
     lost: frozenset[tuple[str, str]] = frozenset()
     """Scenario and controller of what was run, but could not be measured."""
+    groups: tuple[str, ...] = ()
+    """Of each scenario; may be left out."""
 
     def __post_init__(self) -> None:
         shape = (len(self.scenarios), len(self.controllers))

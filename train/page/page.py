@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,8 @@ class PageContent:
     learning: LearningCurves | None = None
     configuration: Mapping[str, Any] | None = None
     """As JSON can hold it."""
+    further: Mapping[str, Table] = field(default_factory=dict)
+    """More tables, by their headings."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,38 +1,34 @@
-"""Who leads in each tier, and agents against laws, as Markdown."""
+"""Who leads in each tier, and agents against laws."""
 
 from __future__ import annotations
 
 from beamenv.knowledge import TIERS
 from train.benchmark.contests import RULE, Contest, contests
-from train.benchmark.showing.scores import COST, GAP
+from train.benchmark.showing.section import COST, Entry, Section, gap, words
 from train.benchmark.table import BenchmarkTable, Row
-from train.benchmark.targets import leader
+from train.benchmark.targets import leaders_of
 from train.shared.columns import share
-from train.shared.markdown import table as markdown_table
 
 LEADERS = (
-    'The least mean J of each tier, of all kinds and on these very seeds. "clearly": below every other of its tier, each by the '
-    "paired interval."
+    'The least mean J of each tier, of all kinds and on these very seeds; "clearly" if it is below every other of its tier, each '
+    "by the paired interval."
 )
 
 
-def leaders(table: BenchmarkTable) -> str:
-    """The least J of each tier in each scenario; empty where nothing was measured."""
+def leaders(table: BenchmarkTable) -> Section:
+    """The least J of each tier in each scenario."""
     tiers = [tier for tier in TIERS if any(row.measured and row.tier == tier for row in table.rows)]
-    if not tiers:
-        return ""
-    rows = [[name, *(_leader_cell(table, name, tier) for tier in tiers)] for name in table.scenarios]
+    rows = [words(name, *(_leader(table, name, tier) for tier in tiers)) for name in table.scenarios] if tiers else []
     headings = ["scenario", *(f"tier {tier}, {TIERS[tier]}" for tier in tiers)]
-    return f"### Least J by tier\n\n{LEADERS}\n\n{markdown_table(headings, rows)}"
+    return Section("Least J by tier", LEADERS, headings, rows, len(headings))
 
 
-def _leader_cell(table: BenchmarkTable, scenario: str, tier: int) -> str:
-    first = leader(table.within(scenario), tier)
+def _leader(table: BenchmarkTable, scenario: str, tier: int) -> str:
+    first = leaders_of(table).get((scenario, tier))
     if first is None:
         return "–"
-    return (
-        f"{first.row.controller} {COST.text(first.row.estimates['relative_cost'])}{_unstable(first.row)}{', clearly' * first.clear}"
-    )
+    how = "" if first.rivals and not first.clear else ", clearly" if first.rivals else ", alone"
+    return f"{first.row.controller} {COST.text(first.row.estimates['relative_cost'])}{_unstable(first.row)}{how}"
 
 
 def _unstable(row: Row) -> str:
@@ -40,25 +36,15 @@ def _unstable(row: Row) -> str:
     return f" ({share(part)} unstable)" if part else ""
 
 
-def agents_and_laws(table: BenchmarkTable) -> str:
-    """One of each against the other in each scenario; empty without agents or without laws."""
-    rows = [_contest(each) for each in contests(table)]
-    if not rows:
-        return ""
-    headings = ["scenario", "agent", "law", "verdict", "J / J₀, agent less law", "hardest law", "agent less it"]
-    return f"### Agents against laws\n\n{RULE}\n\n{markdown_table(headings, rows)}"
+def agents_and_laws(table: BenchmarkTable) -> Section:
+    """One of each against the other in each scenario."""
+    headings = ["scenario", "agent", "law", "verdict", "hardest law", "J / J₀, agent less law", "agent less the hardest"]
+    return Section("Agents against laws", RULE, headings, [_contest(each) for each in contests(table)], 5)
 
 
-def _contest(one: Contest) -> list[str]:
-    return [
-        one.scenario,
-        _name(one.agent, one.agent_chosen),
-        _name(one.law, one.law_chosen),
-        one.verdict,
-        GAP.text(one.gap),
-        one.hardest.controller,
-        GAP.text(one.least_clear),
-    ]
+def _contest(one: Contest) -> list[Entry]:
+    names = _name(one.agent, one.agent_chosen), _name(one.law, one.law_chosen)
+    return [*words(one.scenario, *names, one.verdict, one.hardest.controller), gap(one.gap), gap(one.least_clear)]
 
 
 def _name(row: Row, chosen: bool) -> str:

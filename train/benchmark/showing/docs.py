@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from beamenv.configuration.writing import write_whole
-from train.benchmark.showing.heat_map import heat_map
+from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import BenchmarkTable
 from train.figures.paper import save
@@ -16,8 +16,10 @@ INTRODUCTION = """\
 # The benchmark
 
 Every controller in every scenario on the same held-out episodes. Controllers are built from what their tier of information is told,
-and agents, which train on the scenario's distribution, are used as shipped. The scenarios are `beamenv.BENCHMARK_SCENARIOS`, files
-in `beamenv/scenarios/named/`, the controllers those in `train/controllers/named/`: a further file there adds a column or a row.
+and agents, which train on the scenario's distribution, are used as shipped. The scenarios are files in `beamenv/scenarios/named/`:
+those with a single fault, open ones, in which the blade changes within the episode or everything is wrong at once, and those kept
+for judging, which no agent trains on and no rule is tuned on. The controllers are files in `train/controllers/named/`: a further
+file in either folder adds a row or a column.
 """
 
 
@@ -30,7 +32,7 @@ def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
 def page(table: BenchmarkTable, command: str) -> str:
     """The page: how it was made, the picture, and the table."""
     made = f"Made by\n\n```sh\n{command}\n```\n\nwith {in_a_line(table.configuration['versions'])}."
-    return f"{INTRODUCTION}\n{made}\n\n![J over J without control](images/benchmark.png)\n\n{markdown(table)}"
+    return f"{INTRODUCTION}\n{made}\n\n![J over J without control](images/benchmark.png)\n\n{RULE}\n\n{markdown(table)}"
 
 
 def in_a_line(versions: Mapping[str, str]) -> str:

@@ -7,7 +7,8 @@ from pathlib import Path
 from train.benchmark.showing.episode import shown_episode
 from train.benchmark.showing.heat_map import heat_map
 from train.benchmark.showing.legend import legend
-from train.benchmark.showing.report import COLUMNS, HEADINGS, about
+from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
+from train.benchmark.showing.section import Section
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
@@ -23,6 +24,7 @@ def write_report(path: Path, table: BenchmarkTable) -> None:
         title="Controllers of a rotating blade across scenarios",
         note="\n".join([*(each.sentence for each in findings(table)), *wrong]),
         table=page_table(table),
+        further={each.heading: further_table(each) for each in sections(table)},
         heat_map=heat_map(table),
         episode=episode,
         episode_note=note,
@@ -49,6 +51,11 @@ def page_table(table: BenchmarkTable) -> Table:
     """All rows, to be sorted by a click."""
     headings = ("scenario", *HEADINGS, *(column.heading for column in COLUMNS))
     return Table(headings, tuple(_cells(row) for row in table.rows), legend(table))
+
+
+def further_table(section: Section) -> Table:
+    """A section, to be sorted by a click too."""
+    return Table(tuple(section.headings), tuple(tuple(Cell(*each) for each in row) for row in section.rows), section.text)
 
 
 def _cells(row: Row) -> tuple[Cell, ...]:

@@ -10,10 +10,11 @@ from baselines import Estimate
 from baselines.evaluation.metrics import finite
 from beamenv.configuration.writing import write_whole
 from train.benchmark.contests import Contest, contests
-from train.benchmark.score import Aggregate, Headroom, aggregates, headrooms
+from train.benchmark.score import Aggregate, Headroom, aggregates, by_split, headrooms
 from train.benchmark.showing.contests import agents_and_laws, leaders
 from train.benchmark.showing.legend import legend
 from train.benchmark.showing.scores import headroom, scores
+from train.benchmark.showing.section import Section
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.shared.columns import Column, number, share
@@ -116,7 +117,7 @@ def headroom_json(one: Headroom) -> dict[str, Any]:
 
 def markdown(table: BenchmarkTable) -> str:
     """Findings, overview, a table for each scenario, what went wrong, and how it was made."""
-    parts = [found(table), agents_and_laws(table), leaders(table), scores(table), headroom(table), overview(table), legend(table)]
+    parts = [found(table), *(each.markdown() for each in sections(table)), *overviews(table), legend(table)]
     parts += [f"### {escaped(name)}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
     if table.sentences:
         lines = "\n".join(f"- {escaped(where)}: {escaped(sentence)}" for where, sentence in table.sentences.items())
@@ -130,14 +131,28 @@ def found(table: BenchmarkTable) -> str:
     return "\n".join(f"- {escaped(each.sentence)}{verdict[each.met]}" for each in findings(table))
 
 
-def overview(table: BenchmarkTable) -> str:
-    """J / J₀ of every controller in every scenario; the share of unstable episodes where there are any."""
+def sections(table: BenchmarkTable) -> list[Section]:
+    """What the table comes to; those without rows are left out."""
+    found = (agents_and_laws(table), leaders(table), scores(table), headroom(table))
+    return [each for each in found if each.rows]
+
+
+def overviews(table: BenchmarkTable) -> list[str]:
+    """J / J₀ of every controller in every scenario, a table for each split."""
+    splits = by_split(table)
+    names = {split: [name for name, each in splits.items() if each == split] for split in dict.fromkeys(splits.values())}
+    return [f"### J / J₀: {split}\n\n{overview(table, scenarios)}" for split, scenarios in names.items()]
+
+
+def overview(table: BenchmarkTable, scenarios: Sequence[str]) -> str:
+    """J / J₀ of everyone who has something to do there; the share of unstable episodes where there are any."""
     rows = []
     for name in table.controllers:
-        found = [table.row(scenario, name) for scenario in table.scenarios]
-        one = next(row for row in found if row is not None)
-        rows.append([name, str(one.tier), one.kind, *(overview_cell(row) for row in found)])
-    return markdown_table(["controller", "tier", "kind", *table.scenarios], rows, words=3)
+        found = [table.row(scenario, name) for scenario in scenarios]
+        one = next((row for row in found if row is not None), None)
+        if one is not None:
+            rows.append([name, str(one.tier), one.kind, *(overview_cell(row) for row in found)])
+    return markdown_table(["controller", "tier", "kind", *scenarios], rows, words=3)
 
 
 def overview_cell(row: Row | None) -> str:
