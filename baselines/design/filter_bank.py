@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -32,13 +33,15 @@ class Filter(NamedTuple):
     in_the_long_run: Array
 
 
+MOST_PATTERNS = 256
+"""Of lost readings, for which the steady state's matrices are kept."""
+
+
 class Correction(NamedTuple):
     """What readings say of H hypotheses' predictions for N blades."""
 
     whitened: Array
-    """(H, N, p): covariance⁻¹ innovation, zero of what is lost."""
-    gains: Array
-    """(H, N, s): to be added to the predicted states."""
+    """(H, N, p): covariance⁻¹ innovation, zero of what is lost. S Cᵀ times it is to be added to the predicted states."""
     squared: Array
     """(H, N): normalised innovation squared, χ² with as many degrees of freedom as there are readings."""
     log_density: Array
@@ -52,7 +55,7 @@ class FilterBank(ReadOnly):
     transition: Array
     """(H, s, s): Aᵀ."""
     voltage_input: Array
-    """(H, m (D + 1), s): Bᵀ, from this instant's voltages and the D before, newest first."""
+    """(m (D + 1), H, s): Bᵀ, from this instant's voltages and the D before, newest first."""
     output: Array
     """(H, s, p): Cᵀ."""
     cross: Array
@@ -67,6 +70,10 @@ class FilterBank(ReadOnly):
     """(p,), A: where readings are clipped."""
     holds: NDArray[np.bool_]
     """(H,): whether lost readings show as the one before."""
+    sizes: tuple[int, ...]
+    """(H,): states of each filter's own."""
+    left: tuple[tuple[Array, Array], ...]
+    """Of the last instant, by the pattern of what is lost, bit by bit: inverse and logarithm of the determinant of what is left."""
 
     @classmethod
     def of(
@@ -77,9 +84,10 @@ class FilterBank(ReadOnly):
         same = [_padded(each, size) for each in filters]
         cross, covariance = _recursion(*(np.stack(part) for part in zip(*same, strict=True)))
         m = filters[0].B.shape[1]
-        voltage_input = np.zeros((len(same), (depth + 1) * m, size))
-        for row, each, delay in zip(voltage_input, same, delays, strict=True):
-            row[delay * m : (delay + 1) * m] = each.B.T
+        voltage_input = np.zeros(((depth + 1) * m, len(same), size))
+        for h, (each, delay) in enumerate(zip(same, delays, strict=True)):
+            voltage_input[delay * m : (delay + 1) * m, h] = each.B.T
+        patterns = 2 ** covariance.shape[-1] if any(holds) else 0
         return cls(
             transition=np.stack([each.A.T for each in same]),
             voltage_input=voltage_input,
@@ -90,6 +98,8 @@ class FilterBank(ReadOnly):
             log_determinant=np.linalg.slogdet(covariance)[1],
             full_scale=full_scale,
             holds=np.array(holds, dtype=bool),
+            sizes=tuple(len(each.A) for each in filters),
+            left=tuple(_without(covariance[-1], code) for code in range(patterns if patterns <= MOST_PATTERNS else 0)),
         )
 
     @property
@@ -97,57 +107,78 @@ class FilterBank(ReadOnly):
         """Hypotheses H and states s."""
         return self.transition.shape[0], self.transition.shape[1]
 
+    @property
+    def alike(self) -> Iterator[tuple[slice, int]]:
+        """Hypotheses next to each other that have as many states, and how many."""
+        first = 0
+        for size, those in groupby(self.sizes):
+            following = first + len(list(those))
+            yield slice(first, following), size
+            first = following
+
     def lost(self, reading: Array, before: Array, first: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """(N, p): readings that show the one before exactly, unless both are clipped, if any hypothesis says that lost ones do."""
         again = (reading == before) & (np.abs(reading) < self.full_scale) & ~first[:, None]
         return np.asarray(again & self.holds.any())
 
-    def corrections(self, instant: Array, predicted: Array, reading: Array, lost: NDArray[np.bool_]) -> Correction:
-        """From predicted states (H, N, s) and readings (N, p) in A, each blade at an ``instant`` (N,) of its own.
+    def corrections(self, instant: Array, expected: Array, reading: Array, lost: NDArray[np.bool_]) -> Correction:
+        """From predicted readings (H, N, p) and those taken (N, p) in A, each blade at an ``instant`` (N,) of its own.
 
         A reading is predicted as it will be taken, clipped. A lost one counts in no likelihood, nor for filters that know.
         """
-        expected = np.matmul(predicted, self.output)
         innovation = reading - np.minimum(np.maximum(expected, -self.full_scale), self.full_scale)
-        step = np.minimum(instant, len(self.cross) - 1).astype(np.int64)
-        code = lost @ (1 << np.arange(lost.shape[1])) if lost.any() else np.zeros(len(lost), dtype=np.int64)
-        keys = np.unique(np.stack([step, code], axis=1), axis=0)
-        if len(keys) == 1:
-            return self._correction(int(keys[0, 0]), innovation, lost[0])
+        step, codes = self._step(instant), 1 << lost.shape[1]
+        keys = step * codes + lost @ (1 << np.arange(lost.shape[1]))
+        if (keys == keys[0]).all():
+            return self._correction(divmod(int(keys[0]), codes), innovation)
         H, N, p = innovation.shape
-        all_of_them = Correction(np.empty((H, N, p)), np.empty(predicted.shape), np.empty((H, N)), np.empty((H, N)))
-        for k, pattern in keys.tolist():
-            rows = np.flatnonzero((step == k) & (code == pattern))
-            for whole, part in zip(all_of_them, self._correction(k, innovation[:, rows], lost[rows[0]]), strict=True):
+        all_of_them = Correction(np.empty((H, N, p)), np.empty((H, N)), np.empty((H, N)))
+        for key in np.unique(keys).tolist():
+            rows = np.flatnonzero(keys == key)
+            for whole, part in zip(all_of_them, self._correction(divmod(key, codes), innovation[:, rows]), strict=True):
                 whole[:, rows] = part
         return all_of_them
 
-    def _correction(self, k: int, innovation: Array, lost: NDArray[np.bool_]) -> Correction:
-        """Of blades at one instant that have lost the same readings (p,).
+    def carried(self, instant: Array, whitened: Array, onward: Array) -> Array:
+        """(H, N, q): ``whitened`` innovations (H, N, p) through matrices ``onward`` (K, H, p, q) of each blade's instant (N,)."""
+        step = self._step(instant)
+        if (step == step[0]).all():
+            return np.matmul(whitened, onward[step[0]])
+        carried = np.empty((*whitened.shape[:2], onward.shape[-1]))
+        for k in np.unique(step):
+            carried[:, step == k] = np.matmul(whitened[:, step == k], onward[k])
+        return carried
+
+    def driven(self, voltages: Array) -> Array:
+        """(N, H, s): what voltages (N, m (D + 1)), V, newest first, add to the states of the next instant."""
+        return np.asarray(np.tensordot(voltages, self.voltage_input, 1))
+
+    def _step(self, instant: Array) -> NDArray[np.int64]:
+        """(N,): which of the gains, of which the last stays."""
+        return np.minimum(instant, len(self.cross) - 1).astype(np.int64)
+
+    def _correction(self, at: tuple[int, int], innovation: Array) -> Correction:
+        """Of blades ``at`` one instant that have lost the same readings, the bits of a number.
 
         With z = covariance⁻¹ innovation of those that are left and zero of the others, S Cᵀ z is the optimum from them.
         """
+        k, code = at
         inverse, log_determinant = self.inverse[k], self.log_determinant[k]
-        if lost.any():
-            inverse, log_determinant = _without(self.covariance[k], lost)
+        if code:
+            kept = k == len(self.cross) - 1 and code < len(self.left)
+            inverse, log_determinant = self.left[code] if kept else _without(self.covariance[k], code)
         whitened = np.matmul(innovation, inverse)
         squared = np.einsum("hnp,hnp->hn", innovation, whitened)
         log_density = -0.5 * (squared + log_determinant[:, None])
-        if lost.any() and not self.holds.all():
+        if code and not self.holds.all():
             others = ~self.holds
             whitened[others] = np.matmul(innovation[others], self.inverse[k, others])
-        return Correction(whitened, np.matmul(whitened, self.cross[k]), squared, log_density)
-
-    def predicted(self, estimate: Array, voltages: Array, out: Array | None = None) -> Array:
-        """States (H, N, s) of the next instant from this one's and voltages (N, m (D + 1)), V, newest first."""
-        following = np.matmul(estimate, self.transition, out=out)
-        following += np.matmul(voltages, self.voltage_input)
-        return following
+        return Correction(whitened, squared, log_density)
 
 
-def _without(covariance: Array, lost: NDArray[np.bool_]) -> tuple[Array, Array]:
+def _without(covariance: Array, code: int) -> tuple[Array, Array]:
     """Inverse (H, p, p), zero in rows and columns of what is lost, and logarithm of the determinant (H,) of what is left."""
-    left = np.flatnonzero(~lost)
+    left = np.flatnonzero(~(code >> np.arange(covariance.shape[-1])) & 1)
     inverse, log_determinant = np.zeros_like(covariance), np.zeros(len(covariance))
     if len(left):
         kept = covariance[:, left[:, None], left]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import logsumexp
 
 from baselines.design.controller import Array
 from baselines.design.filter_bank import FilterBank
@@ -15,6 +14,9 @@ from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.matrix import keep_matrices
 from baselines.design.objects import instance
+
+AT_ONCE = 2**18
+"""Numbers of memories that are worked on at once: larger arrays in between would be asked of the system anew at every instant."""
 
 
 class Memory(NamedTuple):
@@ -70,6 +72,10 @@ class MultipleModel(Law):
     """Instants over which the test of fit remembers."""
     misfit: float
     """Mean normalised innovation squared over the number of readings from which on no hypothesis fits; 1 where one is right."""
+    _moved: Array = field(init=False)
+    """(H, s, p + m + s): [Cᵀ, −Kᵀ, Aᵀ], from a prediction to the readings, to what is asked for and to the next prediction."""
+    _onward: Array = field(init=False)
+    """(instants, H, p, m + s): C S [−Kᵀ, Aᵀ], the same of what readings add to it."""
 
     def __post_init__(self) -> None:
         """``ValueError`` for parts that do not fit."""
@@ -77,10 +83,13 @@ class MultipleModel(Law):
         bank = instance("bank", self.bank, FilterBank, "a FilterBank")
         H, s = bank.counts
         m = self.instruments.counts[1]
-        depth = bank.voltage_input.shape[1] // m - 1
+        depth = len(bank.voltage_input) // m - 1
         keep_matrices(self, {"state_gain": (H, m, s), "voltage_gain": (H, m, m * depth), "prior": (H,)})
         if self.transition is not None:
             keep_matrices(self, {"transition": (H, H)})
+        onward = np.concatenate([-self.state_gain.swapaxes(-1, -2), bank.transition], axis=-1)
+        object.__setattr__(self, "_moved", np.concatenate([bank.output, onward], axis=-1))
+        object.__setattr__(self, "_onward", np.matmul(bank.cross, onward))
 
     @property
     def order(self) -> int:
@@ -115,40 +124,61 @@ class MultipleModel(Law):
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
         """Correct, weigh, drive, mix, predict: all hypotheses and blades at once; of a reading that is no number comes none."""
         reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(memory)
-        following = np.empty(rows.shape)
-        old, new = self.recall(rows), self.recall(following)
-        predicted = old.predicted.swapaxes(0, 1)
+        voltage, following = np.empty((len(rows), self.instruments.counts[1])), np.empty(rows.shape)
+        size = max(1, AT_ONCE // rows.shape[1])
+        for first in range(0, len(rows), size):
+            some = slice(first, first + size)
+            voltage[some] = self._decided(reading[some], self.recall(rows[some]), self.recall(following[some]))
+        action = self.instruments.drive(voltage)
+        return (action, following) if observation.ndim == 2 else (action[0], following[0])
+
+    def _decided(self, reading: Array, old: Memory, new: Memory) -> Array:
+        """Voltages (N, m), V, from readings (N, p), A, and what was remembered; writes what is to be."""
+        p, m = self.instruments.counts
+        moved = self._from(old.predicted.swapaxes(0, 1))
         lost = self.bank.lost(reading, old.reading, old.instant == 0.0)
-        correction = self.bank.corrections(old.instant, predicted, reading, lost)
-        estimate = np.add(predicted, correction.gains, out=correction.gains)
+        correction = self.bank.corrections(old.instant, moved[..., :p], reading, lost)
         weights = self._weights(old.evidence + correction.log_density.T)
         self._judge(old, new, correction.squared.T, lost, weights)
-        before = old.voltages.reshape(len(rows), -1)
-        voltage = self._asked(estimate, before, weights)
+        carried = self.bank.carried(old.instant, correction.whitened, self._onward)
+        moved = np.add(moved[..., p:], carried, out=carried)
+        before = old.voltages.reshape(len(reading), -1)
+        voltage = self._asked(moved[..., :m], before, weights)
         if self.fallback is not None:
             voltage = self._in_charge(self.fallback, old, new, reading, voltage)
+        estimate = moved[..., m:].swapaxes(0, 1)
         if self.transition is not None:
             weights, estimate = self._mixed(self.transition, weights, estimate)
         voltages = np.concatenate([voltage, before], axis=1)
-        self.bank.predicted(estimate, voltages, out=new.predicted.swapaxes(0, 1))
+        np.add(estimate, self.bank.driven(voltages), out=new.predicted)
         new.evidence[...] = np.log(weights) - np.log(self.prior)
         new.voltages[...] = voltages[:, : before.shape[1]].reshape(new.voltages.shape)
         new.reading[...] = reading
         new.instant[...] = old.instant + 1.0
-        action = self.instruments.drive(voltage)
-        return (action, following) if observation.ndim == 2 else (action[0], following[0])
+        return voltage
+
+    def _from(self, predicted: Array) -> Array:
+        """(H, N, p + m + s) of predictions (H, N, s), shorter ones by what is theirs."""
+        (H, N, s), more = predicted.shape, sum(self.instruments.counts)
+        moved = np.empty((H, N, more + s))
+        for those, size in self.bank.alike:
+            out = moved[those, :, : more + size]
+            np.matmul(predicted[those, :, :size], self._moved[those, :size, : more + size], out=out)
+            moved[those, :, more + size :] = 0.0
+        return moved
 
     def _weights(self, evidence: Array) -> Array:
         """(N, H), each at least the floor, which add up to 1."""
         logarithm = np.log(self.prior) + evidence
-        weights = np.exp(logarithm - logsumexp(logarithm, axis=1, keepdims=True))
+        weights = np.exp(logarithm - logarithm.max(axis=1, keepdims=True))
+        weights /= weights.sum(axis=1, keepdims=True)
         weights = np.maximum(weights, max(self.floor, np.finfo(float).tiny))
         return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
-    def _asked(self, estimate: Array, before: Array, weights: Array) -> Array:
-        """(N, m), V: the mean of what each regulator asks for, as the drive lets it through."""
-        asked = np.matmul(estimate, self.state_gain.swapaxes(-1, -2)) + np.matmul(before, self.voltage_gain.swapaxes(-1, -2))
-        return np.asarray(np.einsum("nh,hnm->nm", weights, self.instruments.limit(-asked)))
+    def _asked(self, answers: Array, before: Array, weights: Array) -> Array:
+        """(N, m), V: the mean of what each regulator asks for, from its answer to its estimate, as the drive lets it through."""
+        asked = answers - np.matmul(before, self.voltage_gain.swapaxes(-1, -2))
+        return np.asarray(np.einsum("nh,hnm->nm", weights, self.instruments.limit(asked)))
 
     def _judge(self, old: Memory, new: Memory, squared: Array, lost: NDArray[np.bool_], weights: Array) -> None:
         """Whether any hypothesis fits; where none has, the fallback stays in charge for the rest of the episode."""
@@ -167,7 +197,7 @@ class MultipleModel(Law):
 
     @staticmethod
     def _mixed(transition: Array, weights: Array, estimate: Array) -> tuple[Array, Array]:
-        """Weights (N, H) and estimates (H, N, s) of what may follow."""
+        """Weights (N, H) and estimates (N, H, s) of what may follow, moved on already: all move by the same matrix."""
         following = weights @ transition
         shares = weights[:, :, None] * transition / following[:, None, :]
-        return following, np.matmul(shares.swapaxes(1, 2), estimate.swapaxes(0, 1)).swapaxes(0, 1)
+        return following, np.matmul(shares.swapaxes(1, 2), estimate)

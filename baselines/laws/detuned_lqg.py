@@ -33,6 +33,12 @@ class Detuning:
     """Whether the loads that can be foreseen are part of the state."""
 
 
+CAUTIOUS = Detuning(delay=1, rate=27.0)
+"""What holds where nothing is known of what is wrong: of fourteen detunings, and of those that cost at most 3 % more than the
+reference in `nominal`, the best in the mean of `delay` and `unknown-everything`. J over no control's of the reference and of this
+one, 24 validation seeds from 3 000 000 on: nominal 0.577 and 0.591, delay 3.67 and 0.602, unknown-everything 0.725 and 0.581."""
+
+
 def detuned_lqg(plant: Plant, detuning: Detuning, *loads: Load, name: str = "detuned LQG") -> LinearController:
     """The sampled optimum for a plant that is what its design is told, ``verified`` there; ``loads`` are those it may foresee.
 

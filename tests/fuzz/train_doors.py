@@ -156,6 +156,7 @@ DOORS = [
             "trusted": FLAG,
             "jobs": replace(COUNT, near=st.sampled_from([0, -1, 1.5, 1.0, True, "1"])),
             "environment": maybe(table({k: v for k, v in SINGLE.items() if k != "scenario"})),
+            "validation": FLAG,
         },
         lambda: {
             "own": None,
@@ -167,6 +168,7 @@ DOORS = [
             "trusted": False,
             "jobs": 1,
             "environment": {"blade": dict(small.BLADE), "duration": 0.002},
+            "validation": False,
         },
         told=("controller", "model", "blade"),
         plain=False,

@@ -12,7 +12,7 @@ from beamenv.scenarios.named import GROUPS
 from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
 from train.cli.app import app
-from train.cli.benchmark_table import blocks
+from train.cli.benchmark_table import blocks, print_costs
 from train.cli.quick import QUICK_LAWS, QUICK_SCENARIOS, QUICK_SEEDS
 from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
@@ -89,13 +89,17 @@ def benchmark(controllers, scenarios):
     return run(scenarios=scenarios, controllers=controllers, seeds=2, environment={"duration": 0.02})
 
 
-def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for():
+def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for(monkeypatch, capsys):
     names = ("nominal", "two-dead-actuators", "off-speed-failure", "delay")
     rows = [Row(name, law, law, "fixed", 0, 1, 2) for name in names for law in ("none", "positive-position-feedback")]
     table = BenchmarkTable(tuple(rows), {}, {})
     assert list(blocks(table, 200)) == [names]
-    assert list(blocks(table, 80)) == [names[:3], names[3:]]
+    assert list(blocks(table, 80)) == [names[:2], names[2:]]
     assert list(blocks(table, 20)) == [(name,) for name in names]
+    for width in (80, 120):
+        monkeypatch.setenv("COLUMNS", str(width))
+        print_costs(table)
+        assert max(map(len, capsys.readouterr().out.splitlines())) <= width
 
 
 def test_the_folder_of_a_trained_agent_takes_part_by_the_folder_s_name(tmp_path):

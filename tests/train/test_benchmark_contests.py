@@ -60,6 +60,12 @@ def test_who_is_told_more_or_is_the_callers_own_is_no_rival_of_agents():
     assert (one.hardest.controller, one.least_clear.value) == ("told", pytest.approx(-0.03))
 
 
+def test_an_agent_that_is_told_more_than_laws_does_not_stand_for_agents(monkeypatch):
+    monkeypatch.setitem(KINDS, "agent-fast", ("learned", 2))
+    (one,) = contests_by(table_of(COSTS | {"agent-fast": 0.1}), None)
+    assert one.agent.controller == "agent-a"
+
+
 def test_an_agent_is_ahead_only_of_all_laws_and_behind_only_where_all_agents_are():
     def verdict(**changes):
         return contests_by(table_of(COSTS | changes), CHOSEN)[0].verdict

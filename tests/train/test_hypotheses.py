@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from baselines import MultipleModel, RotorHarmonics
+from baselines.laws.foreseen_load import foreseen_loads
 from beamenv.scenarios.drawing import load_cases
 from beamenv.task import resolve_task
 from train.controllers import hypotheses as rule
-from train.controllers.hypotheses import hypotheses_of, switches
+from train.controllers.hypotheses import are_drawn, hypotheses_of, switches
 from train.controllers.named import named
 
 
@@ -76,11 +77,15 @@ def first_of(speed):
 
 def test_of_more_than_so_many_as_many_are_drawn(monkeypatch):
     monkeypatch.setattr(rule, "MOST", 6)
-    held = hypotheses_of(prior_of("unknown-everything"))
+    prior = prior_of("unknown-everything")
+    held = hypotheses_of(prior)
     assert len(held) == 6
     assert len({each.plant.natural_frequencies[0] for each in held}) == 6
     assert all(np.count_nonzero(each.actuator_gain < 1.0) == 1 == np.count_nonzero(each.sensor_bias) for each in held)
-    assert all(isinstance(each.loads[0], RotorHarmonics) and each.loads[0].orders == (1, 2, 3, 4) for each in held)
+    for each in held:
+        harmonics = [load for load in each.loads if isinstance(load, RotorHarmonics)]
+        assert [load.orders for load in harmonics] == [(1,), (2,), (3,), (4,)]
+        assert each.loads == foreseen_loads(prior.scenario, harmonics[0].speed)
 
 
 def test_the_deflection_is_the_root_mean_square_of_those_that_episodes_start_from():
@@ -97,8 +102,13 @@ def test_of_scenarios_kept_for_judging_it_knows_nothing(name):
     assert held.delay == 0 and held.actuator_gain.all() and held.sensor_gain.all() and not held.holds_lost_readings
 
 
-def test_the_controller_of_that_name_is_built_from_its_prior_and_falls_back_to_the_reference():
+def test_the_controller_of_that_name_is_built_from_its_prior_and_falls_back_to_the_cautious_law():
     law = named("multiple-model").build_for(resolve_task(scenario="delay", blade={"model": "thesis"}, duration=0.1))
     assert isinstance(law, MultipleModel)
     assert len(law.prior) == 3
-    assert law.fallback is not None and law.fallback.name == "LQG"
+    assert law.fallback is not None and law.fallback.name == "cautious LQG"
+
+
+def test_of_what_is_drawn_from_more_than_it_holds_quick_changes_cost_more():
+    assert are_drawn(prior_of("unknown-everything"))
+    assert not any(are_drawn(prior_of(name)) for name in ("nominal", "failure", "off-model", "spin-up"))

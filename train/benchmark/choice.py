@@ -49,8 +49,8 @@ class Choice:
 
 
 def agents(rows: Iterable[Row]) -> list[Row]:
-    """Those that have learned, as measured."""
-    return [row for row in rows if row.measured and row.kind == "learned"]
+    """Those that have learned and are told the scenario's distribution and the readings at most, as measured."""
+    return [row for row in rows if row.measured and row.kind == "learned" and row.tier <= LEARNT]
 
 
 def laws(rows: Iterable[Row]) -> list[Row]:

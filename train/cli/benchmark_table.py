@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from train.benchmark.leaderboard import Entry
     from train.benchmark.table import BenchmarkTable, Row
 
-TIER = 5
-"""Width of the column of tiers."""
+GAP = 2
+"""Between columns, and behind the last one."""
 
 
 def show_table(table: BenchmarkTable, folder: Path) -> None:
@@ -49,11 +49,11 @@ def print_costs(table: BenchmarkTable) -> None:
 
 def blocks(table: BenchmarkTable, width: int) -> Iterator[tuple[str, ...]]:
     """The scenarios in groups whose columns fit beside the controllers' names; one at least in each."""
-    left = max(len(name) for name in ("controller", *table.controllers)) + 1 + TIER + 2
+    left = 1 + max(len(name) for name in ("controller", *table.controllers)) + GAP + len("tier") + GAP
     block: list[str] = []
     used = left
     for name in table.scenarios:
-        needed = 1 + max(len(name), *(len(brief(row)) for row in table.within(name)))
+        needed = GAP + max(len(name), *(len(brief(row)) for row in table.within(name)))
         if block and used + needed > width:
             yield tuple(block)
             block, used = [], left

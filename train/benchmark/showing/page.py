@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from train.benchmark.showing.episode import shown_episode
-from train.benchmark.showing.heat_map import heat_map
+from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.legend import legend
 from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
 from train.benchmark.showing.section import Section
@@ -50,7 +50,7 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
 def page_table(table: BenchmarkTable) -> Table:
     """All rows, to be sorted by a click."""
     headings = ("scenario", *HEADINGS, *(column.heading for column in COLUMNS))
-    return Table(headings, tuple(_cells(row) for row in table.rows), legend(table))
+    return Table(headings, tuple(_cells(row) for row in table.rows), f"{legend(table)}\n\n{RULE}")
 
 
 def further_table(section: Section) -> Table:

@@ -1,14 +1,17 @@
 """An LQG with load estimate for each thing that may be the case in the scenario, weighed by what is read (Magill 1965)."""
 
-from baselines import Controller, multiple_model, reference_lqg
+from baselines import Controller, multiple_model
+from baselines.laws.detuned_lqg import CAUTIOUS, detuned_lqg
+from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv import Prior
-from train.controllers.hypotheses import hypotheses_of, switches
+from train.controllers.hypotheses import BETWEEN, are_drawn, hypotheses_of, switches
 
 KIND = "adaptive"
 TIER = 1
 
 
 def build(prior: Prior) -> Controller:
-    """Over the scenario's plants, delays and faults, and the reference LQG where none of them fits."""
-    hypotheses = hypotheses_of(prior)
-    return multiple_model(hypotheses, reference_lqg(prior.blade.truth), transition=switches(prior, hypotheses))
+    """Over the scenario's plants, delays and faults, and the cautious LQG where none of them fits."""
+    hypotheses, fallback = hypotheses_of(prior), detuned_lqg(prior.blade.truth, CAUTIOUS, name="cautious LQG")
+    rate_weight = BETWEEN if are_drawn(prior) else RATE_WEIGHT
+    return multiple_model(hypotheses, fallback, transition=switches(prior, hypotheses), rate_weight=rate_weight)
