@@ -10,14 +10,17 @@ from stable_baselines3 import PPO
 from baselines import PersistentLoad, lqg
 from beamenv.plant.plant import drive_limit
 from beamenv.task import resolve_task
+from train.comparison.compare import Comparison
 from train.controllers.policy_files import load_policy, save_policy
-from train.learning.sb3.belief import RollingBelief, design_belief, regulator_on
+from train.learning.recipe import named_recipe
+from train.learning.sb3.belief import OSCILLATORS, RollingBelief, design_belief, oscillator_bank, regulator_on
 from train.learning.sb3.belief_vec_env import BeliefVecEnv
 from train.learning.sb3.off_policy import OffPolicySettings, SACTraining
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.quadratic import Quadratic
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings
 from train.learning.sb3.vec_env import TrainingVecEnv
+from train.shared.curve import kept_cost, read_curve, write_curve
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = PPOSettings(
@@ -65,6 +68,18 @@ def test_some_of_the_way_to_its_action_is_what_a_regulator_on_the_belief_needs(t
     shown = np.append(np.random.default_rng(2).normal(size=10), voltages)
     whole, part = (regulator_on(belief, task.design, approach) @ shown for approach in (1.0, 0.25))
     np.testing.assert_allclose(voltages + 0.25 * (part - voltages), whole, atol=1e-12)
+
+
+def test_an_oscillator_shows_a_reading_of_its_frequency_as_it_is_and_a_quarter_of_a_period_later(task):
+    plant, place = task.design.plant, OSCILLATORS.index(40.0)
+    bank = oscillator_bank(plant)
+    kept, turned = RollingBelief(1, bank), 2.0 * np.pi * 40.0 * plant.control_interval * np.arange(1, 1001)
+    kept.begin(np.zeros((1, 4)))
+    for angle in turned:
+        kept.append(np.array([[0.0, 0.1 * np.sin(angle), 0.0, 0.0]]), np.ones((1, 4)))
+    shown = kept.window()[0, :-4].reshape(4, len(OSCILLATORS), 2)
+    np.testing.assert_allclose(shown[1, place], [np.sin(turned[-1]), -np.cos(turned[-1])], atol=0.1)
+    np.testing.assert_array_equal(shown[[0, 2, 3]], 0.0)  # neither other readings nor voltages get there
 
 
 def test_more_modes_than_the_design_has_are_refused(task):
@@ -139,6 +154,22 @@ def test_validation_without_control_is_one(task):
     """An actor that has not learnt anything is no control, and both meet the same episodes."""
     training = PPOTraining([task], TINY, 0)
     assert training._validation.cost(training.policy()) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_curves_tell_what_validation_saw_and_the_policy_kept_is_the_best_seen(tmp_path):
+    nobody = float("nan")
+    write_curve(tmp_path, [(1.0, 10, 1, 0.9, nobody), (2.0, 20, 2, 0.8, 0.5), (3.0, 30, 3, 0.7, 0.6)])
+    np.testing.assert_array_equal(read_curve(tmp_path), [(2.0, 20.0, 0.5), (3.0, 30.0, 0.6)])
+    assert kept_cost(tmp_path) == 0.5
+    write_curve(tmp_path, [(1.0, 10, 1, 0.7, nobody), (2.0, 20, 2, 0.8, nobody)])
+    np.testing.assert_array_equal(read_curve(tmp_path), [(1.0, 10.0, 0.7), (2.0, 20.0, 0.8)])
+    assert kept_cost(tmp_path) == 0.8
+
+
+def test_a_comparison_trains_by_recipes_too():
+    comparison = Comparison(budget={"belief": 1.0, "ppo-belief": 1.0})
+    assert comparison.recipe("ppo-belief").settings == named_recipe("ppo-belief").settings
+    assert comparison.job("belief").recipe.settings == replace(named_recipe("belief").settings, runs=1)
 
 
 def test_sac_sees_a_belief_too(task):
