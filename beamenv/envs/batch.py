@@ -163,6 +163,11 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
         return self._blades.state
 
     @property
+    def coming_loads(self) -> Array:
+        """(N, 2) N/m, lag and flap: the line loads of the interval to come, hidden from an agent."""
+        return self._blades.coming_loads
+
+    @property
     def design_state(self) -> Array:
         """(N, d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
         return self._blades.design_state

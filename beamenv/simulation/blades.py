@@ -148,6 +148,13 @@ class Blades:
         return np.asarray(seen if self._shape else seen[0])
 
     @property
+    def coming_loads(self) -> Array:
+        """(…, 2) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
+        loads = np.zeros((*self._shape, 2))
+        self.disturbances.loads(loads)
+        return self._by_blade(loads)
+
+    @property
     def speed(self) -> Array:
         """(…,) rad/s: what a tachometer shows."""
         speeds = self.bank.speeds[self.plants.index]

@@ -51,6 +51,11 @@ class MixedBlades:
         return _in_order([blades.design_state for blades in self._parts], self._order)
 
     @property
+    def coming_loads(self) -> Array:
+        """(N, 2): as ``Blades.coming_loads``."""
+        return _in_order([blades.coming_loads for blades in self._parts], self._order)
+
+    @property
     def index(self) -> Rows:
         """(N,) place of each blade's plant in its bank."""
         return _in_order([blades.index for blades in self._parts], self._order)

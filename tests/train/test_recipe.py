@@ -82,8 +82,18 @@ def test_generalists_train_on_every_named_scenario_but_where_a_plant_file_moves(
     assert set(Job("gradient", recipe, "solid", 0, Budget(updates=1), {}).tasks()) == {"solid"}
 
 
-MAY_BE_ZERO = {"compositions", "first", "critic_first", "energy_horizon", "exploration", "output_gain", "trace", "smoothing"}
-"""Settings that mean something at zero: none, no wait or potential, a deviation of one, an idle start, one step ahead, a mean."""
+MAY_BE_ZERO = {
+    "compositions",
+    "first",
+    "critic_first",
+    "energy_horizon",
+    "exploration",
+    "output_gain",
+    "trace",
+    "smoothing",
+    "validation",
+}
+"""Settings that mean something at zero: none, no wait, potential or look, a deviation of one, an idle start, a mean."""
 
 NUMBERS = [
     (name, table, each.name)

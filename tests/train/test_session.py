@@ -33,6 +33,7 @@ class Counting:
     updates: int = 0
     steps: int = 0
     cost: float = 1.0
+    validated: float = float("nan")
     losses: dict = field(default_factory=dict)
     remaining: list = field(default_factory=list)
 

@@ -49,16 +49,9 @@ def test_together_they_stay_below_5_mb():
     assert sum(path.stat().st_size for path in FOLDER.rglob("*") if path.is_file()) <= 5e6
 
 
-BEFORE = ("ppo", "ppo-from-gradient", "recurrent-ppo", "sac", "tqc")
-"""Agents of the blade of the thesis' model, until they are trained again."""
-
-
 @lru_cache
-def design_plant(agent, scenario):
-    """In the world that an agent was trained in."""
-    more = {"modes": 22} if scenario == "spillover" else {}
-    blade = {"model": "thesis", "beam": {"shear_flow": "consistent"}, **more} if agent in BEFORE else None
-    return resolve_task(blade=blade, scenario=scenario).design_plant
+def design_plant(scenario):
+    return resolve_task(scenario=scenario).design_plant
 
 
 @pytest.mark.parametrize("each", shipped(), ids=lambda each: f"{each.agent}-{each.scenario}-{each.seed}")
@@ -67,7 +60,7 @@ def test_each_tells_what_it_depends_on_and_acts_on_the_plants_it_was_trained_on(
     assert {"recipe", "seed", "scenario", "updates", "versions", "plants"} <= set(about)
     assert len((each.folder / "learning.csv").read_text().splitlines()) > 2
     for scenario in about["plants"]:
-        policy = load_shipped(each.agent, each.scenario, each.seed, design_plant(each.agent, scenario))
+        policy = load_shipped(each.agent, each.scenario, each.seed, design_plant(scenario))
         action, _ = policy.predict(np.full((2, 4), 0.05, np.float32))
         assert np.isfinite(action).all()
 

@@ -93,9 +93,9 @@ def test_half_a_checkpoint_is_told_in_a_sentence(tmp_path):
     ("content", "sentence"),
     [
         ([1, 2], "holds a list"),
-        ({"weights": 1}, "is of format None where this version of beamenv reads 2"),
-        ({"format": 3}, "is of format 3 where"),
-        ({"format": 2, "identity": ""}, "has no 'training'"),
+        ({"weights": 1}, "is of format None where this version of beamenv reads 3"),
+        ({"format": 4}, "is of format 4 where"),
+        ({"format": 3, "identity": ""}, "has no 'training'"),
     ],
 )
 def test_another_kind_of_checkpoint_is_told_with_the_file_s_name(content, sentence, tmp_path):

@@ -27,6 +27,7 @@ from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
 from train.learning.job import Job, run
 from train.learning.recipe import Recipe, named_recipe
+from train.learning.recipes import NAMES
 from train.learning.session import Budget
 from train.learning.training import Progress
 from train.shared.claim import NAME, check_nothing_replaced
@@ -58,27 +59,33 @@ class Comparison:
 
     environment: Annotated[Mapping[str, Any], Table()] = field(default_factory=dict)
     """Keyword arguments of the environment, as JSON can hold them."""
-    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"gradient": 30.0, "ppo": 255.0})
-    """Seconds of training of each agent; none are trained where it is empty."""
+    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"belief": 60.0, "ppo-belief": 240.0})
+    """Seconds of training of each agent, a trainer with its own settings or a recipe; none are trained where it is empty."""
     seeds: Annotated[int, SEEDS] = 64
     """Held-out episodes."""
     training_seed: Natural = 0
 
     def __post_init__(self) -> None:
-        for name, seconds in checked_table("comparison.budget", self.budget, tuple(AGENTS)).items():
+        for name, seconds in checked_table(
+            "comparison.budget", self.budget, (*AGENTS, *(each for each in NAMES if each not in AGENTS))
+        ).items():
             checked(f"budget.{name}", seconds, Number(gt=0.0, unit="s"))
 
+    def recipe(self, agent: str) -> Recipe:
+        """Of an agent's only run: its trainer's own settings, or those of the recipe."""
+        trainer, settings = (agent, AGENTS[agent].settings()) if agent in AGENTS else _alone(named_recipe(agent))
+        return Recipe(trainer, f"{agent} of a comparison", 1, settings)
+
     def job(self, agent: str) -> Job:
-        """The training of an agent, with the settings of ``settings_of``."""
+        """The training of an agent."""
         environment = dict(self.environment)
         scenario = environment.pop("scenario", "default")
-        recipe = Recipe(agent, f"{agent} of a comparison", 1, settings_of(agent))
-        return Job(agent, recipe, scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
+        return Job(agent, self.recipe(agent), scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
 
 
-def settings_of(agent: str) -> Any:
-    """Of a comparison's agent: those of the recipe "belief", one run, for "gradient"; of the others their trainer's own."""
-    return replace(named_recipe("belief").settings, runs=1) if agent == "gradient" else AGENTS[agent].settings()
+def _alone(recipe: Recipe) -> tuple[str, Any]:
+    """A recipe's trainer and settings, of one run where it is of several side by side."""
+    return recipe.agent, replace(recipe.settings, runs=1) if hasattr(recipe.settings, "runs") else recipe.settings
 
 
 class Listener:
@@ -147,7 +154,7 @@ def described(comparison: Comparison, task: Any) -> dict[str, Any]:
         "blade": to_dict(task.config),
         "design": to_dict(task.design_config),
         "scenario": task.scenario.to_dict(),
-        "agents": {name: asdict(settings_of(name)) for name in comparison.budget},
+        "agents": {name: asdict(comparison.recipe(name).settings) for name in comparison.budget},
     }
     whole: dict[str, Any] = json.loads(json.dumps(content))
     return whole

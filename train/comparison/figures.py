@@ -74,7 +74,7 @@ def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) ->
     with plt.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
         draw_panel(axis, panel)
-        axis.set(ylabel=f"{panel.y_label}, exploration included", ylim=(0.3, panel.y_limits[1]))
+        axis.set(ylabel=f"{panel.y_label}, in training or on validation seeds", ylim=(0.3, panel.y_limits[1]))
         axis.legend(handles=handles([panel]), loc="upper right")
     return figure
 

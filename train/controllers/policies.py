@@ -81,8 +81,9 @@ class Policy:
 class HistoryPolicy(Policy):
     """A network on the last instants, laid out as ``beamenv.envs.history.RollingHistory`` does, asked every few instants.
 
-    Its settings are ``input_gain``, ``held`` and, if they are not "tanh" and false, ``activation`` ("tanh" or "relu") of the
-    hidden layers and ``squashed``: whether the output is a tanh, too.
+    Its settings are ``input_gain``, ``held`` and, if they are not "tanh", false and 1, ``activation`` ("tanh" or "relu") of the
+    hidden layers, ``squashed``: whether the output is a tanh, too, and ``approach``: the share of the way from the voltages held
+    before to those that the network asks for.
 
     Its memory is [window | intervals the voltages have been held | voltages].
     """
@@ -103,16 +104,27 @@ class HistoryPolicy(Policy):
             raise ValueError(f"instants of {instant} numbers do not fill the window.")
         age, voltages = memory[:, -m - 1 : -m], memory[:, -m:]
         window = np.hstack([memory[:, instant : -m - 1], readings, voltages])
-        action = np.where(age == 0.0, self._network(window), voltages)
+        asked = network(self.weights, self.settings, window)
+        action = np.where(age == 0.0, towards(asked, voltages, self.settings), voltages)
         return action, np.hstack([window, (age + 1.0) % self.settings["held"], voltages]).astype(np.float32)
 
-    def _network(self, window: Array) -> Array:
-        hidden, depth = window * np.float32(self.settings["input_gain"]), len(self.weights) // 2
-        activation = _rectified if self.settings.get("activation") == "relu" else np.tanh
-        for layer in range(depth):
-            hidden = hidden @ self.weights[f"weight{layer}"].T + self.weights[f"bias{layer}"]
-            hidden = activation(hidden) if layer < depth - 1 else hidden
-        return np.tanh(hidden) if self.settings.get("squashed") else hidden
+
+def network(weights: Mapping[str, Array], settings: Mapping[str, Any], inputs: Array) -> Array:
+    """(N, m): what the layers ``weight0``, ``bias0``, … make of inputs (N, k)."""
+    hidden, depth = inputs * np.float32(settings["input_gain"]), sum(name.startswith("bias") for name in weights)
+    activation = _rectified if settings.get("activation") == "relu" else np.tanh
+    for layer in range(depth):
+        hidden = hidden @ weights[f"weight{layer}"].T + weights[f"bias{layer}"]
+        hidden = activation(hidden) if layer < depth - 1 else hidden
+    return np.tanh(hidden) if settings.get("squashed") else hidden
+
+
+def towards(asked: Array, voltages: Array, settings: Mapping[str, Any]) -> Array:
+    """Voltages (N, m) a share ``approach`` of the way from those held before to those asked for, within the unit box."""
+    share = settings.get("approach", 1.0)
+    if share == 1.0:
+        return asked
+    return np.asarray(voltages + np.float32(share) * (np.clip(asked, -1.0, 1.0) - voltages))
 
 
 def _rectified(values: Array) -> Array:

@@ -16,13 +16,14 @@ from beamenv.configuration.files import of_file, parsed_arrays
 from beamenv.configuration.writing import write_whole
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, normalised
+from train.controllers.belief_policy import BeliefPolicy
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy, StateSpacePolicy
 from train.controllers.policy_parts import checked_settings, checked_weights, limits
 from train.shared.files import as_path, read_json, write_json
 
 KINDS: Mapping[str, type[Policy]] = {
-    kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, LSTMPolicy)
+    kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, LSTMPolicy, BeliefPolicy)
 }
 
 FORMAT = 1

@@ -16,6 +16,7 @@ Shapes = dict[str, tuple[int, ...]]
 
 NEEDED: Mapping[str, Mapping[str, Kind]] = {
     "history": {"input_gain": Number(), "held": Count()},
+    "belief": {"input_gain": Number(), "held": Count()},
     "recurrent": {"input_gain": Number()},
     "state-space": {},
     "residual": {"input_gain": Number()},
@@ -25,7 +26,9 @@ NEEDED: Mapping[str, Mapping[str, Kind]] = {
 
 ACTIVATIONS = ("tanh", "relu")
 
-OPTIONAL: Mapping[str, Mapping[str, Kind]] = {"history": {"activation": Choice(ACTIVATIONS), "squashed": Flag()}}
+_LAYERED = {"activation": Choice(ACTIVATIONS), "squashed": Flag(), "approach": Number(gt=0.0, le=1.0)}
+
+OPTIONAL: Mapping[str, Mapping[str, Kind]] = {"history": _LAYERED, "belief": _LAYERED}
 
 
 def limits(lowest: Any, highest: Any) -> tuple[Array, Array]:
@@ -91,8 +94,20 @@ def _windowed(width: int, instant: int, readings: int | None) -> int:
 
 
 def _history(sizes: _Sizes, m: int, p: int | None) -> Shapes:
-    depth = max(len(sizes.weights) // 2, 1)
-    widths = [_windowed(sizes.of("weight0")[1], m, p), *(sizes.of(f"weight{k}")[0] for k in range(depth - 1)), m]
+    return _layers(sizes, m, _windowed(sizes.of("weight0")[1], m, p))
+
+
+def _belief(sizes: _Sizes, m: int, p: int | None) -> Shapes:
+    order, shown = sizes.of("shown")
+    p = sizes.of("readout")[1] if p is None else p
+    parts = {"transition": (order, order), "input": (m, order), "correction": (p, order), "readout": (order, p)}
+    return {**parts, "shown": (order, shown), **_layers(sizes, m, shown + m)}
+
+
+def _layers(sizes: _Sizes, m: int, inputs: int) -> Shapes:
+    """Of layers one upon the other, as many as there are biases, one at least."""
+    depth = max(sum(name.startswith("bias") for name in sizes.weights), 1)
+    widths = [inputs, *(sizes.of(f"weight{k}")[0] for k in range(depth - 1)), m]
     layers = enumerate(zip(widths[:-1], widths[1:], strict=True))
     return {name: shape for k, (a, b) in layers for name, shape in ((f"weight{k}", (b, a)), (f"bias{k}", (b,)))}
 
@@ -131,6 +146,7 @@ def _lstm(sizes: _Sizes, m: int, p: int | None) -> Shapes:
 
 EXPECTED: Mapping[str, Callable[[_Sizes, int, int | None], Shapes]] = {
     "history": _history,
+    "belief": _belief,
     "recurrent": _recurrent,
     "state-space": _state_space,
     "residual": _residual,

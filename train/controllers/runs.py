@@ -26,10 +26,4 @@ def best_run(folder: Path) -> Path:
     ``ValueError`` names a curve that is damaged.
     """
     places = list(runs_in(folder).values())
-    return min(places, key=_last_cost) if len(places) > 1 else places[0]
-
-
-def _last_cost(folder: Path) -> float:
-    """Infinite where there is no curve, or none that ends with a number."""
-    costs = curve.read_curve(folder)[:, 2].tolist() if (folder / curve.NAME).exists() else []
-    return costs[-1] if costs and costs[-1] == costs[-1] else float("inf")
+    return min(places, key=curve.kept_cost) if len(places) > 1 else places[0]

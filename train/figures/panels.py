@@ -56,7 +56,7 @@ class LearningCurves:
     """How agents learned, and what they are measured against."""
 
     curves: Mapping[str, Array]
-    """(k, 3) each: training time in s, steps, running cost relative to no control, exploration included."""
+    """(k, 3) each: training time in s, steps, cost relative to no control, running or on validation seeds."""
     levels: Mapping[str, float] = field(default_factory=dict)
     """Relative cost of controllers that do not learn: LQG's line."""
 

@@ -9,6 +9,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.named import BENCHMARK, UNSEEN
 from beamenv.task import Task, resolve_task
@@ -177,7 +179,8 @@ class Journal:
         try:
             self._training.load_state_dict(before["training"])
             self.curve = [
-                Progress(elapsed, steps, cost, updates, tuple(costs)) for elapsed, steps, cost, updates, costs in before["curve"]
+                Progress(elapsed, steps, cost, updates, tuple(costs), validated)
+                for elapsed, steps, cost, updates, costs, validated in before["curve"]
             ]
             self.seconds = float(before["seconds"])
         except Exception as error:  # noqa: BLE001 - torch, NumPy and SB3 each complain of a state in ways of their own
@@ -192,14 +195,15 @@ class Journal:
     def note(self, progress: Progress) -> None:
         """A point of the curve where it is time, and report."""
         self.seconds = progress.elapsed
-        if self._budget.share(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1:
+        due = self._budget.share(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1
+        if due or np.isfinite(progress.validated):
             self.curve.append(progress)
             self.scalars.write(progress, self._training.losses)
         self._report(progress)
 
     def keep(self, elapsed: float) -> None:
         """Write a checkpoint."""
-        curve = [[each.elapsed, each.steps, each.cost, each.updates, list(each.costs)] for each in self.curve]
+        curve = [[each.elapsed, each.steps, each.cost, each.updates, list(each.costs), each.validated] for each in self.curve]
         training = self._training.state_dict()
         if self.finished:
             training.pop("memory", None)  # of experience, which is large: nothing will be learnt from it any more
@@ -208,7 +212,8 @@ class Journal:
 
     def write_curve(self, folder: Path, run: int) -> None:
         """``learning.csv`` of one of the runs."""
-        write_curve(folder, [(each.elapsed, each.steps, each.updates, each.costs[run]) for each in self.curve])
+        rows = [(each.elapsed, each.steps, each.updates, each.costs[run], each.validated) for each in self.curve]
+        write_curve(folder, rows)
 
 
 def save_all(

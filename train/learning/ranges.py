@@ -19,6 +19,9 @@ SAMPLES = Count(2, 10_000_000)
 PASSES = Count(1, 1000)
 """Over experience; runs side by side."""
 
+SEEN = ("history", "oscillators", "belief")
+"""What agents of Stable-Baselines3 may be shown."""
+
 RATE = Number(gt=0.0, le=1.0)
 """What would stand still at zero and overshoot beyond one: learning rates, discounts, clipped ratios."""
 

@@ -79,4 +79,4 @@ def follow(
 def progress(training: Training, elapsed: float) -> Progress:
     """How far a training is."""
     costs = tuple(np.ravel(training.cost).tolist())
-    return Progress(elapsed, training.steps, float(np.mean(costs)), training.updates, costs)
+    return Progress(elapsed, training.steps, float(np.mean(costs)), training.updates, costs, training.validated)

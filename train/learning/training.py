@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
@@ -28,6 +29,8 @@ class Progress:
     """Updates of the policy so far."""
     costs: tuple[float, ...] = ()
     """``cost`` of each of the runs side by side, of which it is the mean."""
+    validated: float = math.nan
+    """J relative to no control without exploration, on validation seeds; NaN unless a look at the policy followed this update."""
 
 
 Report = Callable[[Progress], None]
@@ -41,6 +44,8 @@ class Training(Protocol):
     updates: int
     cost: Any
     """J relative to no control, recently: a number, or one for each policy."""
+    validated: float
+    """As ``Progress`` has it."""
     losses: dict[str, float]
     """Of the last update, by name."""
 

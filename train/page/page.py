@@ -148,7 +148,7 @@ def plots(content: PageContent) -> list[Plot]:
         found.append(Plot("poles", "Closed-loop poles", note, _plotted(pole_panel(content.poles)), 480))
     if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
         note = (
-            "Agents: running cost in training, exploration included. "
+            "Agents: running cost in training, or, of those that explore, the policy without exploration where validation looked. "
             "Level lines: controllers that do not learn, on the held-out episodes."
         )
         found.append(

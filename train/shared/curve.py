@@ -17,16 +17,21 @@ Array = NDArray[np.float64]
 NAME = "learning.csv"
 
 COLUMNS = ("elapsed", "steps", "updates", "cost")
-"""s, control intervals, updates of the policy, J relative to no control."""
+"""s, control intervals, updates of the policy, J relative to no control in training, exploration included."""
+
+VALIDATION = "validation"
+"""A further column, where a training looked: J relative to no control on validation seeds, without exploration."""
 
 
 def write_curve(folder: Path, points: Sequence[Sequence[float]]) -> None:
-    """``learning.csv`` of a training, a row of ``COLUMNS`` for each point."""
-    write_csv(folder / NAME, [dict(zip(COLUMNS, point, strict=True)) for point in points], COLUMNS)
+    """``learning.csv`` of a training, a row of ``COLUMNS`` and ``VALIDATION`` for each point; NaN is where nobody looked."""
+    looked = any(np.isfinite(point[len(COLUMNS)]) for point in points)
+    columns = (*COLUMNS, VALIDATION) if looked else COLUMNS
+    write_csv(folder / NAME, [dict(zip(columns, point, strict=False)) for point in points], columns)
 
 
 def read_curve(folder: Path) -> Array:
-    """(k, 3): seconds, steps and cost, which is NaN as long as no episode has ended.
+    """(k, 3): seconds, steps and cost, which is NaN as long as no episode has ended; only what validation saw, if it looked.
 
     ``ValueError`` of one sentence names the file, the line and what is expected if it is not there, damaged or something else.
     """
@@ -39,21 +44,32 @@ def read_curve(folder: Path) -> Array:
         raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
     except (csv.Error, UnicodeDecodeError) as error:
         raise ValueError(f"file {str(path)!r} cannot be read as the CSV file of a learning curve: {error}.") from None
-    if not rows or tuple(rows[0][1]) != COLUMNS:
+    columns = (*COLUMNS, VALIDATION) if rows and VALIDATION in rows[0][1] else COLUMNS
+    if not rows or tuple(rows[0][1]) != columns:
         first = shown(",".join(rows[0][1]) if rows else "")
         raise ValueError(f"file {str(path)!r} has in line 1 {first}, but must have the columns {','.join(COLUMNS)}.")
-    points = [_numbers(path, line, row) for line, row in rows[1:]]
-    return np.array([(elapsed, steps, cost) for elapsed, steps, _, cost in points], dtype=np.float64).reshape(-1, 3)
+    points = np.array([_numbers(path, line, row, columns) for line, row in rows[1:]], dtype=np.float64).reshape(-1, len(columns))
+    seen = points if columns == COLUMNS else points[np.isfinite(points[:, -1])]
+    return np.ascontiguousarray(seen[:, [0, 1, -1]])
 
 
-def _numbers(path: Path, line: int, row: Sequence[str]) -> list[float]:
-    """One of each column, the cost alone perhaps not finite."""
+def kept_cost(folder: Path) -> float:
+    """Cost of the policy that a training kept: the least that validation saw, or the last; infinite if the last is no number."""
+    path = folder / NAME
+    costs = read_curve(folder)[:, 2].tolist() if path.exists() else []
+    with_validation = bool(costs) and path.read_text(encoding="utf-8").partition("\n")[0].endswith(VALIDATION)
+    kept = min(costs) if with_validation else costs[-1] if costs else float("nan")
+    return float(kept) if kept == kept else float("inf")
+
+
+def _numbers(path: Path, line: int, row: Sequence[str], columns: Sequence[str]) -> list[float]:
+    """One of each column, costs alone perhaps not finite."""
     try:
         numbers = [float(cell) for cell in row]
     except ValueError:
         numbers = []
-    if len(numbers) != len(COLUMNS) or not np.isfinite(numbers[:-1]).all():
+    if len(numbers) != len(columns) or not np.isfinite(numbers[: len(COLUMNS) - 1]).all():
         raise ValueError(
-            f"file {str(path)!r} has in line {line} {shown(','.join(row))}, but must have numbers of {','.join(COLUMNS)}."
+            f"file {str(path)!r} has in line {line} {shown(','.join(row))}, but must have numbers of {','.join(columns)}."
         )
     return numbers

@@ -29,13 +29,14 @@ class Part(BaseFeaturesExtractor):
 
 
 class AsymmetricNetworks(nn.Module):
-    """Two tanh networks on the two parts of the observation."""
+    """Two networks on the two parts of the observation: tanh layers, or nothing at all before the output of a linear actor."""
 
-    def __init__(self, seen: int, hidden: int, actor_gain: float, units: int) -> None:
+    def __init__(self, seen: int, hidden: int, actor_gain: float, units: int, linear: bool = False) -> None:
         super().__init__()
         self.seen, self.actor_gain = seen, actor_gain
-        self.policy_net, self.value_net = tanh_layers(seen, units), tanh_layers(hidden, units)
-        self.latent_dim_pi = self.latent_dim_vf = units
+        self.policy_net = nn.Sequential() if linear else tanh_layers(seen, units)
+        self.value_net = tanh_layers(hidden, units)
+        self.latent_dim_pi, self.latent_dim_vf = seen if linear else units, units
 
     def forward(self, features: Tensor) -> tuple[Tensor, Tensor]:
         """Latent of the actor and of the critic."""
@@ -55,9 +56,12 @@ class AsymmetricNetworks(nn.Module):
 class AsymmetricPolicy(ActorCriticPolicy):
     """SB3's policy with `AsymmetricNetworks`."""
 
-    def __init__(self, *args: Any, seen: int, actor_gain: float, units: int, **kwargs: Any) -> None:
-        self._networks = {"seen": seen, "actor_gain": actor_gain, "units": units}
+    def __init__(self, *args: Any, seen: int, actor_gain: float, units: int, linear: bool = False, **kwargs: Any) -> None:
+        self._networks = {"seen": seen, "actor_gain": actor_gain, "units": units, "linear": linear}
         super().__init__(*args, **kwargs)
+        if linear:  # it begins without voltages
+            assert isinstance(self.action_net, nn.Linear)
+            nn.init.zeros_(self.action_net.weight)
 
     def _build_mlp_extractor(self) -> None:
         seen = int(self._networks["seen"])

@@ -14,6 +14,7 @@ import torch
 from numpy.typing import NDArray
 from torch import nn
 
+from beamenv.configuration import Refused
 from train.controllers.policies import Policy
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import TrainingVecEnv
@@ -57,6 +58,13 @@ class Follower:
             memory = self._teacher.knowing(self._memory[at], before)
             action[at], self._memory[at] = self._teacher.predict(readings, memory)
         return action
+
+
+def check_clonable(settings: Any) -> None:
+    """``ValueError`` for a student that a teacher's voltages tell nothing: it must see a history, and act at once."""
+    for name, only in (("sees", "history"), ("approach", 1.0)):
+        if getattr(settings, name) != only:
+            raise Refused(f"settings.{name}", getattr(settings, name), f"{only!r} where a teacher is given")
 
 
 def clone(

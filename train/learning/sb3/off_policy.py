@@ -17,12 +17,11 @@ from stable_baselines3.common.type_aliases import TrainFreq, TrainFrequencyUnit
 from torch import nn
 
 from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Share, configuration
-from beamenv.plant.plant import normalised
 from beamenv.task import Task
-from train.controllers.policies import HistoryPolicy, Policy
-from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, UNITS
+from train.controllers.policies import Policy
+from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
-from train.learning.sb3.cloning import Cloning, clone
+from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
@@ -37,10 +36,16 @@ class OffPolicySettings:
 
     blades: Annotated[int, BLADES] = 256
     """Environments stepped together."""
+    sees: Annotated[str, Choice(SEEN)] = "history"
+    """The last readings and voltages, or these through oscillators, or the belief of the design's filter: see ``belief``."""
+    modes: Annotated[int, UNITS] = 5
+    """Of the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms."""
+    approach: Annotated[float, RATE] = 1.0
+    """Share of the way from the last voltages to an action that they go: exploration that wanders in place of jumping."""
     rollout: Annotated[int, INSTANTS] = 4
     """Actions of every blade between updates."""
     critic_steps: Annotated[int, PASSES] = 12
@@ -79,6 +84,8 @@ class OffPolicySettings:
     """Updates that train the critics alone: an actor must not follow critics that know nothing."""
     smoothing: Share = 0.02
     """Weight of the latest rollout in the running cost."""
+    validation: Natural = 0
+    """Updates between two looks at the policy without exploration, on validation seeds; the best is kept. 0: the last is."""
 
     def __post_init__(self) -> None:
         if self.buffer < self.blades:
@@ -122,6 +129,7 @@ class OffPolicyTraining(SB3Training):
             model.actor.log_std.weight *= 0.01
             model.actor.log_std.bias.fill_(settings.exploration)
         if teacher is not None:
+            check_clonable(settings)
             clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)
         super().__init__(model, envs, tasks, settings, seed)
 
@@ -166,11 +174,10 @@ class OffPolicyTraining(SB3Training):
         for name in REMEMBERED:
             getattr(memory, name)[: memory.size()] = np.asarray(before[name])
 
-    def policy(self) -> HistoryPolicy:
+    def policy(self) -> Policy:
         """The actor's most likely action as arrays."""
         weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
-        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
-        return HistoryPolicy(self.name, weights, {**asdict(self.settings), "squashed": True}, lowest, highest)
+        return self._as_policy(self.name, weights, {**asdict(self.settings), "squashed": True})
 
 
 class SACTraining(OffPolicyTraining):

@@ -10,7 +10,7 @@ import numpy as np
 from sb3_contrib import RecurrentPPO
 from torch import nn
 
-from beamenv.configuration import Positive, configuration
+from beamenv.configuration import Positive, Refused, configuration
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.lstm_policy import LSTMPolicy
@@ -36,6 +36,12 @@ class RecurrentPPOSettings(PPOSettings):
     """Cells of the LSTM, and units of the critic's two tanh layers."""
     input_gain: Positive = 4.0
     """Readings are a few per cent of full scale most of the time."""
+
+    def __post_init__(self) -> None:
+        for name, only in (("sees", "history"), ("actor", "tanh"), ("critic", "network"), ("approach", 1.0)):
+            if getattr(self, name) != only:
+                raise Refused(name, getattr(self, name), f"{only!r}: cells know nothing else")
+        PPOSettings.__post_init__(self)
 
 
 class RecurrentPPOTraining(OnPolicyTraining):

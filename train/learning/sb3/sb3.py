@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,15 @@ from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
 from beamenv.configuration import Refused
+from beamenv.plant.plant import normalised
 from beamenv.task import Task
-from train.controllers.policies import Policy
+from train.controllers.belief_policy import BeliefPolicy
+from train.controllers.policies import HistoryPolicy, Policy
+from train.learning.sb3.belief import seen_by
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import TrainingVecEnv
 from train.learning.training import on_training_bank, uncontrolled_cost
+from train.learning.validation import Validation
 
 Envs = TrainingVecEnv | SideBySide
 
@@ -26,7 +31,8 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     What it is shown is said by the ``settings`` of its trainer, and ``seen``: keyword arguments of ``TrainingVecEnv``.
     """
     blades = settings.blades
-    seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held")}
+    seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held", "approach")}
+    seen["belief"] = seen_by(settings, tasks[0].design)
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
     if settings.held > min(task.steps for task in tasks):
@@ -72,12 +78,15 @@ class SB3Training:
         self.losses: dict[str, float] = {}
         """What SB3 logged in the last update, by its names."""
         self._seed, self._design = seed, tasks[0].design_plant
-        self._meter = Meter(envs)
-        _, self._callback = model._setup_learn(2**62, self._meter)
+        self._belief = seen_by(settings, tasks[0].design)
+        self._meter, self._validation = Meter(envs), Validation(tasks)
+        self.validated = float("nan")
+        self._best: tuple[float, Policy] | None = None
+        _, self._callback = model._setup_learn(2**62, [self._meter, *self._callbacks()])
 
     def update(self, remaining: float) -> None:
         """Gather experience and learn from it, at the share ``remaining`` of the learning rate."""
-        before = self.model.num_timesteps
+        before, self.validated = self.model.num_timesteps, float("nan")
         self.model._current_progress_remaining = remaining
         self._free(self.updates >= self.settings.critic_first)
         self._gather_and_learn()
@@ -88,6 +97,19 @@ class SB3Training:
         latest = min(self._meter.read(), 100.0)
         weight = max(self.settings.smoothing, 1.0 / self.updates)
         self.cost = latest if np.isnan(self.cost) else self.cost + weight * (latest - self.cost)
+        if self.settings.validation and self.updates % self.settings.validation == 0:
+            self._validate()
+
+    def _validate(self) -> None:
+        """Look at the policy without exploration, and keep it if it is the best so far."""
+        policy = self.policy()
+        self.validated = self._validation.cost(policy)
+        if self._best is None or self.validated < self._best[0]:
+            self._best = self.validated, policy
+
+    def _callbacks(self) -> list[BaseCallback]:
+        """Of the algorithm, beside the meter."""
+        return []
 
     def _free(self, free: bool) -> None:
         """Whether the actor is trained."""
@@ -112,9 +134,16 @@ class SB3Training:
         """The actor as arrays."""
         raise NotImplementedError
 
+    def _as_policy(self, name: str, weights: dict[str, np.ndarray[Any, Any]], settings: dict[str, Any]) -> Policy:
+        """Layers on a history or on a belief, as the settings have it."""
+        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
+        if self._belief is None:
+            return HistoryPolicy(name, weights, settings, lowest, highest)
+        return BeliefPolicy(name, {**self._belief._asdict(), **weights}, settings, lowest, highest)
+
     def policies(self) -> list[Policy]:
-        """``policy`` alone."""
-        return [self.policy()]
+        """``policy`` alone, or the best that validation has seen."""
+        return [self.policy() if self._best is None else self._best[1]]
 
     def close(self) -> None:
         """Close the batch."""
@@ -130,6 +159,7 @@ class SB3Training:
             "torch": torch.get_rng_state(),
             "numpy": [str(kind), torch.as_tensor(np.asarray(keys, np.int64)), int(position), int(has_gauss), float(cached)],
             "counters": {"steps": self.steps, "updates": self.updates, "cost": self.cost, "timesteps": self.model.num_timesteps},
+            "best": None if self._best is None else {"cost": self._best[0], "weights": dict(self._best[1].weights)},
             "episodes": self.envs.state_dict(),
             "shown": {"observations": self.model._last_obs.copy(), "starts": self.model._last_episode_starts.copy()},
         }
@@ -144,6 +174,9 @@ class SB3Training:
         counters = state["counters"]
         self.steps, self.updates, self.cost = counters["steps"], counters["updates"], counters["cost"]
         self.model.num_timesteps = counters["timesteps"]
+        best = state["best"]
+        weights = {} if best is None else {name: np.asarray(weight) for name, weight in best["weights"].items()}
+        self._best = None if best is None else (best["cost"], replace(self.policy(), weights=weights))
         self.envs.load_state_dict(state["episodes"])
         self.model._last_obs = np.asarray(state["shown"]["observations"]).copy()
         self.model._last_episode_starts = np.asarray(state["shown"]["starts"]).copy()

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
 from beamenv import BladeVecEnv, VectorSensorHistory
-from beamenv.plant.plant import drive_limit, sample
+from beamenv.plant.plant import drive_limit, normalised, sample
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
+from train.learning.sb3.belief import Belief, VectorBelief
 
 Array = NDArray[Any]
 
@@ -23,15 +24,18 @@ REWARD_UNIT = 0.01
 
 
 class TrainingVecEnv(BladeVecEnv):
-    """Blades whose agent sees the last ``history`` readings and own voltages; infos for finished episodes only.
+    """Blades whose agent sees the last ``history`` readings and own voltages, or a ``belief``; infos for finished episodes only.
 
     With ``energy_horizon`` τ > 0 the reward is shaped by the vibration energy E as a potential: r + τ (E − γ E⁺)/scale. For an
     agent that learns with the ``discount`` γ this changes no policy's rank (Ng, Harada and Russell 1999), but what a voltage takes
     out of the blade shows at once.
 
-    An action is ``held`` for so many control intervals: a step of this environment is as many of the blades'.
+    An action is ``held`` for so many control intervals: a step of this environment is as many of the blades'. The voltages go a
+    share ``approach`` of the way from those held before to it: exploration that wanders tells more of the slow modes, and disturbs
+    the readings, which are currents, less than jumps do.
 
-    With ``shows_state`` the true state follows the history in each observation, in units of what is typical: for a critic.
+    With ``shows_state`` the true state follows in each observation, in units of what is typical, for a critic; with ``shows_loads``
+    the line loads (2) of the coming interval after it, in units of ``LOAD_UNIT``.
 
     ``reference``, J s, is the cost of an episode without control. If it is given, rewards are in its units, so that those of
     scenarios of very different loads have one size, and ``relative_cost`` is known.
@@ -50,18 +54,24 @@ class TrainingVecEnv(BladeVecEnv):
         held: int = 1,
         reference: float | None = None,
         reward_unit: float = REWARD_UNIT,
+        approach: float = 1.0,
+        shows_loads: bool = False,
+        belief: Belief | None = None,
     ) -> None:
         task = environment if isinstance(environment, Task) else None
         super().__init__(count, seed, **{"dtype": "float64", **({} if isinstance(environment, Task) else environment)})
         self.blades: Any = self.envs.unwrapped
         if task is not None:
             self.blades.set_task([task])
-        self.envs = VectorSensorHistory(self.envs, length=history)
+        self.envs = VectorSensorHistory(self.envs, length=history) if belief is None else VectorBelief(self.envs, belief)
         actions = self.blades.single_action_space
         self.seen = int(np.prod(self.envs.single_observation_space.shape or ()))
         """How many numbers of an observation sensors show; what follows is the state."""
         self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
-        width = self.seen + (0 if self._state_gain is None else len(self._state_gain))
+        self._shows_loads, self.approach, self.belief = shows_loads, approach, belief
+        self._limits = normalised(self.blades.plant).voltage_limits
+        self._voltages: Array = np.zeros((count, *(actions.shape or ())))
+        width = self.seen + (0 if self._state_gain is None else len(self._state_gain) + 2 * shows_loads)
         self.observation_space = Box(-np.inf, np.inf, (width,), np.float32)
         self.action_space = Box(-1.0, 1.0, actions.shape, np.float32)
         self._scale = reward_scale(self.blades.plant)
@@ -86,12 +96,13 @@ class TrainingVecEnv(BladeVecEnv):
         steps = self.blades.task.steps
         elapsed = np.arange(self.num_envs) * steps // self.num_envs // self.held * self.held
         observations, info = self._begin({"elapsed": elapsed})
-        self._energy = info["energy"]
+        self._energy, self._voltages[...] = info["energy"], 0.0
         return self._with_state(observations)
 
     def state_dict(self) -> dict[str, Any]:
         """Where the episodes are: an equally made batch continues from it bit for bit."""
         own = {"states": self._states.copy(), "energy": self._energy.copy(), "last_cost": self.last_cost}
+        own["voltages"] = self._voltages.copy()
         return {"blades": self.blades.state_dict(), "history": self.envs.state_dict(), **own}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
@@ -99,21 +110,27 @@ class TrainingVecEnv(BladeVecEnv):
         self.reset()
         self.blades.load_state_dict(state["blades"])
         self.envs.load_state_dict(state["history"])
-        self._states, self._energy = (np.asarray(state[name]).copy() for name in ("states", "energy"))
+        self._states, self._energy, self._voltages = (np.asarray(state[name]).copy() for name in ("states", "energy", "voltages"))
         self.last_cost = state["last_cost"]
 
     def _with_state(self, windows: Array) -> Array:
         if self._state_gain is None:
             return windows
         self._states = (self.blades.state * self._state_gain).astype(np.float32)
+        if self._shows_loads:
+            self._states = np.hstack([self._states, self.blades.coming_loads.astype(np.float32) / LOAD_UNIT])
         return np.concatenate([windows, self._states], axis=1)
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Observations, rewards, ends and infos; where an episode ended the observation is the next one's first."""
         total, ended = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=np.bool_)
         infos, self.last_cost = self._unfinished, 0.0
+        voltages = self._actions
+        if self.approach < 1.0:
+            self._voltages += self.approach * (voltages - self._voltages)
+            voltages = np.clip(self._voltages, *self._limits, out=self._voltages)
         for _ in range(self.held):
-            windows, rewards, terminated, truncated, info = self.envs.step(self._actions)
+            windows, rewards, terminated, truncated, info = self.envs.step(voltages)
             ends, reached = terminated | truncated, info["energy"]
             if ends.any():
                 reached = np.where(ends, info["final_info"]["energy"], reached)
@@ -123,6 +140,7 @@ class TrainingVecEnv(BladeVecEnv):
             ended |= ends
             self._energy = info["energy"]
             self.last_cost -= float(rewards.mean()) * self._scale / self.held
+        self._voltages[ended] = 0.0
         return self._with_state(windows), (self._unit * total).astype(np.float32), ended, infos
 
     def _infos(self, before: list[dict[str, Any]], rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
@@ -131,6 +149,10 @@ class TrainingVecEnv(BladeVecEnv):
             last = np.append(final[row], self._states[row])  # the last state shown stands for that at the end
             infos[row] = {"terminal_observation": last, "TimeLimit.truncated": not terminated[row]}
         return infos
+
+
+LOAD_UNIT = np.float32(20.0)
+"""N/m, of the loads that a critic is shown."""
 
 
 def typical_state(task: Task, reference: float | None = None) -> Array:

@@ -108,6 +108,8 @@ class GradientTraining:
         self.updates = 0
         self.cost = np.full(settings.runs, np.nan)
         """(runs,): J relative to no control, a running mean over the tasks."""
+        self.validated = float("nan")
+        """It acts as it is trained, without exploration."""
         self.losses: dict[str, float] = {}
 
     def update(self, remaining: float) -> None:

@@ -1,0 +1,111 @@
+"""A critic in closed form: values of a linear plant under a linear law are quadratic in its state, load, belief and voltages.
+
+Least squares fit it to the returns of a rollout before these are learnt from: no rate, no network, no value loss.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.type_aliases import PyTorchObs
+from torch import Tensor, nn
+
+from train.learning.sb3.asymmetric import AsymmetricPolicy
+
+MODES = 6
+"""Of which all products, with each other and with what is seen, are features; of those above, which move little, squares."""
+
+MEMORY = 0.7
+"""Share that earlier rollouts keep in the sums of squares."""
+
+RIDGE = 1e-4
+"""Of each feature's mean square."""
+
+
+class Quadratic(nn.Module):
+    """V = Σ w_ij s_i s_j + Σ w_k s_k² + w on rows [seen | displacements | velocities | electronics | loads (2)].
+
+    ``seen`` is how many numbers of what the actor sees are in a row: a belief's, which may be wrong, and the voltages held.
+    """
+
+    weight: Tensor
+    squares: Tensor
+    """Sums of features' products, and, last row, of features times returns; kept with the weights, to resume from."""
+
+    def __init__(self, width: int, modes: int, seen: int) -> None:
+        super().__init__()
+        low = min(MODES, modes)
+        slow = [*range(low), *range(modes, modes + low)]
+        crossed = [*range(seen), *(seen + place for place in slow), width - 2, width - 1]
+        self.crossed, self.alone = crossed, sorted(set(range(width)) - set(crossed))
+        self._first, self._second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
+        count = len(self._first) + len(self.alone) + 1
+        self.register_buffer("weight", torch.zeros(count))
+        self.register_buffer("squares", torch.zeros(count + 1, count, dtype=torch.float64))
+
+    def features(self, states: Tensor) -> Tensor:
+        """(B, k)."""
+        crossed, alone = states[:, self.crossed], states[:, self.alone]
+        return torch.cat([crossed[:, self._first] * crossed[:, self._second], alone**2, torch.ones(len(states), 1)], dim=1)
+
+    def forward(self, states: Tensor) -> Tensor:
+        """(B, 1)."""
+        return (self.features(states) @ self.weight)[:, None]
+
+    def fit(self, states: Tensor, returns: Tensor) -> None:
+        """Ridge regression on these rows and, fading, on those before."""
+        features = self.features(states)
+        latest = torch.cat([features.T @ features, (returns @ features)[None]]).double() / len(features)
+        self.squares += latest if not self.squares.any() else (1.0 - MEMORY) * (latest - self.squares)
+        matrix, right = self.squares[:-1], self.squares[-1]
+        solved = torch.linalg.solve(matrix + torch.diag(RIDGE * torch.diag(matrix) + 1e-12), right)
+        if torch.isfinite(solved).all():  # else that of before
+            self.weight[...] = solved.float()
+
+
+class QuadraticPolicy(AsymmetricPolicy):
+    """SB3's policy with an actor of `AsymmetricNetworks` and a `Quadratic` critic of the true state and ``crossed`` numbers."""
+
+    def __init__(self, *args: Any, seen: int, modes: int, crossed: int, **kwargs: Any) -> None:
+        super().__init__(*args, seen=seen, **kwargs)
+        self.told = seen - crossed
+        """Where what the critic is told begins, with the last numbers that the actor sees."""
+        self.quadratic = Quadratic(self.features_dim - self.told, modes, crossed)
+
+    def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
+        """Actions, values and log-probabilities."""
+        distribution = self._get_action_dist_from_latent(self.mlp_extractor.forward_actor(obs))
+        actions = distribution.get_actions(deterministic=deterministic)
+        return actions, self.predict_values(obs), distribution.log_prob(actions)
+
+    def evaluate_actions(self, obs: PyTorchObs, actions: Tensor) -> tuple[Tensor, Tensor, Tensor | None]:
+        """No values: none are learnt by descent."""
+        assert isinstance(obs, Tensor)
+        distribution = self._get_action_dist_from_latent(self.mlp_extractor.forward_actor(obs))
+        return torch.zeros(len(obs), 1), distribution.log_prob(actions), distribution.entropy()
+
+    def predict_values(self, obs: PyTorchObs) -> Tensor:
+        """(B, 1)."""
+        assert isinstance(obs, Tensor)
+        values: Tensor = self.quadratic(obs[:, self.told :])
+        return values
+
+
+class FitCritic(BaseCallback):
+    """At the end of a rollout fits the critic to its returns, and reckons its advantages anew."""
+
+    def _on_step(self) -> bool:
+        return True
+
+    def _on_rollout_end(self) -> None:
+        model: Any = self.model
+        buffer, policy = model.rollout_buffer, model.policy
+        rows = torch.as_tensor(buffer.observations.reshape(-1, buffer.observations.shape[-1]))
+        with torch.no_grad():
+            policy.quadratic.fit(rows[:, policy.told :], torch.as_tensor(buffer.returns.reshape(-1)))
+            buffer.values[...] = policy.predict_values(rows).numpy().reshape(buffer.values.shape)
+            last = policy.predict_values(torch.as_tensor(model._last_obs))
+        buffer.compute_returns_and_advantage(last_values=last, dones=model._last_episode_starts)
