@@ -122,7 +122,7 @@ def of_listed(
 
 def jobs_of(listed: ListedController, setting: Setting) -> list[Job]:
     """The cells of one controller in one scenario, one for each training run."""
-    return [Job(setting, listed.name, run, source) for run, source in listed.runs(setting.name).items()]
+    return [Job(setting, listed.name, run, source) for run, source in listed.runs(setting.name, setting.scenario).items()]
 
 
 def check_paths(queue: Sequence[Job]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,9 @@ from baselines.design.controller import LEAST_TIER, as_controller
 from beamenv.configuration import Count, FileName, Refused, checked
 from beamenv.configuration.files import of_file
 from beamenv.knowledge import TRUTH
+from beamenv.scenarios.scenario import Scenario
 from train.controllers.models import UNTRUSTED
-from train.controllers.named import KINDS, discover
+from train.controllers.named import KINDS, discover, everywhere
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
@@ -45,10 +46,12 @@ class ListedController:
     """Runs by name that are put into every scenario."""
     only_in: Mapping[str, Mapping[str, Source]] = field(default_factory=dict)
     """Runs by scenario, of a specialist."""
+    suits: Callable[[Scenario], bool] = everywhere
+    """Whether it has something to do in a scenario."""
 
-    def runs(self, scenario: str) -> Mapping[str, Source]:
-        """Those in a scenario, none if it has nothing to do there."""
-        return self.everywhere or self.only_in.get(scenario, {})
+    def runs(self, name: str, scenario: Scenario) -> Mapping[str, Source]:
+        """Those in a scenario of this name, none if it has nothing to do there."""
+        return (self.everywhere or self.only_in.get(name, {})) if self.suits(scenario) else {}
 
 
 def listed_controllers(
@@ -62,7 +65,7 @@ def listed_controllers(
     """
     if models and not trusted:
         raise ValueError(UNTRUSTED)
-    classical = [ListedController(name, each.kind, each.tier, {"": Classical(each)}) for name, each in discover().items()]
+    classical = [ListedController(name, each.kind, each.tier, {"": Classical(each)}, suits=each.suits) for name, each in discover().items()]
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     known |= {name: of_folder(Path(name)) for name in names if name not in known and os.path.isdir(name)}

@@ -2,7 +2,8 @@
 
 Such a module has a ``KIND``, one of ``KINDS``, a ``TIER`` of information, and ``build(known)``, which returns the controller and is
 given what that tier knows and no more: a ``beamenv.Design`` at 0, a ``beamenv.Prior`` at 1 and 2, the ``Truth`` at 3
-(``beamenv.knowledge``). ``lqg_load.py`` is called "lqg-load".
+(``beamenv.knowledge``). It may have ``suits(scenario)``: false where the controller has nothing to do. ``lqg_load.py`` is called
+"lqg-load".
 """
 
 from __future__ import annotations
@@ -18,11 +19,17 @@ from baselines import Controller, Law
 from baselines.design.controller import LEAST_TIER
 from beamenv.configuration import Count, Refused, checked
 from beamenv.knowledge import TIERS
+from beamenv.scenarios.scenario import Scenario
 from beamenv.task import Task, checked_task
 
 KINDS = ("fixed", "scheduled", "adaptive", "predictive")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed or the time; laws that find out what is the case;
 laws that solve a program at every instant."""
+
+
+def everywhere(scenario: Scenario) -> bool:
+    """Whether a controller that says nothing else has something to do in a scenario: always."""
+    return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +42,8 @@ class NamedController:
     """From what its tier is told."""
     tier: int = 0
     """Of information, in ``beamenv.knowledge.TIERS``."""
+    suits: Callable[[Scenario], bool] = everywhere
+    """Whether it is meant for a scenario: the benchmark leaves out the others."""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -64,7 +73,7 @@ def discover() -> Mapping[str, NamedController]:
             raise ValueError(
                 f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND, TIER and build(known)."
             )
-        found[name] = NamedController(name, content.KIND, content.build, content.TIER)
+        found[name] = NamedController(name, content.KIND, content.build, content.TIER, getattr(content, "suits", everywhere))
     return MappingProxyType(found)
 
 

@@ -2,6 +2,7 @@
 
 from baselines import Controller, clairvoyant_lqg
 from beamenv.knowledge import Truth
+from beamenv.scenarios.scenario import Scenario
 
 KIND = "scheduled"
 TIER = 3
@@ -10,3 +11,8 @@ TIER = 3
 def build(truth: Truth) -> Controller:
     """With a filter that estimates the loads that the scenario lets foresee, and gains that vary with time."""
     return clairvoyant_lqg(truth)
+
+
+def suits(scenario: Scenario) -> bool:
+    """Not where plants wander within the episode: it is told one plant, or a run-up that is the same in every episode."""
+    return not (scenario.plants.drifts or scenario.plants.speed_wander)
