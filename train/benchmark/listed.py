@@ -14,7 +14,7 @@ from beamenv.configuration.files import of_file
 from beamenv.knowledge import TRUTH
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.models import UNTRUSTED
-from train.controllers.named import KINDS, discover, everywhere
+from train.controllers.named import KINDS, any_scenario, discover
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
@@ -46,7 +46,7 @@ class ListedController:
     """Runs by name that are put into every scenario."""
     only_in: Mapping[str, Mapping[str, Source]] = field(default_factory=dict)
     """Runs by scenario, of a specialist."""
-    suits: Callable[[Scenario], bool] = everywhere
+    suits: Callable[[Scenario], bool] = any_scenario
     """Whether it has something to do in a scenario."""
 
     def runs(self, name: str, scenario: Scenario) -> Mapping[str, Source]:
@@ -65,7 +65,9 @@ def listed_controllers(
     """
     if models and not trusted:
         raise ValueError(UNTRUSTED)
-    classical = [ListedController(name, each.kind, each.tier, {"": Classical(each)}, suits=each.suits) for name, each in discover().items()]
+    classical = [
+        ListedController(name, each.kind, each.tier, {"": Classical(each)}, suits=each.suits) for name, each in discover().items()
+    ]
     known = {each.name: each for each in [*classical, *agents(trained)]}
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     known |= {name: of_folder(Path(name)) for name in names if name not in known and os.path.isdir(name)}

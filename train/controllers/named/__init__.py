@@ -27,7 +27,7 @@ KINDS = ("fixed", "scheduled", "adaptive", "predictive")
 laws that solve a program at every instant."""
 
 
-def everywhere(scenario: Scenario) -> bool:
+def any_scenario(scenario: Scenario) -> bool:
     """Whether a controller that says nothing else has something to do in a scenario: always."""
     return True
 
@@ -42,7 +42,7 @@ class NamedController:
     """From what its tier is told."""
     tier: int = 0
     """Of information, in ``beamenv.knowledge.TIERS``."""
-    suits: Callable[[Scenario], bool] = everywhere
+    suits: Callable[[Scenario], bool] = any_scenario
     """Whether it is meant for a scenario: the benchmark leaves out the others."""
 
     def __post_init__(self) -> None:
@@ -73,7 +73,7 @@ def discover() -> Mapping[str, NamedController]:
             raise ValueError(
                 f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND, TIER and build(known)."
             )
-        found[name] = NamedController(name, content.KIND, content.build, content.TIER, getattr(content, "suits", everywhere))
+        found[name] = NamedController(name, content.KIND, content.build, content.TIER, getattr(content, "suits", any_scenario))
     return MappingProxyType(found)
 
 
