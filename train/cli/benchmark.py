@@ -51,7 +51,9 @@ def benchmark(
         typer.Option(help="Stable-Baselines3 model to take part. Such a file can run code when it is loaded: see --trust."),
     ] = None,
     trust: Annotated[bool, typer.Option("--trust", help="Load model files: I know where they are from.")] = False,
-    quick: Annotated[bool, typer.Option("--quick", help=f"About a minute and a half on two cores: {told()}. What else is given comes first.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help=f"About a minute and a half on two cores: {told()}. What else is given comes first.")
+    ] = False,
     submit: Annotated[
         str | None,
         typer.Option(
