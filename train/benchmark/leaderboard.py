@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from train.benchmark.table import UNSTABLE
 from train.controllers.tiers import tiers_told
 from train.shared import markdown
 from train.shared.columns import Column, number, share
-from train.shared.files import write_csv
+from train.shared.files import read_rows, write_csv
 from train.shared.lock import held
 
 NAME = "leaderboard.csv"
@@ -85,14 +84,7 @@ def read_leaderboard(path: Path) -> list[Entry]:
     """Its rows, none if there is no file; ``ValueError`` names the file, the line and what is wrong in it."""
     if not path.exists():
         return []
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            lines = csv.reader(file, strict=True)
-            rows = [(lines.line_num, row) for row in lines]
-    except OSError as error:
-        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise ValueError(f"file {str(path)!r} cannot be read as the CSV file of a leaderboard: {error}.") from None
+    rows = read_rows(path, "a leaderboard")
     if not rows or tuple(rows[0][1]) != COLUMNS:
         first = shown(",".join(rows[0][1]) if rows else "")
         raise ValueError(f"file {str(path)!r} has in line 1 {first}, but must have the columns {','.join(COLUMNS)}.")

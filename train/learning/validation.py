@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 from beamenv.simulation.blades import Blades
 from beamenv.task import Task
 from train.controllers.policies import Policy
-
-SEED = 3_000_000
-"""The first of the seeds that choices are made on: laws are tuned from 2 000 000 on, compared from 1 000 000 on."""
+from train.shared.held_out import VALIDATION
 
 EPISODES = 32
 """Of each task."""
@@ -43,7 +41,7 @@ class Validation:
 def _costs(task: Task, policy: Policy | None) -> NDArray[np.float64]:
     """(EPISODES,) J in J s; without control for None."""
     blades = Blades(task.bank, task.scenario, EPISODES)
-    generators = [np.random.default_rng(SEED + k) for k in range(EPISODES)]
+    generators = [np.random.default_rng(VALIDATION + k) for k in range(EPISODES)]
     readings, memory = blades.begin(generators).observation, None
     action: Any
     action, total = np.zeros((EPISODES, task.plant.B.shape[1])), np.zeros(EPISODES)

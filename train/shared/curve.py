@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import shown
-from train.shared.files import write_csv
+from train.shared.files import read_rows, write_csv
 
 Array = NDArray[np.float64]
 
@@ -36,14 +35,7 @@ def read_curve(folder: Path) -> Array:
     ``ValueError`` of one sentence names the file, the line and what is expected if it is not there, damaged or something else.
     """
     path = folder / NAME
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            lines = csv.reader(file, strict=True)
-            rows = [(lines.line_num, row) for row in lines]
-    except OSError as error:
-        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise ValueError(f"file {str(path)!r} cannot be read as the CSV file of a learning curve: {error}.") from None
+    rows = read_rows(path, "a learning curve")
     columns = (*COLUMNS, VALIDATION) if rows and VALIDATION in rows[0][1] else COLUMNS
     if not rows or tuple(rows[0][1]) != columns:
         first = shown(",".join(rows[0][1]) if rows else "")

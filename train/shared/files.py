@@ -123,3 +123,18 @@ _FORMULA = ("=", "+", "-", "@")
 def on_one_line(text: str) -> str:
     """Text with a space for each line break, tab and control character in it."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def read_rows(path: Path, what: str) -> list[tuple[int, list[str]]]:
+    """The rows of a CSV file, each with the number of its line; ``what`` it is to be the file of.
+
+    ``ValueError`` of one sentence names the file if it cannot be read, or is none.
+    """
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            lines = csv.reader(file, strict=True)
+            return [(lines.line_num, row) for row in lines]
+    except OSError as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error.strerror}.") from None
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise ValueError(f"file {str(path)!r} cannot be read as the CSV file of {what}: {error}.") from None

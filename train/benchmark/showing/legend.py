@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from baselines.evaluation.statistics import CONFIDENCE, RESAMPLES
-from beamenv.knowledge import TIERS, TRUTH
 from train.benchmark import failures, score
 from train.benchmark.table import UNSTABLE, BenchmarkTable
+from train.controllers.tiers import tiers_told
 
 
 def legend(table: BenchmarkTable) -> str:
@@ -27,8 +27,4 @@ def estimates(table: BenchmarkTable) -> str:
 
 def tiers() -> str:
     """What the tiers are, and how they are compared."""
-    known = ", ".join(f"{tier} {what}" for tier, what in TIERS.items())
-    return (
-        f"Tiers say what a controller is told and sees, each what those below it are too: {known}. The best of a tier is that of "
-        f"all its kinds; tier {TRUTH}, which no real blade offers, is a reference and no rival."
-    )
+    return f"{tiers_told()} The best of a tier is that of all its kinds."
