@@ -5,6 +5,7 @@ import pytest
 
 from beamenv.scenarios.named import UNSEEN
 from train.benchmark import benchmark
+from train.benchmark import choose as tool
 from train.benchmark.cells import SERIES, Cell
 from train.benchmark.choice import SCENARIOS, Choice, choose, read_choice, write_choice
 from train.benchmark.contests import AHEAD, BEHIND, LEVEL, contests_by
@@ -14,7 +15,6 @@ from train.benchmark.table import tabulate
 from train.benchmark.targets import leader, leading
 from train.controllers.named import named
 from train.shared.held_out import VALIDATION, validation
-from train.tools import choose as tool
 
 SEEDS = 32
 UNCONTROLLED = np.random.default_rng(0).gamma(4.0, size=SEEDS)

@@ -19,7 +19,7 @@ from train.benchmark.table import BenchmarkTable, Row
 from train.shared.files import read_json, write_json
 
 FILE = Path(__file__).with_name("chosen.json")
-"""The choice that ships; ``python -m train.tools.choose`` makes it anew."""
+"""The choice that ships; ``python -m train.benchmark.choose`` makes it anew."""
 
 SCENARIOS = tuple(name for name in (*BENCHMARK, *OPEN) if name not in UNSEEN)
 """Those that are chosen on."""

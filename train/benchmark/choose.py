@@ -1,4 +1,4 @@
-"""Choose who stands for agents and for laws in the benchmark, on validation seeds: ``python -m train.tools.choose``."""
+"""Choose who stands for agents and for laws in the benchmark, on validation seeds: ``python -m train.benchmark.choose``."""
 
 from __future__ import annotations
 
