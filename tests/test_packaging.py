@@ -167,10 +167,9 @@ def test_baselines_never_know_environments():
 
 ROOMS_OF_TRAIN = (
     {"shared"},
-    {"controllers", "figures"},
+    {"controllers", "figures", "tools"},
     {"learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore"},
-    {"tools"},
     {"cli"},
 )
 """Floor by floor: a room imports rooms below it."""
