@@ -17,6 +17,7 @@ from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
 from train.controllers.runs import best_run
+from train.controllers.tiers import LEARNT, TIER
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import FORMAT, NAME, damaged, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
@@ -223,6 +224,6 @@ def save_all(
     places = [folder] if len(policies) == 1 else [folder / str(run) for run in range(len(policies))]
     for run, (policy, place) in enumerate(zip(policies, places, strict=True)):
         journal.write_curve(place, run)
-        own = {"run": run, "seconds": round(journal.seconds, 1), "versions": versions(), "plants": dict(plants)}
+        own = {TIER: LEARNT, "run": run, "seconds": round(journal.seconds, 1), "versions": versions(), "plants": dict(plants)}
         save_policy(policy, place, {**about, **own})
     return places
