@@ -120,6 +120,32 @@ class MultipleModel(Law):
         weights = np.exp(np.log(self.prior) + self.recall(rows).evidence)
         return np.asarray(weights if np.ndim(memory) == 2 else weights[0])
 
+    def misfits(self, memory: ArrayLike) -> Array:
+        """(N,) of memories (N, order): mean normalised innovation squared per reading, about 1 where a model is right."""
+        recalled = self.recall(np.asarray(memory, dtype=np.float64))
+        weights = np.exp(np.log(self.prior) + recalled.evidence)
+        return np.asarray(np.einsum("nh,nh->n", weights, recalled.squared) / np.maximum(recalled.readings, 1.0))
+
+    def cautious(self, observation: Array, memory: Array) -> Array:
+        """(N, m): the action that the fallback would ask for, whoever is in charge; ``ValueError`` without one."""
+        if self.fallback is None:
+            raise ValueError(f"{self.name} has no fallback.")
+        own = self.recall(memory).own
+        asked = own @ self.fallback.state_gain.T + self.instruments.read(observation) @ self.fallback.measurement_gain.T
+        return self.instruments.drive(self.instruments.limit(asked))
+
+    def overruled(self, memory: Array, change: Array) -> Array:
+        """The memory (N, order) that ``decide`` gave, once actions were applied that differ from its own by ``change`` (N, m)."""
+        memory = memory.copy()
+        held, m = self.recall(memory), change.shape[1]
+        volts = change * self.instruments.voltage_scale
+        held.predicted[...] += self.bank.driven(np.pad(volts, ((0, 0), (0, self._depth * m))))
+        if self._depth:
+            held.voltages[:, 0] += volts
+        if self.fallback is not None:
+            held.own[...] += volts @ self.fallback.voltage_input.T
+        return memory
+
     @np.errstate(over="ignore", invalid="ignore")
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
         """Correct, weigh, drive, mix, predict: all hypotheses and blades at once; of a reading that is no number comes none."""

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from beamenv.plant.fingerprint import fingerprint
-from beamenv.scenarios.named import BENCHMARK, UNSEEN
+from beamenv.scenarios.named import BENCHMARK, OPEN, UNSEEN
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
@@ -34,8 +34,8 @@ from train.shared.versions import versions
 GENERALIST = "generalist"
 """In place of a scenario: all of ``NAMES``, in one training."""
 
-NAMES = tuple(name for name in BENCHMARK if name not in UNSEEN)
-"""The benchmark's scenarios but those that are kept for judging."""
+NAMES = tuple(name for name in (*BENCHMARK, *OPEN) if name not in UNSEEN)
+"""All scenarios but those that are kept for judging."""
 
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
