@@ -127,7 +127,7 @@ class FilterBank(ReadOnly):
         A reading is predicted as it will be taken, clipped. A lost one counts in no likelihood, nor for filters that know.
         """
         innovation = reading - np.minimum(np.maximum(expected, -self.full_scale), self.full_scale)
-        step, codes = self._step(instant), 1 << lost.shape[1]
+        step, codes = self.step(instant), 1 << lost.shape[1]
         keys = step * codes + lost @ (1 << np.arange(lost.shape[1]))
         if (keys == keys[0]).all():
             return self._correction(divmod(int(keys[0]), codes), innovation)
@@ -141,7 +141,7 @@ class FilterBank(ReadOnly):
 
     def carried(self, instant: Array, whitened: Array, onward: Array) -> Array:
         """(H, N, q): ``whitened`` innovations (H, N, p) through matrices ``onward`` (K, H, p, q) of each blade's instant (N,)."""
-        step = self._step(instant)
+        step = self.step(instant)
         if (step == step[0]).all():
             return np.matmul(whitened, onward[step[0]])
         carried = np.empty((*whitened.shape[:2], onward.shape[-1]))
@@ -153,7 +153,7 @@ class FilterBank(ReadOnly):
         """(N, H, s): what voltages (N, m (D + 1)), V, newest first, add to the states of the next instant."""
         return np.asarray(np.tensordot(voltages, self.voltage_input, 1))
 
-    def _step(self, instant: Array) -> NDArray[np.int64]:
+    def step(self, instant: Array) -> NDArray[np.int64]:
         """(N,): which of the gains, of which the last stays."""
         return np.minimum(instant, len(self.cross) - 1).astype(np.int64)
 

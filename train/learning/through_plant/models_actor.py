@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from baselines import MultipleModel
+from baselines.design.motion import DenseMotion
 from beamenv.plant.plant import Plant
 from train.controllers.models_policy import SHARPNESS, ModelsPolicy
 from train.learning.through_plant.actors import Actor, ActorSettings, GatedUnit
@@ -161,12 +162,13 @@ class ModelsActor(Actor):
 
 def _tensors(law: MultipleModel) -> Law:
     bank, own, instruments = law.bank, law.fallback, law.instruments
+    dense = DenseMotion.of(bank, law.state_gain)
     assert own is not None
     left = [each[0] for each in bank.left] or np.zeros((0, *bank.inverse.shape[1:]))
     log_left = [each[1] for each in bank.left] or np.zeros((0, bank.counts[0]))
     arrays = (
-        law._moved,
-        law._onward,
+        dense.moved,
+        dense.onward,
         bank.inverse,
         bank.log_determinant,
         np.array(left),
