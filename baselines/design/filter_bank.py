@@ -121,19 +121,18 @@ class FilterBank(ReadOnly):
         again = (reading == before) & (np.abs(reading) < self.full_scale) & ~first[:, None]
         return np.asarray(again & self.holds.any())
 
-    def corrections(self, instant: Array, expected: Array, reading: Array, lost: NDArray[np.bool_]) -> Correction:
-        """From predicted readings (H, N, p) and those taken (N, p) in A, each blade at an ``instant`` (N,) of its own.
+    def corrections(self, instant: Array, innovation: Array, lost: NDArray[np.bool_]) -> Correction:
+        """From ``innovation`` (H, N, p), A, and what is ``lost`` of it (N, p), each blade at an ``instant`` (N,) of its own.
 
-        A reading is predicted as it will be taken, clipped. A lost one counts in no likelihood, nor for filters that know.
+        A lost reading counts in no likelihood, nor for filters that know.
         """
-        innovation = reading - np.minimum(np.maximum(expected, -self.full_scale), self.full_scale)
         step, codes = self.step(instant), 1 << lost.shape[1]
         keys = step * codes + lost @ (1 << np.arange(lost.shape[1]))
         if (keys == keys[0]).all():
             return self._correction(divmod(int(keys[0]), codes), innovation)
-        H, N, p = innovation.shape
-        all_of_them = Correction(np.empty((H, N, p)), np.empty((H, N)), np.empty((H, N)))
-        for key in np.unique(keys).tolist():
+        most = int(np.bincount(keys).argmax())
+        all_of_them = self._correction(divmod(most, codes), innovation)
+        for key in np.unique(keys[keys != most]).tolist():
             rows = np.flatnonzero(keys == key)
             for whole, part in zip(all_of_them, self._correction(divmod(key, codes), innovation[:, rows]), strict=True):
                 whole[:, rows] = part
@@ -168,7 +167,7 @@ class FilterBank(ReadOnly):
             kept = k == len(self.cross) - 1 and code < len(self.left)
             inverse, log_determinant = self.left[code] if kept else _without(self.covariance[k], code)
         whitened = np.matmul(innovation, inverse)
-        squared = np.einsum("hnp,hnp->hn", innovation, whitened)
+        squared = (innovation * whitened) @ np.ones(innovation.shape[-1])
         log_density = -0.5 * (squared + log_determinant[:, None])
         if code and not self.holds.all():
             others = ~self.holds

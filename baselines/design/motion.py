@@ -13,6 +13,9 @@ from baselines.design.controller import Array
 from baselines.design.filter_bank import FilterBank
 from baselines.design.modes import Modes, common_modes, modes_of
 
+TOGETHER = 16
+"""Blades whose modes are worked on at once: they fit into a processor's own memory."""
+
 
 class Motion(ABC):
     """Predicted states of N blades, (N, size), in coordinates of its own: what they show, and what follows them."""
@@ -24,11 +27,11 @@ class Motion(ABC):
 
     @abstractmethod
     def seen(self, states: Array) -> Array:
-        """(H, N, p + m): readings to be expected, A, and what regulators ask for, V, of predicted ``states`` (N, size)."""
+        """(H, N, p + m): readings to be expected, A, and K x̂, V, of predicted ``states`` (N, size)."""
 
     @abstractmethod
     def answers(self, instant: Array, whitened: Array) -> Array:
-        """(H, N, m), V: what ``whitened`` innovations (H, N, p) add to that, each blade at an ``instant`` (N,) of its own."""
+        """(H, N, m), V: what ``whitened`` innovations (H, N, p) add to −K x̂, each blade at an ``instant`` (N,) of its own."""
 
     @abstractmethod
     def follow(self, instant: Array, states: Array, whitened: Array, voltages: Array, out: Array) -> None:
@@ -53,15 +56,16 @@ class DenseMotion(Motion):
 
     bank: FilterBank
     moved: Array
-    """(H, s, p + m + s): [Cᵀ, −Kᵀ, Aᵀ], from a prediction to the readings, to what is asked for and to the next prediction."""
+    """(H, s, p + m + s): [Cᵀ, Kᵀ, Aᵀ], from a prediction to the readings, to what is not asked for and to the next prediction."""
     onward: Array
-    """(K, H, p, m + s): C S [−Kᵀ, Aᵀ], the same of what readings add to it."""
+    """(K, H, p, m + s): C S [−Kᵀ, Aᵀ], from what readings add to it."""
 
     @classmethod
     def of(cls, bank: FilterBank, state_gain: Array) -> DenseMotion:
         """From regulators' gains (H, m, s)."""
-        onward = np.concatenate([-state_gain.swapaxes(-1, -2), bank.transition], axis=-1)
-        return cls(bank, np.concatenate([bank.output, onward], axis=-1), np.matmul(bank.cross, onward))
+        asked = state_gain.swapaxes(-1, -2)
+        moved = np.concatenate([bank.output, asked, bank.transition], axis=-1)
+        return cls(bank, moved, np.matmul(bank.cross, np.concatenate([-asked, bank.transition], axis=-1)))
 
     @property
     def size(self) -> int:
@@ -78,7 +82,7 @@ class DenseMotion(Motion):
         return self.by_hypothesis(states).copy()
 
     def seen(self, states: Array) -> Array:
-        """Products with [Cᵀ, −Kᵀ]."""
+        """Products with [Cᵀ, Kᵀ]."""
         return self._through(states, slice(0, self._shown))
 
     def answers(self, instant: Array, whitened: Array) -> Array:
@@ -151,6 +155,8 @@ class ModalMotion(Motion):
     """(size / 2,), complex."""
     acting: Array
     """(H,): how many instants ago the voltages were asked for that act now."""
+    late: tuple[tuple[int, Array], ...]
+    """How many instants ago, where not now, and by which hypotheses."""
     answer: Array
     """(K, H, p, m): −C S Kᵀ."""
 
@@ -167,7 +173,7 @@ class ModalMotion(Motion):
         if modes is None or (acts.sum(axis=0) > 1).any():
             return None
         acting, first, column, alike = np.argmax(acts, axis=0), 0, 0, []
-        shown = np.concatenate([bank.output, -state_gain.swapaxes(-1, -2)], axis=-1)
+        shown = np.concatenate([bank.output, state_gain.swapaxes(-1, -2)], axis=-1)
         drive = np.stack([blocks[acting[h], :, h] for h in range(H)])
         for size, those in groupby(modes, key=lambda each: 2 * len(each.eigenvalues)):
             group = list(those)
@@ -175,7 +181,8 @@ class ModalMotion(Motion):
             alike.append(part(shown, bank.cross, drive))
             first, column = first + len(group), column + len(group) * size
         answer = np.matmul(bank.cross, -state_gain.swapaxes(-1, -2))
-        return cls(bank, tuple(alike), np.concatenate([each.eigenvalues for each in modes]), acting, answer)
+        late = tuple((int(d), np.flatnonzero(acting == d)) for d in np.unique(acting) if d)
+        return cls(bank, tuple(alike), np.concatenate([each.eigenvalues for each in modes]), acting, late, answer)
 
     @property
     def size(self) -> int:
@@ -196,7 +203,7 @@ class ModalMotion(Motion):
         return own
 
     def seen(self, states: Array) -> Array:
-        """Products with modes of [Cᵀ, −Kᵀ]."""
+        """Products with modes of [Cᵀ, Kᵀ]."""
         shown = np.empty((self.bank.counts[0], len(states), self.alike[0].seen.shape[-1]))
         for each in self.alike:
             np.matmul(each.of(states).swapaxes(0, 1), each.seen, out=shown[each.those])
@@ -208,33 +215,50 @@ class ModalMotion(Motion):
 
     def follow(self, instant: Array, states: Array, whitened: Array, voltages: Array, out: Array) -> None:
         """Each by its eigenvalue, and one product with what comes in: innovations and those voltages that act."""
-        onward, step = np.empty(states.shape), self.bank.step(instant)
-        np.multiply(states.view(np.complex128), self.eigenvalues, out=onward.view(np.complex128))
-        inputs = np.concatenate([whitened, self._acting(voltages)], axis=-1)
-        last = len(self.answer) - 1
-        for k in np.unique(step).tolist():
-            rows = slice(None) if step[0] == k and (step == k).all() else np.flatnonzero(step == k)
-            self._enter(inputs[:, rows], None if k == last else k, out, rows)
-        out += onward
+        step, (H, N, p), last = self.bank.step(instant), whitened.shape, len(self.answer) - 1
+        inputs = np.empty((H, N, p + self.answer.shape[-1]))
+        inputs[..., :p] = whitened
+        self._act(voltages, inputs[..., p:])
+        alike, onward = bool((step == step[0]).all()), np.empty((min(TOGETHER, N), self.size))
+        if not alike:
+            for k in np.unique(step).tolist():
+                rows = np.flatnonzero(step == k)
+                self._enter(inputs[:, rows], self._entries(k, last), out, rows)
+        entries = self._entries(int(step[0]), last)
+        for first in range(0, N, TOGETHER):
+            some = slice(first, first + TOGETHER)
+            if alike:
+                self._enter(inputs[:, some], entries, out[some])
+            turned = onward[: len(out[some])]
+            np.multiply(states[some].view(np.complex128), self.eigenvalues, out=turned.view(np.complex128))
+            out[some] += turned
 
     def driven(self, voltages: Array) -> Array:
         """Products with modes of Bᵀ."""
-        acting, driven = self._acting(voltages), np.empty((len(voltages), self.size))
+        acting, driven = np.empty((len(self.acting), len(voltages), self.answer.shape[-1])), np.empty((len(voltages), self.size))
+        self._act(voltages, acting)
         for each in self.alike:
             np.matmul(acting[each.those], each.drive, out=each.of(driven).swapaxes(0, 1))
         return driven
 
-    def _acting(self, voltages: Array) -> Array:
-        """(H, N, m): of voltages (N, m (D + 1)) those that act by each hypothesis."""
-        m = self.answer.shape[-1]
-        return voltages.reshape(len(voltages), -1, m).swapaxes(0, 1)[self.acting]
+    def _act(self, voltages: Array, into: Array) -> None:
+        """Writes into (H, N, m), of voltages (N, m (D + 1)), those that act by each hypothesis."""
+        m = into.shape[-1]
+        into[...] = voltages[:, :m]
+        for delay, those in self.late:
+            into[those] = voltages[:, delay * m : (delay + 1) * m]
 
-    def _enter(self, inputs: Array, k: int | None, out: Array, rows: slice | Array) -> None:
-        """What ``inputs`` (H, n, p + m) add, with the gains of instant k, or the last, into some rows of ``out``."""
-        for each in self.alike:
-            matrix = each.settled if k is None else np.concatenate([each.gains[k], each.drive], axis=-2)
+    def _entries(self, k: int, last: int) -> list[Array]:
+        """(G, p + m, c) of each that are alike: what comes in at instant k."""
+        if k == last:
+            return [each.settled for each in self.alike]
+        return [np.concatenate([each.gains[k], each.drive], axis=-2) for each in self.alike]
+
+    def _enter(self, inputs: Array, entries: list[Array], out: Array, rows: Array | None = None) -> None:
+        """Writes what ``inputs`` (H, n, p + m) add into ``out`` (N, size), or some rows of it."""
+        for each, matrix in zip(self.alike, entries, strict=True):
             into = each.of(out)
-            if isinstance(rows, slice):
+            if rows is None:
                 np.matmul(inputs[each.those], matrix, out=into.swapaxes(0, 1))
             else:
                 into[rows] = np.matmul(inputs[each.those], matrix).swapaxes(0, 1)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
+from math import ceil, prod
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from baselines.design.matrix import keep_matrices
 from baselines.design.motion import Motion, motion_of
 from baselines.design.objects import instance
 
-AT_ONCE = 2**18
+AT_ONCE = 2**20
 """Numbers of memories that are worked on at once: larger arrays in between would be asked of the system anew at every instant."""
 
 
@@ -79,7 +79,7 @@ class MultipleModel(Law):
     _log_prior: Array = field(init=False)
     """(H,)."""
     _before: Array = field(init=False)
-    """(m D, H m): ``voltage_gain`` of all hypotheses side by side."""
+    """(H, m D, m): transposed ``voltage_gain``."""
 
     def __post_init__(self) -> None:
         """``ValueError`` for parts that do not fit."""
@@ -93,7 +93,7 @@ class MultipleModel(Law):
             keep_matrices(self, {"transition": (H, H)})
         object.__setattr__(self, "_motion", motion_of(bank, self.state_gain, self.transition is not None))
         object.__setattr__(self, "_log_prior", np.log(self.prior))
-        object.__setattr__(self, "_before", np.ascontiguousarray(self.voltage_gain.transpose(2, 0, 1).reshape(m * depth, H * m)))
+        object.__setattr__(self, "_before", np.ascontiguousarray(self.voltage_gain.swapaxes(1, 2)))
 
     @property
     def order(self) -> int:
@@ -119,7 +119,7 @@ class MultipleModel(Law):
         H, (p, m), D, N = self.bank.counts[0], self.instruments.counts, self._depth, len(memory)
         parts, first = [], 0
         for shape in ((self._motion.size,), (H,), (H,), (D, m), (p,), (self._own,), (), (), ()):
-            following = first + math.prod(shape)
+            following = first + prod(shape)
             parts.append(memory[:, first:following].reshape(N, *shape))
             first = following
         return Memory(*parts)
@@ -162,7 +162,7 @@ class MultipleModel(Law):
         reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(np.asarray(memory, dtype=np.float64))
         rows = rows if rows.strides[-1] == rows.itemsize else np.ascontiguousarray(rows)
         voltage, following = np.empty((len(rows), self.instruments.counts[1])), np.empty(rows.shape)
-        size = max(1, AT_ONCE // rows.shape[1])
+        size = ceil(len(rows) / ceil(len(rows) * rows.shape[1] / max(AT_ONCE, rows.shape[1])))
         for first in range(0, len(rows), size):
             some = slice(first, first + size)
             voltage[some] = self._decided(reading[some], self._held(rows[some]), self._held(following[some]))
@@ -174,7 +174,8 @@ class MultipleModel(Law):
         p = self.instruments.counts[0]
         seen = self._motion.seen(old.predicted)
         lost = self.bank.lost(reading, old.reading, old.instant == 0.0)
-        correction = self.bank.corrections(old.instant, seen[..., :p], reading, lost)
+        self._compare(seen, reading)
+        correction = self.bank.corrections(old.instant, seen[..., :p], lost)
         weights, new.evidence[...] = self._weighed(old.evidence + correction.log_density.T)
         self._judge(old, new, correction.squared.T, lost, weights)
         answers = self._motion.answers(old.instant, correction.whitened)
@@ -195,6 +196,15 @@ class MultipleModel(Law):
         new.instant[...] = old.instant + 1.0
         return voltage
 
+    def _compare(self, seen: Array, reading: Array) -> None:
+        """Turns expected readings, as they will be taken, clipped, into innovations, and K x̂ into −K x̂, in place."""
+        N, (p, m) = len(reading), self.instruments.counts
+        highest = np.tile(np.concatenate([self.bank.full_scale, np.full(m, np.inf)]), N)  # all in one row: short ones are slow
+        rows = seen.reshape(len(seen), -1)
+        np.minimum(rows, highest, out=rows)
+        np.maximum(rows, -highest, out=rows)
+        np.subtract(np.concatenate([reading, np.zeros((N, m))], axis=1).ravel(), rows, out=rows)
+
     def _weighed(self, evidence: Array) -> tuple[Array, Array]:
         """Weights (N, H), each at least the floor, which add up to 1, and the logarithm of each over that beforehand."""
         logarithm, floor = evidence + self._log_prior, max(self.floor, np.finfo(float).tiny)
@@ -212,8 +222,10 @@ class MultipleModel(Law):
 
     def _asked(self, answers: Array, before: Array, weights: Array) -> Array:
         """(N, m), V: the mean of what each regulator asks for, from its answer to its estimate, as the drive lets it through."""
-        asked = answers.swapaxes(0, 1) - (before @ self._before).reshape(len(before), *self.voltage_gain.shape[:2])
-        return np.asarray(np.matmul(weights[:, None], self.instruments.limit(asked))[:, 0])
+        answers -= np.matmul(before, self._before)
+        rows, limits = answers.reshape(len(answers), -1), np.tile(self.instruments.voltage_limits, len(before))
+        np.minimum(np.maximum(rows, limits[0], out=rows), limits[1], out=rows)
+        return np.asarray(np.matmul(weights[:, None], answers.swapaxes(0, 1))[:, 0])
 
     def _judge(self, old: Memory, new: Memory, squared: Array, lost: NDArray[np.bool_], weights: Array) -> None:
         """Whether any hypothesis fits; where none has, the fallback stays in charge for the rest of the episode."""
