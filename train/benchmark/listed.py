@@ -21,15 +21,13 @@ from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
 from train.controllers.tiers import LEARNT as LEARNT
+from train.controllers.tiers import TIER
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
 
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
-
-TIER = "tier"
-"""What an agent's own file may tell."""
 
 INDISPENSABLE = ("none", "lqg")
 """What every cost is relative to, and what everyone is compared with in pairs."""
