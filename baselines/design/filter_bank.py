@@ -82,7 +82,10 @@ class FilterBank(ReadOnly):
         """From each hypothesis' filter and delay; ``depth`` D is how many voltages before are remembered."""
         size = max(len(each.A) for each in filters)
         same = [_padded(each, size) for each in filters]
-        cross, covariance = _recursion(*(np.stack(part) for part in zip(*same, strict=True)))
+        first = {_equation(each): each for each in same}
+        which = [list(first).index(_equation(each)) for each in same]
+        of = _recursion(*(np.stack(part) for part in zip(*first.values(), strict=True)))
+        cross, covariance = of[0][:, which], of[1][:, which]
         m = filters[0].B.shape[1]
         voltage_input = np.zeros(((depth + 1) * m, len(same), size))
         for h, (each, delay) in enumerate(zip(same, delays, strict=True)):
@@ -191,6 +194,11 @@ def _padded(each: Filter, size: int) -> Filter:
     both, below, right = ((0, more), (0, more)), ((0, more), (0, 0)), ((0, 0), (0, more))
     widths = (both, below, right, both, ((0, 0), (0, 0)), both, both)
     return Filter(*(np.pad(part, width) for part, width in zip(each, widths, strict=True)))
+
+
+def _equation(each: Filter) -> tuple[bytes, ...]:
+    """What its covariance goes by, whatever its voltages do."""
+    return tuple(part.tobytes() for name, part in each._asdict().items() if name != "B")
 
 
 def _recursion(A: Array, B: Array, C: Array, W: Array, V: Array, S: Array, last: Array) -> tuple[Array, Array]:

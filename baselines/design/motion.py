@@ -13,9 +13,6 @@ from baselines.design.controller import Array
 from baselines.design.filter_bank import FilterBank
 from baselines.design.modes import Modes, common_modes, modes_of
 
-TOGETHER = 16
-"""Blades whose modes are worked on at once: they fit into a processor's own memory."""
-
 
 class Motion(ABC):
     """Predicted states of N blades, (N, size), in coordinates of its own: what they show, and what follows them."""
@@ -219,19 +216,15 @@ class ModalMotion(Motion):
         inputs = np.empty((H, N, p + self.answer.shape[-1]))
         inputs[..., :p] = whitened
         self._act(voltages, inputs[..., p:])
-        alike, onward = bool((step == step[0]).all()), np.empty((min(TOGETHER, N), self.size))
-        if not alike:
+        if (step == step[0]).all():
+            self._enter(inputs, self._entries(int(step[0]), last), out)
+        else:
             for k in np.unique(step).tolist():
                 rows = np.flatnonzero(step == k)
                 self._enter(inputs[:, rows], self._entries(k, last), out, rows)
-        entries = self._entries(int(step[0]), last)
-        for first in range(0, N, TOGETHER):
-            some = slice(first, first + TOGETHER)
-            if alike:
-                self._enter(inputs[:, some], entries, out[some])
-            turned = onward[: len(out[some])]
-            np.multiply(states[some].view(np.complex128), self.eigenvalues, out=turned.view(np.complex128))
-            out[some] += turned
+        onward = np.empty(states.shape)
+        np.multiply(states.view(np.complex128), self.eigenvalues, out=onward.view(np.complex128))
+        out += onward
 
     def driven(self, voltages: Array) -> Array:
         """Products with modes of Bᵀ."""
