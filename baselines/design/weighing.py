@@ -198,7 +198,7 @@ class MultipleModel(Law):
 
     def _compare(self, seen: Array, reading: Array) -> None:
         """Turns expected readings, as they will be taken, clipped, into innovations, and K x̂ into −K x̂, in place."""
-        N, (p, m) = len(reading), self.instruments.counts
+        N, m = len(reading), self.instruments.counts[1]
         highest = np.tile(np.concatenate([self.bank.full_scale, np.full(m, np.inf)]), N)  # all in one row: short ones are slow
         rows = seen.reshape(len(seen), -1)
         np.minimum(rows, highest, out=rows)
