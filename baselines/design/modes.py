@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from baselines.design.controller import Array
 
 CONDITION = 1e6
-"""Largest condition of T, columns of length 1, up to which modes stand for states: rounding then is 1e-10 of the states at most. The
+"""Largest condition of T, columns of length 1, up to which modes stand for states: rounding is 1e-10 of the states at most then. The
 filters of the default blade have 3e3 to 1.2e4; where eigenvectors are parallel it is 1e8 and more."""
 
 ALIKE = 1e-15
