@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from baselines.design.controller import Array
 
 CONDITION = 1e6
-"""Largest condition of T, columns of length 1, up to which modes stand for states: rounding is 1e-10 of the states at most then. The
-filters of the default blade have 3e3 to 1.2e4; where eigenvectors are parallel it is 1e8 and more."""
+"""Largest condition of T, columns of length 1, up to which modes stand for states: rounding is 1e-10 of the states at most then.
+The filters of the default blade have 3e3 to 1.2e4; where eigenvectors are parallel it is 1e8 and more."""
 
 ALIKE = 1e-15
 """Eigenvalues that differ by no more count as equal: over an episode of 2000 instants that is 2e-12."""
