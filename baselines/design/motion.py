@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import partial
 from itertools import groupby
 
 import numpy as np
@@ -169,13 +168,14 @@ class ModalMotion(Motion):
         acts = blocks.any(axis=(1, 3))
         if modes is None or (acts.sum(axis=0) > 1).any():
             return None
-        acting, first, column, alike = np.argmax(acts, axis=0), 0, 0, []
+        alike: list[_Alike] = []
+        acting, first, column = np.argmax(acts, axis=0), 0, 0
         shown = np.concatenate([bank.output, state_gain.swapaxes(-1, -2)], axis=-1)
         drive = np.stack([blocks[acting[h], :, h] for h in range(H)])
-        for size, those in groupby(modes, key=lambda each: 2 * len(each.eigenvalues)):
-            group = list(those)
-            part = partial(_alike, group, slice(first, first + len(group)), slice(column, column + len(group) * size))
-            alike.append(part(shown, bank.cross, drive))
+        for size, members in groupby(modes, key=lambda each: 2 * len(each.eigenvalues)):
+            group = list(members)
+            those, columns = slice(first, first + len(group)), slice(column, column + len(group) * size)
+            alike.append(_alike(group, those, columns, shown, bank.cross, drive))
             first, column = first + len(group), column + len(group) * size
         answer = np.matmul(bank.cross, -state_gain.swapaxes(-1, -2))
         late = tuple((int(d), np.flatnonzero(acting == d)) for d in np.unique(acting) if d)

@@ -117,7 +117,8 @@ class MultipleModel(Law):
     def _held(self, memory: Array) -> Memory:
         """Views of a memory (N, order)."""
         H, (p, m), D, N = self.bank.counts[0], self.instruments.counts, self._depth, len(memory)
-        parts, first = [], 0
+        parts: list[Array] = []
+        first = 0
         for shape in ((self._motion.size,), (H,), (H,), (D, m), (p,), (self._own,), (), (), ()):
             following = first + prod(shape)
             parts.append(memory[:, first:following].reshape(N, *shape))
