@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
+from numpy.typing import NDArray
 
 from baselines.design.controller import Array
 from baselines.design.filter_bank import FilterBank
@@ -147,12 +148,10 @@ class ModalMotion(Motion):
 
     bank: FilterBank
     alike: tuple[_Alike, ...]
-    eigenvalues: Array
-    """(size / 2,), complex."""
-    acting: Array
-    """(H,): how many instants ago the voltages were asked for that act now."""
-    late: tuple[tuple[int, Array], ...]
-    """How many instants ago, where not now, and by which hypotheses."""
+    eigenvalues: NDArray[np.complex128]
+    """(size / 2,)."""
+    late: tuple[tuple[int, NDArray[np.intp]], ...]
+    """How many instants ago, where not now, the voltages were asked for that act, and by which hypotheses."""
     answer: Array
     """(K, H, p, m): −C S Kᵀ."""
 
@@ -179,7 +178,7 @@ class ModalMotion(Motion):
             first, column = first + len(group), column + len(group) * size
         answer = np.matmul(bank.cross, -state_gain.swapaxes(-1, -2))
         late = tuple((int(d), np.flatnonzero(acting == d)) for d in np.unique(acting) if d)
-        return cls(bank, tuple(alike), np.concatenate([each.eigenvalues for each in modes]), acting, late, answer)
+        return cls(bank, tuple(alike), np.concatenate([each.eigenvalues for each in modes]), late, answer)
 
     @property
     def size(self) -> int:
@@ -228,7 +227,7 @@ class ModalMotion(Motion):
 
     def driven(self, voltages: Array) -> Array:
         """Products with modes of Bᵀ."""
-        acting, driven = np.empty((len(self.acting), len(voltages), self.answer.shape[-1])), np.empty((len(voltages), self.size))
+        acting, driven = np.empty((self.bank.counts[0], len(voltages), self.answer.shape[-1])), np.empty((len(voltages), self.size))
         self._act(voltages, acting)
         for each in self.alike:
             np.matmul(acting[each.those], each.drive, out=each.of(driven).swapaxes(0, 1))
@@ -247,7 +246,7 @@ class ModalMotion(Motion):
             return [each.settled for each in self.alike]
         return [np.concatenate([each.gains[k], each.drive], axis=-2) for each in self.alike]
 
-    def _enter(self, inputs: Array, entries: list[Array], out: Array, rows: Array | None = None) -> None:
+    def _enter(self, inputs: Array, entries: list[Array], out: Array, rows: NDArray[np.intp] | None = None) -> None:
         """Writes what ``inputs`` (H, n, p + m) add into ``out`` (N, size), or some rows of it."""
         for each, matrix in zip(self.alike, entries, strict=True):
             into = each.of(out)
