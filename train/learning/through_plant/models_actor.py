@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from baselines import MultipleModel
+from baselines.design.motion import DenseMotion
 from beamenv.plant.plant import Plant
 from train.controllers.models_policy import SHARPNESS, ModelsPolicy
 from train.learning.through_plant.actors import Actor, ActorSettings, GatedUnit
@@ -82,7 +83,7 @@ class ModelsActor(Actor):
         H, s = self.law.bank.counts
         taken = readings * law.full_scale
         moved = torch.bmm(old.predicted.view(-1, H, s).transpose(0, 1), law.moved)
-        expected, answers, estimate = torch.split(moved, [p, m, s], dim=2)
+        expected, quiet, estimate = torch.split(moved, [p, m, s], dim=2)
         innovation = taken - torch.clamp(expected, -law.full_scale, law.full_scale)
         lost = (taken == old.reading) & (taken.abs() < law.full_scale) & (old.instant > 0.0)
         whitened, squared, density = self._corrected(innovation, lost, old.instant[:, 0])
@@ -98,7 +99,7 @@ class ModelsActor(Actor):
             astray = torch.maximum(old.astray, ((misfit > self._misfit * count) & (old.instant >= self._window)).float())
             fit = torch.tanh(SHARPNESS * torch.log(misfit / count.clamp(min=1.0) + 1e-3))
         carried = self._carried(whitened, old.instant[:, 0])
-        asked = answers + carried[..., :m] - torch.matmul(old.before, law.voltage_gain.transpose(1, 2))
+        asked = carried[..., :m] - quiet - torch.matmul(old.before, law.voltage_gain.transpose(1, 2))
         volts = (weights.T[..., None] * torch.clamp(asked, law.limits[0], law.limits[1])).sum(dim=0)
         own = old.own @ law.own_gain + taken @ law.own_feedthrough
         cautious = torch.clamp(own, law.limits[0], law.limits[1])
@@ -161,12 +162,13 @@ class ModelsActor(Actor):
 
 def _tensors(law: MultipleModel) -> Law:
     bank, own, instruments = law.bank, law.fallback, law.instruments
+    dense = DenseMotion.of(bank, law.state_gain)
     assert own is not None
     left = [each[0] for each in bank.left] or np.zeros((0, *bank.inverse.shape[1:]))
     log_left = [each[1] for each in bank.left] or np.zeros((0, bank.counts[0]))
     arrays = (
-        law._moved,
-        law._onward,
+        dense.moved,
+        dense.onward,
         bank.inverse,
         bank.log_determinant,
         np.array(left),
