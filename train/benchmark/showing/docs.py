@@ -20,6 +20,9 @@ and agents, which train on the scenario's distribution, are used as shipped. The
 those with a single fault, open ones, in which the blade changes within the episode or everything is wrong at once, and those kept
 for judging, which no agent trains on and no rule is tuned on. The controllers are files in `train/controllers/named/`: a further
 file in either folder adds a row or a column.
+
+[What learning buys](agents.md#what-learning-buys), and what it does not, is told beside the agents. `beamenv benchmark --submit mine`
+puts a trained agent of yours through every scenario and enters it on the [leaderboard](leaderboard.md).
 """
 
 
