@@ -100,7 +100,7 @@ NUMBERS = [
     for name, agent in AGENTS.items()
     for table, settings in (("", agent.settings()), ("actor_settings", getattr(agent.settings(), "actor_settings", None)))
     for each in (fields(settings) if settings is not None else ())
-    if isinstance(getattr(settings, each.name), int | float)
+    if isinstance(getattr(settings, each.name), int | float) and not isinstance(getattr(settings, each.name), bool)
 ]
 
 
