@@ -82,7 +82,10 @@ class FilterBank(ReadOnly):
         """From each hypothesis' filter and delay; ``depth`` D is how many voltages before are remembered."""
         size = max(len(each.A) for each in filters)
         same = [_padded(each, size) for each in filters]
-        cross, covariance = _recursion(*(np.stack(part) for part in zip(*same, strict=True)))
+        first = {_equation(each): each for each in same}
+        which = [list(first).index(_equation(each)) for each in same]
+        of = _recursion(*(np.stack(part) for part in zip(*first.values(), strict=True)))
+        cross, covariance = of[0][:, which], of[1][:, which]
         m = filters[0].B.shape[1]
         voltage_input = np.zeros(((depth + 1) * m, len(same), size))
         for h, (each, delay) in enumerate(zip(same, delays, strict=True)):
@@ -121,19 +124,18 @@ class FilterBank(ReadOnly):
         again = (reading == before) & (np.abs(reading) < self.full_scale) & ~first[:, None]
         return np.asarray(again & self.holds.any())
 
-    def corrections(self, instant: Array, expected: Array, reading: Array, lost: NDArray[np.bool_]) -> Correction:
-        """From predicted readings (H, N, p) and those taken (N, p) in A, each blade at an ``instant`` (N,) of its own.
+    def corrections(self, instant: Array, innovation: Array, lost: NDArray[np.bool_]) -> Correction:
+        """From ``innovation`` (H, N, p), A, and what is ``lost`` of it (N, p), each blade at an ``instant`` (N,) of its own.
 
-        A reading is predicted as it will be taken, clipped. A lost one counts in no likelihood, nor for filters that know.
+        A lost reading counts in no likelihood, nor for filters that know.
         """
-        innovation = reading - np.minimum(np.maximum(expected, -self.full_scale), self.full_scale)
-        step, codes = self._step(instant), 1 << lost.shape[1]
+        step, codes = self.step(instant), 1 << lost.shape[1]
         keys = step * codes + lost @ (1 << np.arange(lost.shape[1]))
         if (keys == keys[0]).all():
             return self._correction(divmod(int(keys[0]), codes), innovation)
-        H, N, p = innovation.shape
-        all_of_them = Correction(np.empty((H, N, p)), np.empty((H, N)), np.empty((H, N)))
-        for key in np.unique(keys).tolist():
+        most = int(np.bincount(keys).argmax())
+        all_of_them = self._correction(divmod(most, codes), innovation)
+        for key in np.unique(keys[keys != most]).tolist():
             rows = np.flatnonzero(keys == key)
             for whole, part in zip(all_of_them, self._correction(divmod(key, codes), innovation[:, rows]), strict=True):
                 whole[:, rows] = part
@@ -141,7 +143,7 @@ class FilterBank(ReadOnly):
 
     def carried(self, instant: Array, whitened: Array, onward: Array) -> Array:
         """(H, N, q): ``whitened`` innovations (H, N, p) through matrices ``onward`` (K, H, p, q) of each blade's instant (N,)."""
-        step = self._step(instant)
+        step = self.step(instant)
         if (step == step[0]).all():
             return np.matmul(whitened, onward[step[0]])
         carried = np.empty((*whitened.shape[:2], onward.shape[-1]))
@@ -153,7 +155,7 @@ class FilterBank(ReadOnly):
         """(N, H, s): what voltages (N, m (D + 1)), V, newest first, add to the states of the next instant."""
         return np.asarray(np.tensordot(voltages, self.voltage_input, 1))
 
-    def _step(self, instant: Array) -> NDArray[np.int64]:
+    def step(self, instant: Array) -> NDArray[np.int64]:
         """(N,): which of the gains, of which the last stays."""
         return np.minimum(instant, len(self.cross) - 1).astype(np.int64)
 
@@ -168,7 +170,7 @@ class FilterBank(ReadOnly):
             kept = k == len(self.cross) - 1 and code < len(self.left)
             inverse, log_determinant = self.left[code] if kept else _without(self.covariance[k], code)
         whitened = np.matmul(innovation, inverse)
-        squared = np.einsum("hnp,hnp->hn", innovation, whitened)
+        squared = (innovation * whitened) @ np.ones(innovation.shape[-1])
         log_density = -0.5 * (squared + log_determinant[:, None])
         if code and not self.holds.all():
             others = ~self.holds
@@ -192,6 +194,11 @@ def _padded(each: Filter, size: int) -> Filter:
     both, below, right = ((0, more), (0, more)), ((0, more), (0, 0)), ((0, 0), (0, more))
     widths = (both, below, right, both, ((0, 0), (0, 0)), both, both)
     return Filter(*(np.pad(part, width) for part, width in zip(each, widths, strict=True)))
+
+
+def _equation(each: Filter) -> tuple[bytes, ...]:
+    """What its covariance goes by, whatever its voltages do."""
+    return tuple(part.tobytes() for name, part in each._asdict().items() if name != "B")
 
 
 def _recursion(A: Array, B: Array, C: Array, W: Array, V: Array, S: Array, last: Array) -> tuple[Array, Array]:

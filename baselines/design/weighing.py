@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import ceil, prod
 from typing import NamedTuple
 
 import numpy as np
@@ -13,9 +14,10 @@ from baselines.design.filter_bank import FilterBank
 from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.matrix import keep_matrices
+from baselines.design.motion import Motion, motion_of
 from baselines.design.objects import instance
 
-AT_ONCE = 2**18
+AT_ONCE = 2**20
 """Numbers of memories that are worked on at once: larger arrays in between would be asked of the system anew at every instant."""
 
 
@@ -23,7 +25,7 @@ class Memory(NamedTuple):
     """What is remembered of N blades, views of the rows of one array."""
 
     predicted: Array
-    """(N, H, s)."""
+    """(N, H, s); within the law (N, size), in the coordinates of its motion."""
     evidence: Array
     """(N, H): logarithm of each hypothesis' weight over that beforehand."""
     squared: Array
@@ -72,10 +74,12 @@ class MultipleModel(Law):
     """Instants over which the test of fit remembers."""
     misfit: float
     """Mean normalised innovation squared over the number of readings from which on no hypothesis fits; 1 where one is right."""
-    _moved: Array = field(init=False)
-    """(H, s, p + m + s): [Cᵀ, −Kᵀ, Aᵀ], from a prediction to the readings, to what is asked for and to the next prediction."""
-    _onward: Array = field(init=False)
-    """(instants, H, p, m + s): C S [−Kᵀ, Aᵀ], the same of what readings add to it."""
+    _motion: Motion = field(init=False)
+    """How predictions go on."""
+    _log_prior: Array = field(init=False)
+    """(H,)."""
+    _before: Array = field(init=False)
+    """(H, m D, m): transposed ``voltage_gain``."""
 
     def __post_init__(self) -> None:
         """``ValueError`` for parts that do not fit."""
@@ -87,16 +91,15 @@ class MultipleModel(Law):
         keep_matrices(self, {"state_gain": (H, m, s), "voltage_gain": (H, m, m * depth), "prior": (H,)})
         if self.transition is not None:
             keep_matrices(self, {"transition": (H, H)})
-        onward = np.concatenate([-self.state_gain.swapaxes(-1, -2), bank.transition], axis=-1)
-        object.__setattr__(self, "_moved", np.concatenate([bank.output, onward], axis=-1))
-        object.__setattr__(self, "_onward", np.matmul(bank.cross, onward))
+        object.__setattr__(self, "_motion", motion_of(bank, self.state_gain, self.transition is not None))
+        object.__setattr__(self, "_log_prior", np.log(self.prior))
+        object.__setattr__(self, "_before", np.ascontiguousarray(self.voltage_gain.swapaxes(1, 2)))
 
     @property
     def order(self) -> int:
         """Numbers in a blade's memory."""
-        H, s = self.bank.counts
-        p, m = self.instruments.counts
-        return H * (s + 2) + self._depth * m + p + self._own + 3
+        H, (p, m) = self.bank.counts[0], self.instruments.counts
+        return self._motion.size + 2 * H + self._depth * m + p + self._own + 3
 
     @property
     def _depth(self) -> int:
@@ -107,78 +110,123 @@ class MultipleModel(Law):
         return 0 if self.fallback is None else self.fallback.order
 
     def recall(self, memory: Array) -> Memory:
-        """What each number of a memory (N, order) is."""
-        (H, s), (p, m), D, N = self.bank.counts, self.instruments.counts, self._depth, len(memory)
-        ends = np.cumsum([H * s, H, H, D * m, p, self._own, 1, 1])
-        parts = np.split(memory, ends, axis=1)
-        shapes = ((N, H, s), (N, H), (N, H), (N, D, m), (N, p), (N, self._own), (N,), (N,), (N,))
-        return Memory(*(part.reshape(shape) for part, shape in zip(parts, shapes, strict=True)))
+        """What each number of a memory (N, order) is; predictions are a copy, as the filters' own states."""
+        held = self._held(memory)
+        return held._replace(predicted=self._motion.plain(held.predicted))
+
+    def _held(self, memory: Array) -> Memory:
+        """Views of a memory (N, order)."""
+        H, (p, m), D, N = self.bank.counts[0], self.instruments.counts, self._depth, len(memory)
+        parts: list[Array] = []
+        first = 0
+        for shape in ((self._motion.size,), (H,), (H,), (D, m), (p,), (self._own,), (), (), ()):
+            following = first + prod(shape)
+            parts.append(memory[:, first:following].reshape(N, *shape))
+            first = following
+        return Memory(*parts)
 
     def weights(self, memory: ArrayLike) -> Array:
         """(H,) or (N, H): how likely each hypothesis is, by a memory (order,) or (N, order) that ``predict`` gave."""
         rows = np.atleast_2d(np.asarray(memory, dtype=np.float64))
-        weights = np.exp(np.log(self.prior) + self.recall(rows).evidence)
+        weights = np.exp(self._log_prior + self._held(rows).evidence)
         return np.asarray(weights if np.ndim(memory) == 2 else weights[0])
+
+    def misfits(self, memory: ArrayLike) -> Array:
+        """(N,) of memories (N, order): mean normalised innovation squared per reading, about 1 where a model is right."""
+        held = self._held(np.asarray(memory, dtype=np.float64))
+        weights = np.exp(self._log_prior + held.evidence)
+        return np.asarray(np.einsum("nh,nh->n", weights, held.squared) / np.maximum(held.readings, 1.0))
+
+    def cautious(self, observation: Array, memory: Array) -> Array:
+        """(N, m): the action that the fallback would ask for, whoever is in charge; ``ValueError`` without one."""
+        if self.fallback is None:
+            raise ValueError(f"{self.name} has no fallback.")
+        own = self._held(memory).own
+        asked = own @ self.fallback.state_gain.T + self.instruments.read(observation) @ self.fallback.measurement_gain.T
+        return self.instruments.drive(self.instruments.limit(asked))
+
+    def overruled(self, memory: Array, change: Array) -> Array:
+        """The memory (N, order) that ``decide`` gave, once actions were applied that differ from its own by ``change`` (N, m)."""
+        memory = memory.copy()
+        held, m = self._held(memory), change.shape[1]
+        volts = change * self.instruments.voltage_scale
+        held.predicted[...] += self._motion.driven(np.pad(volts, ((0, 0), (0, self._depth * m))))
+        if self._depth:
+            held.voltages[:, 0] += volts
+        if self.fallback is not None:
+            held.own[...] += volts @ self.fallback.voltage_input.T
+        return memory
 
     @np.errstate(over="ignore", invalid="ignore")
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
         """Correct, weigh, drive, mix, predict: all hypotheses and blades at once; of a reading that is no number comes none."""
-        reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(memory)
+        reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(np.asarray(memory, dtype=np.float64))
+        rows = rows if rows.strides[-1] == rows.itemsize else np.ascontiguousarray(rows)
         voltage, following = np.empty((len(rows), self.instruments.counts[1])), np.empty(rows.shape)
-        size = max(1, AT_ONCE // rows.shape[1])
+        size = ceil(len(rows) / ceil(len(rows) * rows.shape[1] / max(AT_ONCE, rows.shape[1])))
         for first in range(0, len(rows), size):
             some = slice(first, first + size)
-            voltage[some] = self._decided(reading[some], self.recall(rows[some]), self.recall(following[some]))
+            voltage[some] = self._decided(reading[some], self._held(rows[some]), self._held(following[some]))
         action = self.instruments.drive(voltage)
         return (action, following) if observation.ndim == 2 else (action[0], following[0])
 
     def _decided(self, reading: Array, old: Memory, new: Memory) -> Array:
         """Voltages (N, m), V, from readings (N, p), A, and what was remembered; writes what is to be."""
-        p, m = self.instruments.counts
-        moved = self._from(old.predicted.swapaxes(0, 1))
+        p = self.instruments.counts[0]
+        seen = self._motion.seen(old.predicted)
         lost = self.bank.lost(reading, old.reading, old.instant == 0.0)
-        correction = self.bank.corrections(old.instant, moved[..., :p], reading, lost)
-        weights = self._weights(old.evidence + correction.log_density.T)
+        self._compare(seen, reading)
+        correction = self.bank.corrections(old.instant, seen[..., :p], lost)
+        weights, new.evidence[...] = self._weighed(old.evidence + correction.log_density.T)
         self._judge(old, new, correction.squared.T, lost, weights)
-        carried = self.bank.carried(old.instant, correction.whitened, self._onward)
-        moved = np.add(moved[..., p:], carried, out=carried)
+        answers = self._motion.answers(old.instant, correction.whitened)
+        answers += seen[..., p:]
         before = old.voltages.reshape(len(reading), -1)
-        voltage = self._asked(moved[..., :m], before, weights)
+        voltage = self._asked(answers, before, weights)
         if self.fallback is not None:
             voltage = self._in_charge(self.fallback, old, new, reading, voltage)
-        estimate = moved[..., m:].swapaxes(0, 1)
-        if self.transition is not None:
-            weights, estimate = self._mixed(self.transition, weights, estimate)
         voltages = np.concatenate([voltage, before], axis=1)
-        np.add(estimate, self.bank.driven(voltages), out=new.predicted)
-        new.evidence[...] = np.log(weights) - np.log(self.prior)
+        if self.transition is None:
+            self._motion.follow(old.instant, old.predicted, correction.whitened, voltages, new.predicted)
+        else:
+            self._motion.follow(old.instant, old.predicted, correction.whitened, np.zeros_like(voltages), new.predicted)
+            self._mix(self.transition, weights, new)
+            new.predicted[...] += self._motion.driven(voltages)
         new.voltages[...] = voltages[:, : before.shape[1]].reshape(new.voltages.shape)
         new.reading[...] = reading
         new.instant[...] = old.instant + 1.0
         return voltage
 
-    def _from(self, predicted: Array) -> Array:
-        """(H, N, p + m + s) of predictions (H, N, s), shorter ones by what is theirs."""
-        (H, N, s), more = predicted.shape, sum(self.instruments.counts)
-        moved = np.empty((H, N, more + s))
-        for those, size in self.bank.alike:
-            out = moved[those, :, : more + size]
-            np.matmul(predicted[those, :, :size], self._moved[those, :size, : more + size], out=out)
-            moved[those, :, more + size :] = 0.0
-        return moved
+    def _compare(self, seen: Array, reading: Array) -> None:
+        """Turns expected readings, as they will be taken, clipped, into innovations, and K x̂ into −K x̂, in place."""
+        N, m = len(reading), self.instruments.counts[1]
+        highest = np.tile(np.concatenate([self.bank.full_scale, np.full(m, np.inf)]), N)  # all in one row: short ones are slow
+        rows = seen.reshape(len(seen), -1)
+        np.minimum(rows, highest, out=rows)
+        np.maximum(rows, -highest, out=rows)
+        np.subtract(np.concatenate([reading, np.zeros((N, m))], axis=1).ravel(), rows, out=rows)
 
-    def _weights(self, evidence: Array) -> Array:
-        """(N, H), each at least the floor, which add up to 1."""
-        logarithm = np.log(self.prior) + evidence
-        weights = np.exp(logarithm - logarithm.max(axis=1, keepdims=True))
-        weights /= weights.sum(axis=1, keepdims=True)
-        weights = np.maximum(weights, max(self.floor, np.finfo(float).tiny))
-        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+    def _weighed(self, evidence: Array) -> tuple[Array, Array]:
+        """Weights (N, H), each at least the floor, which add up to 1, and the logarithm of each over that beforehand."""
+        logarithm, floor = evidence + self._log_prior, max(self.floor, np.finfo(float).tiny)
+        logarithm -= logarithm.max(axis=1, keepdims=True)
+        weights = np.exp(logarithm)
+        whole = weights.sum(axis=1, keepdims=True)
+        weights /= whole
+        np.maximum(weights, floor, out=weights)
+        all_of_them = weights.sum(axis=1, keepdims=True)
+        weights /= all_of_them
+        logarithm -= np.log(whole)
+        np.maximum(logarithm, np.log(floor), out=logarithm)
+        logarithm -= np.log(all_of_them) + self._log_prior
+        return weights, logarithm
 
     def _asked(self, answers: Array, before: Array, weights: Array) -> Array:
         """(N, m), V: the mean of what each regulator asks for, from its answer to its estimate, as the drive lets it through."""
-        asked = answers - np.matmul(before, self.voltage_gain.swapaxes(-1, -2))
-        return np.asarray(np.einsum("nh,hnm->nm", weights, self.instruments.limit(asked)))
+        answers -= np.matmul(before, self._before)
+        rows, limits = answers.reshape(len(answers), -1), np.tile(self.instruments.voltage_limits, len(before))
+        np.minimum(np.maximum(rows, limits[0], out=rows), limits[1], out=rows)
+        return np.asarray(np.matmul(weights[:, None], answers.swapaxes(0, 1))[:, 0])
 
     def _judge(self, old: Memory, new: Memory, squared: Array, lost: NDArray[np.bool_], weights: Array) -> None:
         """Whether any hypothesis fits; where none has, the fallback stays in charge for the rest of the episode."""
@@ -195,9 +243,10 @@ class MultipleModel(Law):
         new.own[...] = old.own @ fallback.transition.T + reading @ fallback.measurement_input.T + voltage @ fallback.voltage_input.T
         return voltage
 
-    @staticmethod
-    def _mixed(transition: Array, weights: Array, estimate: Array) -> tuple[Array, Array]:
-        """Weights (N, H) and estimates (N, H, s) of what may follow, moved on already: all move by the same matrix."""
+    def _mix(self, transition: Array, weights: Array, new: Memory) -> None:
+        """Weights (N, H) and states of what may follow, moved on already: all move by the same matrix."""
         following = weights @ transition
         shares = weights[:, :, None] * transition / following[:, None, :]
-        return following, np.matmul(shares.swapaxes(1, 2), estimate)
+        states = self._motion.by_hypothesis(new.predicted)
+        states[...] = np.matmul(shares.swapaxes(1, 2), states)
+        new.evidence[...] = np.log(following) - self._log_prior

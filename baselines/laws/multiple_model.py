@@ -129,22 +129,27 @@ class _Parts:
 
 
 def _parts(those: Sequence[Hypothesis], depth: int, rate_weight: float, biased: bool, verify: bool) -> list[_Parts]:
-    """Of each; those that differ in delay and sensors alone share a regulator."""
+    """Of each; those that differ in delay and sensors alone share a regulator, those in delay and actuators a filter's equation."""
     regulators: dict[Any, Solution] = {}
+    filters: dict[Any, Solution] = {}
     parts = []
     for each in those:
-        key = id(each.plant), each.actuator_gain.tobytes(), tuple(map(id, each.loads))
-        if key not in regulators:
-            held = each.sampled(biased=False)
-            regulators[key] = optimal_regulator(each.plant, with_rate_penalty(held, rate_weight) if rate_weight else held)
-        parts.append(_part(each, regulators[key], depth, biased, verify))
+        of, held, plant = each.sampled(biased=False), each.sampled(biased), id(each.plant)
+        regulated = plant, each.actuator_gain.tobytes(), each.loads
+        filtered = plant, each.sensor_gain.tobytes(), each.sensor_bias.tobytes(), each.loads
+        if regulated not in regulators:
+            regulators[regulated] = optimal_regulator(each.plant, with_rate_penalty(of, rate_weight) if rate_weight else of)
+        if filtered not in filters:
+            filters[filtered] = optimal_filter(each.plant, held)
+        parts.append(_part(each, of, held, regulators[regulated], filters[filtered], depth, verify))
     return parts
 
 
-def _part(hypothesis: Hypothesis, regulated: Solution, depth: int, biased: bool, verify: bool) -> _Parts:
-    held, truth = hypothesis.sampled(biased), sample(hypothesis.faulty_plant)
-    filtered = optimal_filter(hypothesis.plant, held)
-    delay, of = hypothesis.delay, hypothesis.sampled(biased=False)
+def _part(
+    hypothesis: Hypothesis, of: SampledPlant, held: SampledPlant, regulated: Solution, filtered: Solution, depth: int, verify: bool
+) -> _Parts:
+    """Of one, sampled without biases (``of``) and as its filter believes (``held``)."""
+    truth, delay = sample(hypothesis.faulty_plant), hypothesis.delay
     state_gain, voltage_gain = late(of, regulated.gain, delay, depth)
     state_gain = np.pad(state_gain, ((0, 0), (0, len(held.A) - len(of.A))))
     K, L = np.hstack([state_gain, voltage_gain]), np.vstack([filtered.gain, np.zeros((voltage_gain.shape[1], len(held.C)))])
@@ -158,7 +163,7 @@ def _part(hypothesis: Hypothesis, regulated: Solution, depth: int, biased: bool,
             C=held.C,
             W=E @ held.process_noise @ E.T,
             V=known_sensor_noise(hypothesis.plant) / held.interval,
-            at_start=hypothesis.covariance_at_start(biased),
+            at_start=hypothesis.covariance_at_start(biased=len(held.A) > len(of.A)),
             in_the_long_run=filtered.matrix,
         ),
         state_gain=state_gain,

@@ -107,6 +107,7 @@ COMMANDS = {
             "--scenario": "nominal",
             "--controller": "lqg",
             "--seeds": "2",
+            "--runs": None,
             "--folder": "made",
             "--model": None,
             "--jobs": "1",

@@ -1,4 +1,4 @@
-"""Doors of the classical laws, of what is said of them, of evaluation and placement."""
+"""Doors of the classical laws of the nominal plant, and of what they are made of."""
 
 import dataclasses
 from functools import cache
@@ -7,16 +7,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 import baselines
-from baselines import placement
 from baselines.design.instruments import Instruments
 from baselines.design.linear import MATRICES
 from beamenv.blade import BladeConfig
-from beamenv.blade.design import Design
-from beamenv.knowledge import Prior, Truth
-from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.simulation.plants.speed_family import SpeedFamily, speed_family
 from tests.fuzz import small
-from tests.fuzz.env_doors import cartpole
+from tests.fuzz.law_kinds import ABOUT, LOAD, LOADS, ONE_LOAD, PLANT, clipped, finite
 from tests.fuzz.meaning import (
     ANYTHING,
     ARRAY,
@@ -29,69 +25,19 @@ from tests.fuzz.meaning import (
     NUMBERS,
     TEXT,
     Kind,
-    choice,
     instance,
     maybe,
     of_fields,
 )
 from tests.fuzz.oracle import Door
 
-PLANT = instance(Plant)
-EITHER_PLANT = instance(Plant, SampledPlant)
-ONE_LOAD = instance(baselines.PersistentLoad, baselines.RotorHarmonics)
-LOADS = Kind(
-    "loads",
-    lambda value: (
-        value
-        if ONE_LOAD.means(value) is not NOTHING or (isinstance(value, (list, tuple)) and NOTHING not in map(ONE_LOAD.means, value))
-        else NOTHING
-    ),
-    st.nothing(),
-)
-LOAD = maybe(instance(baselines.PersistentLoad))
-LINEAR = Kind(
-    "linear law",
-    lambda value: value if isinstance(value, baselines.LinearController) else NOTHING,
-    st.sampled_from(["clipped", "true"]).map(lambda name: clipped() if name == "clipped" else small.law().__class__),
-)
-PLANTS = Kind(
-    "plants",
-    lambda value: value if isinstance(value, (list, tuple)) and value and all(isinstance(one, Plant) for one in value) else NOTHING,
-    st.sampled_from([[], [None], ()]),
-)
-HYPOTHESES = Kind(
-    "hypotheses",
-    lambda value: (
-        value
-        if isinstance(value, (list, tuple)) and value and all(isinstance(each, baselines.Hypothesis) for each in value)
-        else NOTHING
-    ),
-    st.nothing(),
-)
 WEIGHTS = {"Q": maybe(ARRAY), "R": maybe(ARRAY)}
-ABOUT = ("plant", "gain", "Riccati")
-"""What a law says of its numbers together."""
 GAIN = maybe(ARRAY)
 SPEEDS = Kind(
     "speeds",
     lambda value: (one,) if (one := NUMBER.means(value)) is not NOTHING else NUMBERS.means(value),
     st.one_of(NUMBERS.near, NUMBER.near),
 )
-
-
-@cache
-def clipped():
-    return baselines.clipped_lqg(small.plant())
-
-
-@cache
-def hypotheses():
-    return [baselines.Hypothesis(small.plant()), baselines.Hypothesis(small.plant(), sensor_gain=[1.0, 0.0])]
-
-
-@cache
-def several():
-    return baselines.multiple_model(hypotheses(), small.law())
 
 
 @cache
@@ -117,12 +63,6 @@ def weighted(name, kinds, /, **valid):
     return dataclasses.replace(door, valid=lambda: {**door.valid(), **weights()}, plain=name != "mpc")  # its solver is an object
 
 
-def finite(answer):
-    """Within the drive limits."""
-    action = np.asarray(answer[0])
-    assert not np.abs(action).max(initial=0.0) > 1.0 + 1e-6, "an action outside its space"  # what is not finite stays so
-
-
 def linear_parts():
     built = small.law()
     return {"name": "mine", "instruments": built.instruments, **{name: np.array(getattr(built, name)) for name in MATRICES}}
@@ -131,22 +71,6 @@ def linear_parts():
 def instrument_parts():
     built = Instruments.of(small.plant())
     return {each.name: getattr(built, each.name) for each in dataclasses.fields(Instruments)}
-
-
-ANY_ENV = Kind(
-    "env",
-    lambda value: value if value is small.envs() or value is small.env() or value == "beamenv/RotatingBeam-v0" else NOTHING,
-    st.sampled_from([cartpole]).map(lambda make: make()),
-)
-CONTROLLER = Kind(
-    "controller",
-    lambda value: value if callable(getattr(value, "predict", value)) and not isinstance(value, type) else NOTHING,
-    st.nothing(),
-)
-
-
-def evaluated(**given):
-    return baselines.evaluate(**given).to_dict()
 
 
 DOORS = [
@@ -231,120 +155,6 @@ DOORS = [
         public="detuned_lqg",
     ),
     Door(
-        "informed_lqg",
-        baselines.informed_lqg,
-        {"prior": instance(Prior)},
-        lambda: {"prior": small.env().unwrapped.task.prior},
-        told=("prior",),
-        public="informed_lqg",
-    ),
-    Door(
-        "informed_mpc",
-        baselines.informed_mpc,
-        {"prior": instance(Prior)},
-        lambda: {"prior": small.env().unwrapped.task.prior},
-        told=("prior",),
-        plain=False,
-        public="informed_mpc",
-    ),
-    Door(
-        "robust_lqg",
-        baselines.robust_lqg,
-        {"design": instance(Design)},
-        lambda: {"design": small.env().unwrapped.task.design},
-        told=("design",),
-        public="robust_lqg",
-    ),
-    Door(
-        "run_up_lqg",
-        baselines.run_up_lqg,
-        {"prior": instance(Prior)},
-        lambda: {"prior": small.env().unwrapped.task.prior},
-        told=("prior",),
-        plain=False,
-        public="run_up_lqg",
-    ),
-    Door(
-        "inverse_hysteresis",
-        baselines.inverse_hysteresis,
-        {"law": LINEAR, "loop": NUMBER},
-        lambda: {"law": small.law(), "loop": 0.1},
-        told=("law", "loop"),
-        plain=False,
-        public="inverse_hysteresis",
-    ),
-    Door(
-        "clairvoyant_lqg",
-        baselines.clairvoyant_lqg,
-        {"truth": instance(Truth)},
-        lambda: {"truth": small.env().unwrapped.task.truth},
-        told=("truth",),
-        plain=False,
-        public="clairvoyant_lqg",
-    ),
-    Door(
-        "Hypothesis",
-        baselines.Hypothesis,
-        {
-            "plant": PLANT,
-            "delay": COUNT,
-            "actuator_gain": ARRAY,
-            "sensor_gain": ARRAY,
-            "sensor_bias": ARRAY,
-            "load": maybe(LOADS),
-            "deflection": NUMBER,
-            "holds_lost_readings": FLAG,
-            "prior": NUMBER,
-        },
-        lambda: {
-            "plant": small.plant(),
-            "delay": 1,
-            "actuator_gain": [1.0, 0.0],
-            "sensor_gain": 1.0,
-            "sensor_bias": np.array([0.1, 0.0]),
-            "load": None,
-            "deflection": 10.0,
-            "holds_lost_readings": True,
-            "prior": 2.0,
-        },
-        public="Hypothesis",
-    ),
-    Door(
-        "multiple_model",
-        baselines.multiple_model,
-        {
-            "hypotheses": HYPOTHESES,
-            "fallback": maybe(LINEAR),
-            "transition": maybe(ARRAY),
-            "rate_weight": NUMBER,
-            "floor": NUMBER,
-            "window": COUNT,
-            "confidence": NUMBER,
-            "allowance": NUMBER,
-        },
-        lambda: {
-            "hypotheses": hypotheses(),
-            "fallback": small.law(),
-            "transition": [[0.9, 0.1], [0.0, 1.0]],
-            "rate_weight": 1.0,
-            "floor": 1e-6,
-            "window": 20,
-            "confidence": 0.999,
-            "allowance": 10.0,
-        },
-        told=(*ABOUT, "transition"),
-        public="multiple_model",
-    ),
-    Door(
-        "MultipleModel.predict",
-        lambda **given: several().predict(**given),
-        {"observation": MATRIX, "state": maybe(MATRIX)},
-        lambda: {"observation": np.array([[0.1, -0.2]]), "state": np.zeros((1, several().order))},
-        told=("state",),
-        check=finite,
-        public="MultipleModel",
-    ),
-    Door(
         "PersistentLoad",
         lambda **given: baselines.PersistentLoad(**given),
         of_fields(baselines.PersistentLoad),
@@ -402,114 +212,4 @@ DOORS = [
         check=finite,
         public="ClippedLQG",
     ),
-    Door(
-        "stationary_cost",
-        baselines.stationary_cost,
-        {"plant": EITHER_PLANT, "controller": LINEAR},
-        lambda: {"plant": small.plant(), "controller": small.law()},
-        public="stationary_cost",
-    ),
-    Door(
-        "closed_loop_poles",
-        baselines.closed_loop_poles,
-        {"plant": PLANT, "controller": LINEAR},
-        lambda: {"plant": small.plant(), "controller": small.law()},
-        public="closed_loop_poles",
-    ),
-    Door(
-        "h_infinity_norm",
-        baselines.h_infinity_norm,
-        {"plant": PLANT, "controller": LINEAR},
-        lambda: {"plant": small.plant(), "controller": small.law()},
-        public="h_infinity_norm",
-    ),
-    Door(
-        "stability_margins",
-        baselines.stability_margins,
-        {"plant": PLANT, "controller": LINEAR, "at": TEXT},
-        lambda: {"plant": small.plant(), "controller": small.law(), "at": "input"},
-        public="stability_margins",
-    ),
-    Door(
-        "small_gain",
-        baselines.small_gain,
-        {"plant": PLANT, "controller": LINEAR, "others": PLANTS},
-        lambda: {"plant": small.plant(), "controller": small.law(), "others": [small.plant()]},
-        told=("others",),
-        public="small_gain",
-    ),
-    Door(
-        "evaluate",
-        evaluated,
-        {
-            "controller": CONTROLLER,
-            "env": ANY_ENV,
-            "seeds": COUNTS,
-            "reference": maybe(instance(baselines.Episodes)),
-            "confidence": NUMBER,
-        },
-        lambda: {
-            "controller": small.law(),
-            "env": small.envs(),
-            "seeds": [1, 2],
-            "reference": None,
-            "confidence": 0.9,
-        },
-        told=("action", "function"),
-        public="evaluate",
-    ),
-    Door(
-        "roll_out",
-        baselines.roll_out,
-        {"controller": CONTROLLER, "env": ANY_ENV, "seeds": COUNTS},
-        lambda: {"controller": small.law(), "env": small.envs(), "seeds": [1, 2]},
-        told=("action", "function"),
-        public="roll_out",
-    ),
-    Door(
-        "PlacementProblem.of",
-        placement.PlacementProblem.of,
-        {"config": instance(BladeConfig), "side": TEXT, "count": maybe(COUNT), "bounds": maybe(NUMBERS)},
-        lambda: {"config": small.config(), "side": "actuators", "count": 2, "bounds": [0.0, 1.0]},
-        told=("patches", "actuators", "sensors"),
-        plain=False,
-    ),
-    Door(
-        "place",
-        lambda **given: placement.place(**given).positions,
-        {
-            "problem": instance(placement.PlacementProblem),
-            "method": TEXT,
-            "seed": COUNT,
-            "start": maybe(NUMBERS),
-        },
-        lambda: {"problem": problem(), "method": "sqp", "seed": 0, "start": [0.1, 0.6]},
-        told=("positions", "actuators"),
-    ),
-    Door(
-        "reach",
-        placement.reach,
-        {"problem": instance(placement.PlacementProblem), "positions": NUMBERS},
-        lambda: {"problem": problem(), "positions": [0.1, 0.6]},
-        told=("actuators",),
-    ),
-    Door(
-        "check_reach",
-        placement.check_reach,
-        {"problem": instance(placement.PlacementProblem), "positions": NUMBERS},
-        lambda: {"problem": problem(), "positions": [0.1, 0.6]},
-        told=("actuators",),
-    ),
-    Door(
-        "optimal_positions",
-        placement.optimal_positions,
-        {"config": instance(BladeConfig), "side": choice("actuators", "sensors")},
-        lambda: {"config": small.config(), "side": "actuators"},
-    ),
-    Door("optimal_layout", placement.optimal_layout, {"config": instance(BladeConfig)}, lambda: {"config": small.config()}),
 ]
-
-
-@cache
-def problem():
-    return placement.PlacementProblem.of(small.config(), "actuators", 2)

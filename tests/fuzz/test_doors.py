@@ -13,13 +13,24 @@ from hypothesis import strategies as st
 
 import baselines
 import beamenv
-from tests.fuzz import blade_doors, command_doors, env_doors, file_doors, law_doors, train_doors
+from tests.fuzz import (
+    blade_doors,
+    command_doors,
+    env_doors,
+    file_doors,
+    informed_law_doors,
+    judging_doors,
+    law_doors,
+    placement_doors,
+    train_doors,
+)
 from tests.fuzz.meaning import FLAG, NUMBER
 from tests.fuzz.oracle import Door, examined, shown
 from tests.fuzz.wrong import arguments, copied, value_at
 from train.cli.app import app
 
-DOORS = [door for room in (blade_doors, env_doors, file_doors, law_doors, train_doors, command_doors) for door in room.DOORS]
+OF_LAWS = (law_doors, informed_law_doors, judging_doors, placement_doors)
+DOORS = [door for room in (blade_doors, env_doors, file_doors, *OF_LAWS, train_doors, command_doors) for door in room.DOORS]
 
 OUTCOMES = ("refused", "accepted", "fault")
 

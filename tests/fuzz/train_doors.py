@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from beamenv.plant.plant import Plant
 from tests.fuzz import small
 from tests.fuzz.env_doors import SINGLE
+from tests.fuzz.law_kinds import finite
 from tests.fuzz.meaning import (
     ANYTHING,
     COUNT,
@@ -54,11 +55,6 @@ def history():
         "bias1": np.zeros(2),
     }
     return HistoryPolicy("mine", weights, {"input_gain": 1.0, "held": 1}, -np.ones(2, np.float32), np.ones(2, np.float32))
-
-
-def finite(answer):
-    action = np.asarray(answer[0])
-    assert not np.abs(action).max(initial=0.0) > 1.0 + 1e-6, "an action outside its space"
 
 
 def settings_door(name, cls):
@@ -151,6 +147,7 @@ DOORS = [
             "scenarios": maybe(TEXTS),
             "controllers": maybe(TEXTS),
             "seeds": COUNT,
+            "runs": maybe(COUNT),
             "folder": maybe(PATH),
             "models": TEXTS,
             "trusted": FLAG,
@@ -163,6 +160,7 @@ DOORS = [
             "scenarios": ["nominal"],
             "controllers": ["none"],
             "seeds": 2,
+            "runs": None,
             "folder": None,
             "models": [],
             "trusted": False,

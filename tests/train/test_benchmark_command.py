@@ -13,7 +13,7 @@ from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
 from train.cli.app import app
 from train.cli.benchmark_table import blocks, print_costs
-from train.cli.quick import QUICK_LAWS, QUICK_SCENARIOS, QUICK_SEEDS
+from train.cli.quick import QUICK_LAWS, QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS
 from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
@@ -76,17 +76,23 @@ def test_what_is_quick_is_a_dozen_rows_of_every_tier_in_a_folder_of_its_own(tmp_
     assert result.exit_code == 0, result.output
     assert asked["folder"].as_posix() == "results/benchmark-quick"
     assert tuple(asked["scenarios"]) == QUICK_SCENARIOS and asked["seeds"] == QUICK_SEEDS < 128
+    assert asked["runs"] == QUICK_RUNS == 2  # a single one has no spread
     assert {named(name).tier for name in QUICK_LAWS} == {0, 1, 2, 3} and set(QUICK_LAWS) <= set(asked["controllers"])
     assert set(QUICK_SCENARIOS) <= set(GROUPS["all"])
     assert re.search("2 episodes a cell: intervals are wide, ±[0-9]+ % of J / J₀", " ".join(result.stdout.split()))
-    run("benchmark", "--quick", "--scenario", "open", "--seeds", "5")
-    assert (asked["scenarios"], asked["seeds"], asked["folder"].name) == (["open"], 5, "benchmark-quick-open-5")
+    run("benchmark", "--quick", "--scenario", "open", "--seeds", "5", "--runs", "3")
+    assert (asked["scenarios"], asked["seeds"], asked["runs"], asked["folder"].name) == (
+        ["open"],
+        5,
+        3,
+        "benchmark-quick-open-5-3-runs",
+    )
 
 
-def benchmark(controllers, scenarios):
+def benchmark(controllers, scenarios, **others):
     from train.benchmark import benchmark as run
 
-    return run(scenarios=scenarios, controllers=controllers, seeds=2, environment={"duration": 0.02})
+    return run(scenarios=scenarios, controllers=controllers, seeds=2, environment={"duration": 0.02}, **others)
 
 
 def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for(monkeypatch, capsys):
@@ -102,11 +108,33 @@ def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for(monk
         assert max(map(len, capsys.readouterr().out.splitlines())) <= width
 
 
-def test_the_folder_of_a_trained_agent_takes_part_by_the_folder_s_name(tmp_path):
+def idle(folder, **about):
+    """An agent that does nothing."""
     weights = {"weight0": np.zeros((4, 8), np.float32), "bias0": np.zeros(4, np.float32)}
     policy = HistoryPolicy("idle", weights, {"input_gain": 1.0, "held": 1}, -np.ones(4, np.float32), np.ones(4, np.float32))
-    (tmp_path / "mine").mkdir()
-    save_policy(policy, tmp_path / "mine", {"plants": {"nominal": fingerprint(resolve_task().design_plant)}, "tier": 2})
+    folder.mkdir(parents=True)
+    save_policy(policy, folder, {"plants": {"nominal": fingerprint(resolve_task().design_plant)}, **about})
+
+
+def test_the_folder_of_a_trained_agent_takes_part_by_the_folder_s_name(tmp_path):
+    idle(tmp_path / "mine", tier=2)
     row = benchmark([str(tmp_path / "mine")], ["deflection"]).row("deflection", "mine")
     assert (row.kind, row.tier, row.runs) == ("learned", 2, 1)
     assert row.estimates["relative_cost"].value == 1.0
+
+
+def test_the_first_runs_of_an_agent_can_do_for_all_and_the_others_follow(tmp_path):
+    for number in range(3):
+        idle(tmp_path / "mine" / str(number))
+    measured, told = (
+        [],
+        {"folder": tmp_path / "out", "progress": lambda done, total, cell: measured.append(cell.controller + cell.run)},
+    )
+    few = benchmark([str(tmp_path / "mine")], ["deflection"], runs=2, **told)
+    assert measured == ["none", "lqg", "mine0", "mine1"] and few.row("deflection", "mine").runs == 2
+    for runs, others in ((3, ["mine2"]), (None, [])):
+        measured.clear()
+        assert benchmark([str(tmp_path / "mine")], ["deflection"], runs=runs, **told).row("deflection", "mine").runs == 3
+        assert measured == others
+    with pytest.raises(ValueError, match="holds another benchmark, with controllers mine: name another folder"):
+        benchmark([str(tmp_path / "mine")], ["deflection"], runs=2, **told)

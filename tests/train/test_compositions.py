@@ -11,7 +11,7 @@ from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.task import resolve_task
 from train.learning.through_plant.compositions import compositions, contents
 from train.learning.through_plant.gradient import calmed
-from train.learning.through_plant.modal_errors import FREQUENCY, changed, mistaken
+from train.learning.through_plant.modal_errors import FREQUENCY, MistakenTask, changed, mistaken
 from train.learning.training import on_training_bank
 
 
@@ -69,6 +69,12 @@ def test_a_patch_errs_alike_as_actuator_and_as_sensor():
     assert np.abs(wrong.natural_frequencies / true.natural_frequencies - 1.0)[:2].max() < 0.03
     pairs = [np.sum(each.B[r : 2 * r] * each.C[:, r : 2 * r].T, axis=0) for each in (true, wrong)]
     assert np.all(np.sign(pairs[0]) == np.sign(pairs[1]))
+
+
+def test_of_six_compositions_one_has_nothing_but_wrong_modes():
+    composed = compositions(resolve_task(duration=0.02), 12, 13)
+    assert [k for k, each in enumerate(composed) if not kinds(each.scenario)] == [0, 6]
+    assert all(isinstance(composed[k], MistakenTask) for k in (0, 6))
 
 
 def test_composed_tasks_are_like_the_one_that_they_go_with():

@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from train.benchmark.leaderboard import NAME, PAGE, Entry, enter, page, read_leaderboard
 from train.learning.checkpoint import NAME as CHECKPOINT
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
@@ -21,27 +23,30 @@ MAIN = "from train.cli.command import main; main()"
 BRIEF = 'agent = "{}"\ntitle = "Brief"\nupdates = {}\n[settings]\n{}'
 GRADIENT = BRIEF.format("gradient", 30, "episodes = 8\nwindow = 20\n[actor_settings]\nunits = 6\n".replace("[", "[settings."))
 PPO = BRIEF.format("ppo", 12, "blades = 8\nhistory = 3\nrollout = 16\nbatch = 32\nunits = 8\n")
+SHORT = "s.SCENARIOS, s.SEEDS, s.ENVIRONMENT = ('nominal', 'delay'), 2, '{\"duration\": 0.02}'"
+SUBMISSION = f"from train.benchmark import submission as s; {SHORT}; {MAIN}"
+"""What every entry is put through is short."""
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 
 
-def command(*arguments):
+def command(*arguments, main=MAIN):
     """A command in a session of its own, on one thread."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    return subprocess.Popen([sys.executable, "-c", MAIN, *map(str, arguments)], env=environment, start_new_session=True, **pipes)
+    return subprocess.Popen([sys.executable, "-c", main, *map(str, arguments)], env=environment, start_new_session=True, **pipes)
 
 
-def finished(*arguments):
+def finished(*arguments, main=MAIN):
     """What a command prints that is left alone."""
-    with command(*arguments) as process:
+    with command(*arguments, main=main) as process:
         out, err = process.communicate(timeout=300)
     assert process.returncode == 0, err
     return out
 
 
-def ended(number, instant, *arguments, ready=lambda: True):
+def ended(number, instant, *arguments, ready=lambda: True, main=MAIN):
     """The status of a command that meets a signal so many seconds after it is ready; none of its processes stays."""
-    with command(*arguments) as process:
+    with command(*arguments, main=main) as process:
         while not ready() and process.poll() is None:
             time.sleep(0.01)
         time.sleep(instant)
@@ -156,3 +161,60 @@ def test_a_command_ended_at_any_instant_goes_on_to_the_same_result(name, tmp_pat
     finished(*arguments(broken))
     assert result(broken) == result(whole)
     assert not list(broken.rglob(".*"))
+
+
+def submission(entry, board, jobs=2):
+    return "benchmark", "--submit", entry, "--docs", board, "--folder", board / entry, "--jobs", str(jobs)
+
+
+def undated(entry):
+    return {name: value for name, value in entry.values.items() if name != "date"}
+
+
+@pytest.mark.slow
+def test_a_submission_ended_at_any_instant_leaves_the_leaderboard_whole_and_is_entered_the_next_time(tmp_path):
+    whole, board = tmp_path / "whole", tmp_path / "board"
+    start = time.monotonic()
+    finished(*submission("lqg", whole), main=SUBMISSION)
+    lasted, generator = time.monotonic() - start, random.Random(0)
+    (row,) = read_leaderboard(whole / NAME)
+    earlier = Entry({**row.values, "name": "earlier", "digest": "0" * 16})
+
+    def anew():
+        shutil.rmtree(board, ignore_errors=True)
+        enter(board / NAME, earlier, overwrite=False)
+
+    def shown():
+        return (board / PAGE).read_text() != page([earlier])
+
+    anew()
+    for number, instant, ready in (
+        *((each, generator.uniform(0.1, 1.0) * lasted, lambda: True) for each in SIGNALS * 2),
+        *((each, generator.uniform(0.0, 0.003), shown) for each in SIGNALS),
+    ):
+        ended(number, instant, *submission("lqg", board), ready=ready, main=SUBMISSION)
+        entries = read_leaderboard(board / NAME)
+        assert [undated(each) for each in entries] in ([undated(earlier)], [undated(earlier), undated(row)])
+        assert (board / PAGE).read_text() in (page(entries), page([earlier, row]))
+        assert_whole(board / "lqg")
+        if len(entries) == 2:
+            anew()
+    finished(*submission("lqg", board), main=SUBMISSION)
+    entries = read_leaderboard(board / NAME)
+    assert [undated(each) for each in entries] == [undated(earlier), undated(row)]
+    assert (board / PAGE).read_text() == page(entries)
+    assert cells(board / "lqg") == cells(whole / "lqg")
+    assert not list(board.rglob(".*"))
+
+
+@pytest.mark.slow
+def test_two_submissions_at_once_are_both_entered(tmp_path):
+    names = ("lqg", "informed-lqg")
+    processes = [command(*submission(name, tmp_path / "board", jobs=1), main=SUBMISSION) for name in names]
+    for process in processes:
+        with process:
+            err = process.communicate(timeout=300)[1]
+        assert process.returncode == 0, err
+    entries = read_leaderboard(tmp_path / "board" / NAME)
+    assert {each.name for each in entries} == set(names)
+    assert (tmp_path / "board" / PAGE).read_text() == page(entries)

@@ -3,6 +3,10 @@
 import csv
 import json
 import shutil
+import signal
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +17,14 @@ from typer.testing import CliRunner
 import beamenv
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.task import resolve_task
-from train.benchmark import submission
+from train.benchmark import leaderboard, submission
 from train.benchmark.leaderboard import COLUMNS, NAME, PAGE, Entry, enter, page, read_leaderboard
 from train.benchmark.score import aggregates
 from train.benchmark.submission import entrant, submit
 from train.cli.app import app
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
+from train.shared.lock import held
 
 SHORT = {"duration": 0.02}
 SMALL = {"SCENARIOS": ("nominal",), "SEEDS": 2, "ENVIRONMENT": json.dumps(SHORT)}
@@ -109,6 +114,57 @@ def test_the_same_entry_is_refused_and_another_of_its_name_replaces_it_if_told_t
     enter(board, Entry({**first.values, "name": "mine", "digest": "1" * 16}), overwrite=True)
     assert [(each.name, each.digest) for each in read_leaderboard(board)] == [("lqg", first.digest), ("mine", "1" * 16)]
     assert board.read_text().startswith(before) and "1" * 16 in board.with_name(PAGE).read_text()
+
+
+def entry_like(board, name, digest="0" * 16):
+    """The first one by another name."""
+    return Entry({**read_leaderboard(board)[0].values, "name": name, "digest": digest})
+
+
+def test_rows_that_are_entered_at_once_are_all_kept(board):
+    start, names = threading.Barrier(8), [f"mine-{number}" for number in range(8)]
+
+    def entered(name):
+        mine = entry_like(board, name)
+        start.wait()
+        enter(board, mine, overwrite=False)
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(entered, names))
+    entries = read_leaderboard(board)
+    assert sorted(each.name for each in entries) == ["lqg", *names]
+    assert board.with_name(PAGE).read_text() == page(entries)
+
+
+def test_a_row_waits_for_who_is_at_work_there_but_not_for_ever(board, monkeypatch):
+    mine = entry_like(board, "mine")
+    with ThreadPoolExecutor(1) as pool:
+        with held(board.parent):
+            waiting = pool.submit(enter, board, mine, overwrite=False)
+            time.sleep(0.2)
+            assert not waiting.done()
+        waiting.result(timeout=10)
+    assert [each.name for each in read_leaderboard(board)] == ["lqg", "mine"]
+    monkeypatch.setattr(leaderboard, "PATIENCE", 0.1)
+    with held(board.parent), pytest.raises(ValueError, match="^folder = .* is in use by process [0-9]+: wait until that has ended"):
+        enter(board, entry_like(board, "yours"), overwrite=False)
+
+
+@pytest.mark.parametrize("last", ["write_whole", "write_csv"])
+def test_an_entry_that_was_interrupted_is_entered_the_next_time(last, board, monkeypatch):
+    before, mine = board.read_text(), entry_like(board, "mine")
+    begun = board.with_name(f".{NAME}.01234567.part")
+    begun.write_text("name,tier")
+    with monkeypatch.context() as patch:
+        patch.setattr(leaderboard, last, lambda *_: signal.raise_signal(signal.SIGINT))
+        with pytest.raises(KeyboardInterrupt):
+            enter(board, mine, overwrite=False)
+    assert board.read_text() == before
+    enter(board, mine, overwrite=False)
+    entries = read_leaderboard(board)
+    assert [each.name for each in entries] == ["lqg", "mine"]
+    assert board.with_name(PAGE).read_text() == page(entries)
+    assert not list(board.parent.glob(".*"))
 
 
 def test_the_digest_is_of_what_was_run_and_not_of_its_name(board, monkeypatch):

@@ -86,7 +86,7 @@ def test_a_folder_without_an_agent_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"kind": "oracle"}, r"agent.json': kind is 'oracle', but must be one of history, recurrent, state-space, residual, lstm"),
+        ({"kind": "oracle"}, r"agent.json': kind is 'oracle', but must be one of history, recurrent, state-space, residual"),
         ({"kind": ["history"]}, r"agent.json': kind is \['history'\], but must be one of"),
         ({"kind": "lstm"}, r"weights.npz': weights 'weight_ih' are missing: a policy of kind 'lstm' needs them"),
         ({"lowest": "low"}, r"agent.json': lowest is 'low', but must be a list of one or more numbers"),

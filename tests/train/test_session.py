@@ -14,6 +14,7 @@ import train.learning.job
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.task import resolve_task
 from tests.train.brief import GRADIENT, PPO, RECURRENT, SAC, SHORT, TQC, assert_same, ignore, interrupted_after, job, weights
+from train.benchmark.listed import told_tier
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import read_checkpoint
 from train.learning.job import run
@@ -230,6 +231,7 @@ def test_what_is_saved_tells_what_it_depends_on(tmp_path):
     assert (about["agent"], about["scenario"], about["seed"], about["updates"]) == ("gradient", "nominal", 0, 6)
     assert {"Python", "numpy", "torch", "stable-baselines3", "sb3-contrib", "gymnasium"} <= set(about["versions"])
     assert about["plants"] == {"nominal": fingerprint(plant)}
+    assert about["tier"] == told_tier(place) == 1
     assert load_policy(place, plant).predict(np.zeros(4))[0].shape == (4,)
     assert [int(row["updates"]) for row in curve(place)] == [1, 2, 3, 4, 5, 6]
     assert list((place / "tensorboard").glob("events.out.tfevents.*"))

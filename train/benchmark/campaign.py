@@ -20,7 +20,7 @@ from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.task import resolve_task
 from train.benchmark.bench import Setting
 from train.benchmark.cells import Cell, Job, read_cell, write_cell
-from train.benchmark.claim import claim
+from train.benchmark.claim import RUNS, claim
 from train.benchmark.listed import ListedController, listed_controllers
 from train.benchmark.runner import run
 from train.benchmark.showing.report import write_files
@@ -43,6 +43,7 @@ def benchmark(
     scenarios: Sequence[str] | None = None,
     controllers: Sequence[str] | None = None,
     seeds: int = 128,
+    runs: int | None = None,
     folder: Path | None = None,
     models: Sequence[Path] = (),
     trusted: bool = False,
@@ -60,6 +61,7 @@ def benchmark(
       refused in one sentence, and the others go on.
     - ``controllers``: names of controllers and shipped agents, all of them if None. No control and LQG are always among them.
     - ``seeds``: held-out episodes, equal for every controller.
+    - ``runs``: of each agent that many of its training runs, the first ones; all of them if None.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
@@ -73,6 +75,7 @@ def benchmark(
     """
     seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
     progress, validation = checked_progress(progress), checked("validation", validation, Flag())
+    runs = None if runs is None else checked("runs", runs, Count())
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
     controllers = None if controllers is None else checked("controllers", controllers, Texts())
@@ -81,7 +84,7 @@ def benchmark(
     models = [Path(each) for each in checked("models", models, Texts())]
     if folder is not None:
         check_folder(folder)
-    listed = listed_controllers(controllers, own, models, trusted, trained)
+    listed = [each.first(runs) for each in listed_controllers(controllers, own, models, trusted, trained)]
     return of_listed(listed, scenarios, seeds, folder, jobs=jobs, arguments=arguments, validation=validation, progress=progress)
 
 
@@ -200,9 +203,14 @@ def configuration(settings: Sequence[Setting], listed: Sequence[ListedController
         "seeds": [seeds[0], seeds[-1]],
         "environment": json.loads(settings[0].arguments),
         "scenarios": {setting.name: setting.scenario.to_dict() for setting in settings},
-        "controllers": {each.name: {"kind": each.kind, "tier": each.tier} for each in listed},
+        "controllers": {each.name: about(each) for each in listed},
         "versions": versions(),
     }
+
+
+def about(listed: ListedController) -> dict[str, Any]:
+    """What a configuration tells of a controller; of runs only where not all of an agent's take part."""
+    return {"kind": listed.kind, "tier": listed.tier, **({} if listed.at_most is None else {RUNS: listed.at_most})}
 
 
 def write_all(folder: Path, table: BenchmarkTable) -> None:

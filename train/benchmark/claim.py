@@ -15,6 +15,9 @@ from train.shared.files import read_json, write_json
 KEYS = ("seeds", "environment", "scenarios", "controllers", "versions")
 """What a benchmark's configuration holds."""
 
+RUNS = "runs"
+"""How many runs of an agent take part, in what a configuration tells of a controller; all if it does not tell."""
+
 RESULTS = ("cells", "table.csv", "table.md", "benchmark.json", "heat_map.png", "report.html")
 
 
@@ -50,7 +53,18 @@ def _lost(told: Mapping[str, Any], configuration: Mapping[str, Any]) -> Iterator
     for name in ("scenarios", "controllers"):
         earlier = told.get(name)
         others = (
-            [each for each in earlier if earlier[each] != configuration[name].get(each)] if isinstance(earlier, dict) else [name]
+            [each for each in earlier if not _holds(configuration[name].get(each), earlier[each])]
+            if isinstance(earlier, dict)
+            else [name]
         )
         if others:
             yield f"{name} {', '.join(others)}"
+
+
+def _holds(now: Any, earlier: Any) -> bool:
+    """Whether what is told of a scenario or a controller is what was told of it earlier, or of a controller with further runs."""
+    if now == earlier or not isinstance(now, dict) or not isinstance(earlier, dict):
+        return bool(now == earlier)
+    fewer = earlier.get(RUNS)
+    same = {**now, RUNS: fewer} == earlier
+    return same and isinstance(fewer, int) and now.get(RUNS, fewer) >= fewer

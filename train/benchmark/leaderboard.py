@@ -11,7 +11,7 @@ from typing import Any
 from baselines import Estimate
 from beamenv.configuration import Count, FileName, Refused, Text, checked, shown
 from beamenv.configuration.files import of_file
-from beamenv.configuration.writing import write_whole
+from beamenv.configuration.writing import UNFINISHED, write_whole
 from beamenv.knowledge import TRUTH
 from train.benchmark.score import SPLITS
 from train.benchmark.table import UNSTABLE
@@ -23,6 +23,9 @@ from train.shared.lock import held
 
 NAME = "leaderboard.csv"
 PAGE = "leaderboard.md"
+
+PATIENCE = 20.0
+"""Seconds that a row waits for another, which takes a moment to be written: it was long in being measured."""
 
 ABOUT = ("name", "tier", "kind", "runs")
 COSTS = tuple(f"cost {split}" for split in SPLITS)
@@ -136,18 +139,27 @@ def check_entry(path: Path, name: str, digest: str, overwrite: bool) -> None:
 
 
 def enter(path: Path, entry: Entry, overwrite: bool) -> None:
-    """Append a row, or put it in the place of the one of its name: CSV and page, each written whole or not at all.
+    """Append a row, or put it in the place of the one of its name: page and CSV, each written whole or not at all.
 
-    ``ValueError`` as of ``check_entry``, and while another process writes there.
+    The CSV, which counts, comes last: one who is interrupted before is not refused the next time as being there already.
+    ``ValueError`` as of ``check_entry``, and while another process is at work there for longer than ``PATIENCE``.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with held(path.parent):
+    with held(path.parent, PATIENCE):
         check_entry(path, entry.name, entry.digest, overwrite)
         entries = read_leaderboard(path)
         names = [each.name for each in entries]
+        _remove_unfinished(path)
         entries = [entry if each.name == entry.name else each for each in entries] + ([] if entry.name in names else [entry])
-        write_csv(path, [each.values for each in entries], COLUMNS)
         write_whole(path.with_name(PAGE), page(entries))
+        write_csv(path, [each.values for each in entries], COLUMNS)
+
+
+def _remove_unfinished(path: Path) -> None:
+    """What a process that was killed had begun to write; folders within may be another's, who is at work there."""
+    for begun in path.parent.glob(f".{path.stem}.*"):
+        if UNFINISHED.fullmatch(begun.name):
+            begun.unlink(missing_ok=True)
 
 
 def page(entries: Sequence[Entry]) -> str:

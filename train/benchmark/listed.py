@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -20,15 +21,13 @@ from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
 from train.controllers.tiers import LEARNT as LEARNT
+from train.controllers.tiers import TIER
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
 
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
-
-TIER = "tier"
-"""What an agent's own file may tell."""
 
 INDISPENSABLE = ("none", "lqg")
 """What every cost is relative to, and what everyone is compared with in pairs."""
@@ -48,10 +47,18 @@ class ListedController:
     """Runs by scenario, of a specialist."""
     suits: Callable[[Scenario], bool] = any_scenario
     """Whether it has something to do in a scenario."""
+    at_most: int | None = None
+    """How many of an agent's runs take part, if not all of them."""
 
     def runs(self, name: str, scenario: Scenario) -> Mapping[str, Source]:
         """Those in a scenario of this name, none if it has nothing to do there."""
-        return (self.everywhere or self.only_in.get(name, {})) if self.suits(scenario) else {}
+        found = (self.everywhere or self.only_in.get(name, {})) if self.suits(scenario) else {}
+        return dict(islice(found.items(), self.at_most))
+
+    def first(self, runs: int | None) -> ListedController:
+        """The same with so many of its runs, the first ones; all of them if None, or if there are no more."""
+        most = max(map(len, (self.everywhere, *self.only_in.values())))
+        return self if runs is None or runs >= most else replace(self, at_most=runs)
 
 
 def listed_controllers(

@@ -51,12 +51,6 @@ def difference(cost: Array, rival: Array, uncontrolled: Array) -> Estimate:
     return interval(value, less(ours.mean(cost), theirs.mean(rival)) / _mean_of_seeds(uncontrolled, ours))
 
 
-def ratio(cost: Array, rival: Array) -> Estimate:
-    """Mean cost of one controller, (K, N), over that of a rival, (L, N), on the same seeds."""
-    ours, theirs = resamples(*cost.shape), resamples(*rival.shape)
-    return interval(cost.mean() / rival.mean(), ours.mean(cost) / theirs.mean(rival))
-
-
 def scores(cost: Array, bound: Array, uncontrolled: Array, stratum: str = "") -> Array | None:
     """(1 + R,): how much of what can be gained is, (J₀ − J) / (J₀ − J of the bound), each a mean; and the same of R resamples.
 

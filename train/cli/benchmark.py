@@ -15,7 +15,7 @@ from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.named import GROUPS
 from train.cli.benchmark_table import finite_row, show_entry, show_table
 from train.cli.options import RESUMES, JsonOption, one_sentence, print_json
-from train.cli.quick import QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
+from train.cli.quick import QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
 from train.shared.digests import digest
 from train.shared.files import check_folder
 
@@ -40,6 +40,9 @@ def benchmark(
         ),
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=2, help=f"How many held-out episodes; {SEEDS} if left out.")] = None,
+    runs: Annotated[
+        int | None, typer.Option(min=1, help="How many training runs of each agent, the first ones; all of them if left out.")
+    ] = None,
     folder: Annotated[
         Path | None,
         typer.Option(
@@ -52,7 +55,7 @@ def benchmark(
     ] = None,
     trust: Annotated[bool, typer.Option("--trust", help="Load model files: I know where they are from.")] = False,
     quick: Annotated[
-        bool, typer.Option("--quick", help=f"About a minute and a half on two cores: {told()}. What else is given comes first.")
+        bool, typer.Option("--quick", help=f"Less than a minute on two cores: {told()}. What else is given comes first.")
     ] = False,
     submit: Annotated[
         str | None,
@@ -76,7 +79,7 @@ def benchmark(
     measured is reported in one sentence each, the rest is measured, and the status is then 1.
     """
     with one_sentence(RESUMES):
-        chosen = {"scenario": scenario, "controller": controller, "seeds": seeds, "model": model, "quick": quick}
+        chosen = {"scenario": scenario, "controller": controller, "seeds": seeds, "runs": runs, "model": model, "quick": quick}
         if submit is not None:
             entered(submit, chosen, folder, docs, as_json, tier=tier, trusted=trust, overwrite=overwrite, jobs=jobs)
             return
@@ -85,11 +88,13 @@ def benchmark(
                 raise ValueError(f"{name} = {given} is of an entry on the leaderboard: name that with --submit.")
         if docs is not None:
             check_folder(docs, "docs")
-        home = default_folder(scenario or (), controller or (), seeds or SEEDS, model or (), quick) if folder is None else folder
+        usual = default_folder(scenario or (), controller or (), seeds or SEEDS, model or (), quick=quick, runs=runs)
+        home = usual if folder is None else folder
         table = _measured(
             scenarios=scenario or (QUICK_SCENARIOS if quick else None),
             controllers=controller or (quick_controllers() if quick else None),
             seeds=seeds or (QUICK_SEEDS if quick else SEEDS),
+            runs=runs or (QUICK_RUNS if quick else None),
             folder=home,
             models=model or (),
             trusted=trust,
@@ -133,12 +138,18 @@ def _measured(**arguments: Any) -> BenchmarkTable:
 
 
 def default_folder(
-    scenarios: Sequence[str], controllers: Sequence[str], seeds: int, models: Sequence[Path], quick: bool = False
+    scenarios: Sequence[str],
+    controllers: Sequence[str],
+    seeds: int,
+    models: Sequence[Path],
+    *,
+    quick: bool = False,
+    runs: int | None = None,
 ) -> Path:
     """``results/benchmark``, with what is chosen behind it: each choice has a folder of its own."""
     scenarios = () if list(scenarios) == ["all"] else scenarios
     chosen = [Path(name).stem if name.endswith(ENDINGS) else name for name in (*scenarios, *controllers)]
-    chosen += [path.stem for path in models] + ([] if seeds == SEEDS else [str(seeds)])
+    chosen += [path.stem for path in models] + ([] if seeds == SEEDS else [str(seeds)]) + ([] if runs is None else [f"{runs}-runs"])
     name = "-".join(["benchmark", *(["quick"] if quick else []), *chosen])
     short = name if len(name) <= LONGEST else f"{name[:LONGEST]}-{digest(name.encode())}"
     return Path("results", "".join(letter if letter.isalnum() or letter in "-_. " else "_" for letter in short))

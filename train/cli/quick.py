@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from train.benchmark.table import BenchmarkTable
 
-QUICK_SCENARIOS = ("nominal", "delay", "failure", "mid-failure", "delay-failure", "two-dead-actuators")
-"""LQG's own, two in which it goes unstable, an open one, and two unseen; none whose many plants take long to build."""
+QUICK_SCENARIOS = ("nominal", "delay", "failure", "mid-failure", "delay-failure")
+"""LQG's own, two in which it goes unstable, an open one, and one unseen; none whose many plants take long to build."""
 
 QUICK_LAWS = (
     *("none", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "informed-lqg", "multiple-model"),
@@ -18,10 +18,16 @@ QUICK_LAWS = (
 
 QUICK_SEEDS = 16
 
+QUICK_RUNS = 2
+"""Of each generalist: with all of them, these would take more than half the time."""
+
 
 def told() -> str:
     """What it is, for whoever asks."""
-    return f"{len(QUICK_LAWS)} laws and the generalists that ship in {len(QUICK_SCENARIOS)} scenarios on {QUICK_SEEDS} episodes"
+    return (
+        f"{len(QUICK_LAWS)} laws and {QUICK_RUNS} runs of each generalist that ships in {len(QUICK_SCENARIOS)} scenarios on "
+        f"{QUICK_SEEDS} episodes"
+    )
 
 
 def quick_controllers() -> list[str]:

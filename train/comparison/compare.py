@@ -17,11 +17,12 @@ from baselines import Controller, Evaluation, LinearController, evaluate
 from baselines.design.objects import instance, optional_instance
 from beamenv.blade.files import to_dict
 from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
-from beamenv.plant.plant import Plant
+from beamenv.task import Task
 from train.comparison.figures import write_figures
 from train.comparison.table import write_tables
 from train.controllers.named import named
-from train.controllers.policy_files import load_policy, read_about
+from train.controllers.policy_files import read_about
+from train.controllers.sources import Trained
 from train.controllers.tiers import LEARNT
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
@@ -126,7 +127,7 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
             laws["none"], envs, held_out(comparison.seeds)
         )  # what cannot be compared is refused before anything is written
         with claimed(folder, content):
-            agents = {name: trained(comparison, name, folder, envs.unwrapped.design_plant, listener) for name in comparison.budget}
+            agents = {name: trained(comparison, name, folder, envs.unwrapped.task, listener) for name in comparison.budget}
             curves = {name: read_curve(folder / "agents" / name) for name in agents}
             evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener, alone)
     finally:
@@ -188,7 +189,7 @@ def claimed(folder: Path, content: Mapping[str, Any]) -> Iterator[None]:
         raise
 
 
-def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, listener: Listener) -> Controller:
+def trained(comparison: Comparison, name: str, folder: Path, task: Task, listener: Listener) -> Controller:
     """The agent of an earlier run, or one trained now, from its checkpoint on if it was interrupted."""
     home = folder / "agents" / name
     if not ((home / "agent.json").exists() and read_about(home).get("finished", True)):
@@ -200,7 +201,7 @@ def trained(comparison: Comparison, name: str, folder: Path, plant: Plant, liste
             resume=resumes,
             keeps_unfinished=False,
         )
-    return load_policy(home, plant)
+    return Trained(home).build(task)
 
 
 def evaluate_all(

@@ -9,9 +9,9 @@ from baselines import Controller
 from beamenv.configuration import Refused, Text, checked
 from beamenv.task import Task
 from train.controllers.named import discover, named
-from train.controllers.policy_files import load_policy
 from train.controllers.runs import runs_in
-from train.controllers.shipped import load_shipped, shipped
+from train.controllers.shipped import find_shipped, shipped
+from train.controllers.sources import Trained
 
 
 def chosen(name: str, task: Task, scenario: str, seed: int | None = None) -> Controller:
@@ -24,13 +24,13 @@ def chosen(name: str, task: Task, scenario: str, seed: int | None = None) -> Con
         return _by_name(name, task, scenario, seed)
     if seed is not None:
         raise Refused("trained_seed", seed, f"left out, for {name!r} is no agent that ships")
-    return load_policy(Path(name), task.design_plant)
+    return Trained(Path(name)).build(task)
 
 
 def chosen_runs(name: str, task: Task, scenario: str, seed: int | None = None) -> Mapping[str, Controller]:
     """The same, of a folder with several runs each by its number; {"": controller} of what is one."""
     if seed is None and _is_folder(name):
-        return {run: load_policy(place, task.design_plant) for run, place in runs_in(Path(name)).items()}
+        return {run: Trained(place).build(task) for run, place in runs_in(Path(name)).items()}
     return {"": chosen(name, task, scenario, seed)}
 
 
@@ -41,7 +41,7 @@ def _is_folder(name: str) -> bool:
 def _by_name(name: str, task: Task, scenario: str, seed: int | None) -> Controller:
     own = set() if name in discover() else {each.scenario for each in shipped() if each.agent == name}
     if own:
-        return load_shipped(name, scenario if scenario in list(own) else "generalist", seed, task.design_plant)
+        return Trained(find_shipped(name, scenario if scenario in list(own) else "generalist", seed).folder).build(task)
     if seed is not None:
         raise Refused("trained_seed", seed, f"left out, for {name!r} is no agent that ships")
     return named(name).build_for(task)

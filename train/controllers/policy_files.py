@@ -18,12 +18,14 @@ from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, normalised
 from train.controllers.belief_policy import BeliefPolicy
 from train.controllers.lstm_policy import LSTMPolicy
+from train.controllers.models_policy import ModelsPolicy
 from train.controllers.policies import HistoryPolicy, Policy, RecurrentPolicy, ResidualPolicy, StateSpacePolicy
 from train.controllers.policy_parts import checked_settings, checked_weights, limits
 from train.shared.files import as_path, read_json, write_json
 
 KINDS: Mapping[str, type[Policy]] = {
-    kind.kind: kind for kind in (HistoryPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, LSTMPolicy, BeliefPolicy)
+    kind.kind: kind
+    for kind in (HistoryPolicy, RecurrentPolicy, StateSpacePolicy, ResidualPolicy, ModelsPolicy, LSTMPolicy, BeliefPolicy)
 }
 
 FORMAT = 1

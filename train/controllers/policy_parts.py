@@ -20,6 +20,7 @@ NEEDED: Mapping[str, Mapping[str, Kind]] = {
     "recurrent": {"input_gain": Number()},
     "state-space": {},
     "residual": {"input_gain": Number()},
+    "multiple-model-residual": {"input_gain": Number()},
     "lstm": {"input_gain": Number(), "held": Count()},
 }
 """Settings that a kind of policy acts by."""
@@ -140,6 +141,11 @@ def _residual(sizes: _Sizes, m: int, p: int | None) -> Shapes:
     return {**_cells(sizes, 3, p + 2 * m, 2 * m), **_state_space(sizes, m, p)}
 
 
+def _multiple_model(sizes: _Sizes, m: int, p: int | None) -> Shapes:
+    p = max(sizes.of("weight_ih")[1] - 3 * m - 1, 1) if p is None else p
+    return _cells(sizes, 3, p + 3 * m + 1, 3 * m)
+
+
 def _lstm(sizes: _Sizes, m: int, p: int | None) -> Shapes:
     return _cells(sizes, 4, _windowed(sizes.of("weight_ih")[1], m, p), m)
 
@@ -150,6 +156,7 @@ EXPECTED: Mapping[str, Callable[[_Sizes, int, int | None], Shapes]] = {
     "recurrent": _recurrent,
     "state-space": _state_space,
     "residual": _residual,
+    "multiple-model-residual": _multiple_model,
     "lstm": _lstm,
 }
 """Shapes of each kind's weights, from sizes that they must share."""

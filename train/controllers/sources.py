@@ -9,8 +9,11 @@ from typing import Any, Protocol
 
 from baselines import Controller
 from beamenv.task import Task
+from train.controllers.general_bank import general_law
 from train.controllers.models import fitted, load_model
+from train.controllers.models_policy import ModelsPolicy
 from train.controllers.named import NamedController
+from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy
 from train.shared.digests import digest
 
@@ -48,9 +51,10 @@ class Trained:
 
     folder: Path
 
-    def build(self, task: Task) -> Controller:
-        """The agent, within the drive limits of this design; refused if it was trained on other plants."""
-        return load_policy(self.folder, task.design_plant)
+    def build(self, task: Task) -> Policy:
+        """The agent, within this design's drive limits and beside the law it adds to; refused if trained on other plants."""
+        policy = load_policy(self.folder, task.design_plant)
+        return policy.beside(general_law(task.prior.blade)) if isinstance(policy, ModelsPolicy) else policy
 
     def fingerprint(self) -> str:
         """Of its weights and what is said of them."""

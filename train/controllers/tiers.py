@@ -7,6 +7,9 @@ from beamenv.knowledge import TIERS, TRUTH
 LEARNT = 1
 """The tier of agents: what they train on is the scenario's distribution, and they see the readings alone."""
 
+TIER = "tier"
+"""What an agent's own file tells; agents that ship tell none, and are of tier ``LEARNT``."""
+
 
 def tiers_told() -> str:
     """What the tiers are."""

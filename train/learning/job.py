@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 
 from beamenv.plant.fingerprint import fingerprint
-from beamenv.scenarios.named import BENCHMARK, UNSEEN
+from beamenv.scenarios.named import BENCHMARK, OPEN, UNSEEN
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
 from train.controllers.runs import best_run
+from train.controllers.tiers import LEARNT, TIER
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import FORMAT, NAME, damaged, read_checkpoint, write_checkpoint
 from train.learning.recipe import Recipe
@@ -33,8 +34,8 @@ from train.shared.versions import versions
 GENERALIST = "generalist"
 """In place of a scenario: all of ``NAMES``, in one training."""
 
-NAMES = tuple(name for name in BENCHMARK if name not in UNSEEN)
-"""The benchmark's scenarios but those that are kept for judging."""
+NAMES = tuple(name for name in (*BENCHMARK, *OPEN) if name not in UNSEEN)
+"""All scenarios but those that are kept for judging."""
 
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
@@ -223,6 +224,6 @@ def save_all(
     places = [folder] if len(policies) == 1 else [folder / str(run) for run in range(len(policies))]
     for run, (policy, place) in enumerate(zip(policies, places, strict=True)):
         journal.write_curve(place, run)
-        own = {"run": run, "seconds": round(journal.seconds, 1), "versions": versions(), "plants": dict(plants)}
+        own = {TIER: LEARNT, "run": run, "seconds": round(journal.seconds, 1), "versions": versions(), "plants": dict(plants)}
         save_policy(policy, place, {**about, **own})
     return places

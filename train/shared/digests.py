@@ -19,7 +19,10 @@ CONTROLLERS = (
     "beamenv",
     "baselines",
     "train.controllers.policies",
+    "train.controllers.general_bank",
+    "train.controllers.hypotheses",
     "train.controllers.lstm_policy",
+    "train.controllers.models_policy",
     "train.controllers.policy_files",
 )
 """What decides the voltages of a controller and the motion they cause."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,6 +13,9 @@ from beamenv.configuration.writing import remove_unfinished
 from train.shared.files import check_folder
 
 NAME = ".in-use"
+
+PAUSE = 0.02
+"""Seconds between two tries."""
 
 
 @contextmanager
@@ -36,17 +40,25 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """The lock alone, of a folder that is there, say to change one file in it that others may want to change too."""
-    handle = _locked(folder)
+def held(folder: Path, patience: float = 0.0) -> Iterator[None]:
+    """The lock alone, of a folder that is there, say to change one file in it that others may want to change too.
+
+    Another process that holds it is waited for as many seconds as ``patience`` says, and then a ``ValueError`` of one sentence.
+    """
+    end = time.monotonic() + patience
+    while (handle := _locked(folder, final=time.monotonic() >= end)) is None:
+        time.sleep(PAUSE)
     try:
         yield
     finally:
         _let_go(handle, folder / NAME)
 
 
-def _locked(folder: Path) -> int:
-    """The open file of the lock; it may have been removed by its last holder between being opened and being locked."""
+def _locked(folder: Path, final: bool) -> int | None:
+    """The open file of the lock, which its last holder may have removed between being opened and being locked.
+
+    If another process has it None, or ValueError where there is to be no further try.
+    """
     path = folder / NAME
     while True:
         handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
@@ -59,6 +71,8 @@ def _locked(folder: Path) -> int:
         except BlockingIOError:
             holder = _holder(handle)
             os.close(handle)
+            if not final:
+                return None
             raise ValueError(
                 f"folder = {str(folder)!r} is in use by {holder}: wait until that has ended, or name another folder."
             ) from None

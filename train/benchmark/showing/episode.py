@@ -6,7 +6,8 @@ from beamenv.scenarios.scenario import scenario
 from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
 from train.controllers.named import named
-from train.controllers.shipped import load_shipped, shipped
+from train.controllers.shipped import find_shipped, shipped
+from train.controllers.sources import Trained
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
 
@@ -26,7 +27,7 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
     arguments = {**environment, "scenario": best.scenario}
     task = resolve_task(**arguments)
     try:
-        agent = load_shipped(ships[best.controller], _home(best), plant=task.design_plant)
+        agent = Trained(find_shipped(ships[best.controller], _home(best)).folder).build(task)
     except ValueError:  # the table's blade is another one than that which agents ship for
         return None, ""
     note = f"Scenario {best.scenario}, held-out episode of seed {HELD_OUT}: LQG, and the agent that gains most on it."

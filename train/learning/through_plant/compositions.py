@@ -30,11 +30,21 @@ WIDTH = (0.4, 1.2)
 PLANTS = 16
 """In the bank of each."""
 
+ALONE = 6
+"""Of so many compositions one is of plants that are wrong in their modes, and of nothing else."""
+
 
 def compositions(task: Task, count: int, seed: int) -> list[Task]:
-    """``count`` tasks like the given one but for their scenarios; of every two one has plants with errors in the upper modes."""
+    """``count`` tasks like the given one but for their scenarios.
+
+    Of every two one has plants with errors in the upper modes, and of every six one has those and their damping's alone.
+    """
     generator = np.random.default_rng(seed)
-    return [_composed(task, content, k) for k, content in enumerate(contents(count, generator))]
+    composed = enumerate(contents(count, generator))
+    return [_composed(task, _WRONG_MODES if k % ALONE == 0 else content, k) for k, content in composed]
+
+
+_WRONG_MODES: dict[str, Any] = {"plants": {"bank": PLANTS, "damping_ratio": [0.003, 0.02]}}
 
 
 def contents(count: int, generator: np.random.Generator) -> Iterator[dict[str, Any]]:
@@ -57,7 +67,8 @@ def _about_one(share: float) -> list[float]:
 
 
 def _delay(width: float, generator: np.random.Generator) -> dict[str, Any]:
-    return {"drive": {"delay": [0, int(generator.integers(1, 4))]}, "acquisition": {"dropout": 0.05 * width}}
+    latest = int(generator.integers(1, 4))
+    return {"drive": {"delay": [int(generator.integers(0, latest + 1)), latest]}, "acquisition": {"dropout": 0.05 * width}}
 
 
 def _failure(width: float, generator: np.random.Generator) -> dict[str, Any]:

@@ -16,6 +16,7 @@ import torch
 
 from beamenv.configuration import Choice, Count, Number, Positive, configuration
 from beamenv.task import Task
+from train.controllers.general_bank import general_law
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, PASSES, RATE
 from train.learning.session import Budget, follow
@@ -29,6 +30,7 @@ from train.learning.through_plant.actors import (
 )
 from train.learning.through_plant.compositions import compositions
 from train.learning.through_plant.linear_base import BASES, linear_base
+from train.learning.through_plant.models_actor import ModelsActor
 from train.learning.through_plant.windows import Windows
 from train.learning.training import Report, on_training_bank, uncontrolled_cost
 
@@ -40,8 +42,9 @@ COMPOSED = 13
 class GradientSettings:
     """One experiment."""
 
-    actor: Annotated[str, Choice(("recurrent", "residual", "state-space", "belief"))] = "recurrent"
-    """"recurrent", "residual", "state-space" (all matrices of a linear law) or "belief" (its gain alone, its filter as it is)."""
+    actor: Annotated[str, Choice(("recurrent", "residual", "state-space", "belief", "multiple-model-residual"))] = "recurrent"
+    """"recurrent", "residual", "state-space" (all matrices of a linear law), "belief" (its gain alone, its filter as it is) or
+    "multiple-model-residual" (weighs the law of one bank for every scenario)."""
     base: Annotated[str, Choice(BASES)] = "lqg"
     """What a residual actor adds to and a linear one starts from: see ``train.learning.through_plant.linear_base``."""
     start: Annotated[str, Choice(("base", "idle"))] = "base"
@@ -75,6 +78,8 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
         return StateSpaceActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
     if settings.actor == "belief":
         return BeliefActor(plant, own, runs, linear_base(settings.base, task), settings.start == "idle")
+    if settings.actor == "multiple-model-residual":
+        return ModelsActor(plant, own, runs, general_law(task.prior.blade))
     return ResidualActor(plant, own, runs, linear_base(settings.base, task))
 
 

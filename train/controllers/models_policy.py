@@ -1,0 +1,65 @@
+"""The policy that adds to a law of many models, which it is given: its weights alone do not tell the law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from baselines import MultipleModel
+from beamenv.configuration import Refused
+from train.controllers.policies import Array, Policy, gated_unit
+
+SHARPNESS = 0.3
+"""What the logarithm of the misfit is multiplied by: a model that is off by a factor of ten shows as 0.7."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelsPolicy(Policy):
+    """Weighs a multiple-model law and its fallback and adds to them: u = clip((1 + g) ∘ u_models + c ∘ u_fallback + r).
+
+    [g, c, r] is the tanh output of a gated recurrent unit that sees the readings, the voltages held before, what both laws ask for
+    and how well any model fits. Its memory is [hidden units | the law's | voltages].
+    """
+
+    kind = "multiple-model-residual"
+    law: MultipleModel | None = None
+    """With a fallback, in normalised units."""
+
+    def beside(self, law: Any) -> ModelsPolicy:
+        """The same policy with its law; ``ValueError`` for what is none."""
+        if not isinstance(law, MultipleModel) or law.fallback is None:
+            raise Refused("law", law, "a multiple-model law with a fallback")
+        return replace(self, law=law)
+
+    @property
+    def memory_size(self) -> int:
+        """Hidden units, the law's memory and the last voltages."""
+        return int(self.weights["weight_hh"].shape[1]) + self._law.order + len(self.lowest)
+
+    @property
+    def _law(self) -> MultipleModel:
+        if self.law is None:
+            raise ValueError(f"{self.name} adds to a law that it must be given: build it for a task, or beside(law).")
+        return self.law
+
+    def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
+        """The law and its fallback, the unit, and what all ask for; the law then goes by what is held."""
+        law, units, m = self._law, self.weights["weight_hh"].shape[1], len(self.lowest)
+        hidden, own, voltages = memory[:, :units], np.asarray(memory[:, units:-m], dtype=np.float64), memory[:, -m:]
+        seen = np.asarray(readings, dtype=np.float64)
+        cautious = law.cautious(seen, own)
+        asked, own = law.decide(seen, own)
+        fit = np.tanh(SHARPNESS * np.log(law.misfits(own) + 1e-3))[:, None]
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked, cautious, fit])
+        hidden, output = gated_unit(self.weights, inputs.astype(np.float32), hidden.astype(np.float32))
+        weight, share, added = np.split(output, 3, axis=1)
+        action = np.clip((1.0 + weight) * asked + share * cautious + added, self.lowest, self.highest)
+        return action, np.hstack([hidden, law.overruled(own, action - asked), action])
+
+    def knowing(self, memory: Array, voltages: Array) -> Array:
+        """The law, too, goes by the voltages that were held."""
+        units, m = self.weights["weight_hh"].shape[1], voltages.shape[1]
+        own = self._law.overruled(np.asarray(memory[:, units:-m], dtype=np.float64), voltages - memory[:, -m:])
+        return np.hstack([memory[:, :units], own, voltages])
