@@ -10,6 +10,7 @@ from beamenv.task import resolve_task
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 from train.controllers.shipped import FOLDER, find_shipped, load_shipped, shipped
+from train.controllers.sources import Trained
 
 ONE = np.ones(4, np.float32)
 POLICY = HistoryPolicy(
@@ -50,8 +51,8 @@ def test_together_they_stay_below_5_mb():
 
 
 @lru_cache
-def design_plant(scenario):
-    return resolve_task(scenario=scenario).design_plant
+def task_of(scenario):
+    return resolve_task(scenario=scenario)
 
 
 @pytest.mark.parametrize("each", shipped(), ids=lambda each: f"{each.agent}-{each.scenario}-{each.seed}")
@@ -60,7 +61,7 @@ def test_each_tells_what_it_depends_on_and_acts_on_the_plants_it_was_trained_on(
     assert {"recipe", "seed", "scenario", "updates", "versions", "plants"} <= set(about)
     assert len((each.folder / "learning.csv").read_text().splitlines()) > 2
     for scenario in about["plants"]:
-        policy = load_shipped(each.agent, each.scenario, each.seed, design_plant(scenario))
+        policy = Trained(each.folder).build(task_of(scenario))
         action, _ = policy.predict(np.full((2, 4), 0.05, np.float32))
         assert np.isfinite(action).all()
 
