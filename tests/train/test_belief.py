@@ -93,7 +93,7 @@ def test_the_kept_policy_is_the_deterministic_actor_on_the_beliefs_of_training(t
     save_policy(training.policy(), tmp_path)
     policy, memory, starts, largest = load_policy(tmp_path), None, np.ones(8, dtype=bool), 0.0
     unseen = np.zeros((8, training.envs.observation_space.shape[0] - training.envs.seen), np.float32)
-    filter_ = RollingBelief(8, training._belief)
+    filter_ = RollingBelief(8, training.envs.belief)
     readings = np.random.default_rng(3).uniform(-0.05, 0.05, (12, 8, 4)).astype(np.float32)
     filter_.begin(readings[0])
     voltages = np.zeros((8, 4), np.float32)
@@ -126,7 +126,7 @@ def test_a_quadratic_of_state_and_load_is_found_as_it_is():
     matrix = torch.randn(19, 19)
     matrix[15:17], matrix[:, 15:17] = 0.0, 0.0  # of the electronics squares alone are features
     returns = torch.einsum("bi,ij,bj->b", states, matrix, states) + 0.7 * states[:, 15] ** 2 - 3.0
-    critic.fit(states, returns)
+    critic.fit(critic.features(states), returns)
     torch.testing.assert_close(critic(states)[:, 0], returns, rtol=1e-2, atol=5e-2)
 
 

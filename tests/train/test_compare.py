@@ -169,7 +169,7 @@ def test_ctrl_c_ends_a_comparison_at_once_and_keeps_no_half_trained_agent(tmp_pa
             compare(comparison, tmp_path, hasty)
         assert hasty.evaluated_names == []
         assert {path.name for path in (tmp_path / "agents" / "gradient").iterdir()} == {CHECKPOINT, "tensorboard"}
-        trained(comparison, "gradient", tmp_path, resolve_task(duration=0.05).design_plant, patient)
+        trained(comparison, "gradient", tmp_path, resolve_task(duration=0.05), patient)
     seconds = [[progress.elapsed for _, progress in notes.trained] for notes in (hasty, patient)]
     assert seconds[0] == pytest.approx([0.2, 0.4, 0.6])
     assert seconds[1][0] == pytest.approx(0.8) and seconds[1][-1] >= 2.0
@@ -178,15 +178,15 @@ def test_ctrl_c_ends_a_comparison_at_once_and_keeps_no_half_trained_agent(tmp_pa
 
 def test_an_agent_that_says_it_is_unfinished_is_trained_on(tmp_path, ticking):
     comparison, notes = Comparison({"duration": 0.05}, {"gradient": 2.0}, seeds=2), Notes()
-    plant = resolve_task(duration=0.05).design_plant
+    task = resolve_task(duration=0.05)
     path = tmp_path / "agents" / "gradient" / "agent.json"
     with ticking(0.5):
-        trained(comparison, "gradient", tmp_path, plant, notes)
+        trained(comparison, "gradient", tmp_path, task, notes)
         whole, count = path.read_bytes(), len(notes.trained)
-        trained(comparison, "gradient", tmp_path, plant, notes)
+        trained(comparison, "gradient", tmp_path, task, notes)
         assert (path.read_bytes(), len(notes.trained)) == (whole, count)
         path.write_text(json.dumps(json.loads(whole) | {"finished": False}))
-        trained(comparison, "gradient", tmp_path, plant, notes)
+        trained(comparison, "gradient", tmp_path, task, notes)
     assert path.read_bytes() == whole
 
 

@@ -19,7 +19,7 @@ SAMPLES = Count(2, 10_000_000)
 PASSES = Count(1, 1000)
 """Over experience; runs side by side."""
 
-SEEN = ("history", "oscillators", "belief")
+SEEN = ("history", "oscillators", "estimate", "belief")
 """What agents of Stable-Baselines3 may be shown."""
 
 RATE = Number(gt=0.0, le=1.0)

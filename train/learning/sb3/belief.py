@@ -88,13 +88,6 @@ def oscillator_bank(plant: Plant) -> Belief:
     return Belief(*(np.ascontiguousarray(part, dtype=np.float32) for part in parts))
 
 
-def seen_by(settings: Any, design: Design) -> Belief | None:
-    """What the settings of a trainer show, None for a history."""
-    if settings.sees == "belief":
-        return design_belief(design, settings.modes)
-    return oscillator_bank(design.plant) if settings.sees == "oscillators" else None
-
-
 def regulator_on(belief: Belief, design: Design, approach: float = 1.0) -> Array:
     """(m, f + m): the sampled regulator's gain as a linear actor on what a ``design_belief`` shows has it.
 
@@ -110,7 +103,7 @@ class RollingBelief:
     """The beliefs of a batch of blades, kept up as ``beamenv.envs.history.RollingHistory`` keeps windows."""
 
     def __init__(self, count: int, belief: Belief) -> None:
-        self._belief = belief
+        self.belief = belief
         self._filter: Mapping[str, Array] = dict(zip(FILTER, belief, strict=True))
         self._before, self._estimate = (np.zeros((count, len(belief.transition)), np.float32) for _ in range(2))
         self._voltages = np.zeros((count, len(belief.input)), np.float32)
@@ -124,21 +117,26 @@ class RollingBelief:
     def append(self, readings: ArrayLike, voltages: ArrayLike) -> None:
         """One more instant: ``readings`` (N, p) after ``voltages`` (N, m), both normalised."""
         self._voltages[...] = voltages
-        self._before[...] = self._estimate @ self._belief.transition + self._voltages @ self._belief.input
+        self._before[...] = self._estimate @ self.belief.transition + self._voltages @ self.belief.input
         self._read(slice(None), readings)
 
     def replace_last(self, rows: Any, readings: ArrayLike, voltages: ArrayLike) -> None:
         """Put another last instant in the place of that of ``rows``."""
-        self._before[rows] += (np.asarray(voltages, np.float32) - self._voltages[rows]) @ self._belief.input
+        self._before[rows] += (np.asarray(voltages, np.float32) - self._voltages[rows]) @ self.belief.input
         self._voltages[rows] = voltages
         self._read(rows, readings)
 
     def _read(self, rows: Any, readings: ArrayLike) -> None:
         self._estimate[rows] = corrected(self._filter, self._before[rows], np.asarray(readings))
 
+    @property
+    def estimate(self) -> Array:
+        """(N, n) what the filters hold."""
+        return self._estimate
+
     def window(self, rows: Any = slice(None)) -> Array:
         """What is shown (len(rows), f + m): the beliefs, and the voltages held before."""
-        return np.hstack([self._estimate[rows] @ self._belief.shown, self._voltages[rows]])
+        return np.hstack([self._estimate[rows] @ self.belief.shown, self._voltages[rows]])
 
     def state_dict(self) -> dict[str, Array]:
         """Copies of what moves."""
@@ -163,3 +161,12 @@ class VectorBelief(VectorSensorHistory):
         width = belief.shown.shape[1] + len(belief.input)
         self.single_observation_space = Box(-np.inf, np.inf, (width,), np.float32)
         self.observation_space = batch_space(self.single_observation_space, env.num_envs)
+
+    @property
+    def estimate(self) -> Array:
+        """(N, n) the filters' states."""
+        return np.asarray(self._history.estimate)
+
+    def show(self, belief: Belief) -> None:
+        """Another view of the same filters."""
+        self._history.belief = belief

@@ -37,9 +37,10 @@ class OffPolicySettings:
     blades: Annotated[int, BLADES] = 256
     """Environments stepped together."""
     sees: Annotated[str, Choice(SEEN)] = "history"
-    """The last readings and voltages, or these through oscillators, or the belief of the design's filter: see ``belief``."""
+    """The last readings and voltages, or readings through oscillators, or an estimate from these that is fitted on the way, or the
+    belief of the design's filter: see ``belief`` and ``fitted``."""
     modes: Annotated[int, UNITS] = 5
-    """Of the belief, the slowest ones, that are shown."""
+    """Of the estimate or the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     held: Annotated[int, INSTANTS] = 4

@@ -15,7 +15,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
-from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Share, configuration
+from beamenv.configuration import Choice, Flag, Natural, Number, Positive, Refused, Share, configuration
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
@@ -34,9 +34,10 @@ class PPOSettings:
     blades: Annotated[int, BLADES] = 1024
     """Environments stepped together."""
     sees: Annotated[str, Choice(SEEN)] = "history"
-    """The last readings and voltages, or these through oscillators, or the belief of the design's filter: see ``belief``."""
+    """The last readings and voltages, or readings through oscillators, or an estimate from these that is fitted on the way, or the
+    belief of the design's filter: see ``belief`` and ``fitted``."""
     modes: Annotated[int, UNITS] = 5
-    """Of the belief, the slowest ones, that are shown."""
+    """Of the estimate or the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     actor: Annotated[str, Choice(("tanh", "linear"))] = "tanh"
@@ -45,6 +46,8 @@ class PPOSettings:
     """Without voltages, or, for a linear actor on the belief, from the gains of LQG with load estimate."""
     critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
     """Two tanh layers on the true state, or a quadratic of it and of the coming load in closed form, for one scenario."""
+    twins: Annotated[bool, Flag()] = False
+    """Blades in pairs that meet the same, one's advantages being taken from the other's: for a quadratic critic."""
     held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms: exploration that lasts tells more of the slow modes than white noise
     does, against the white load."""
@@ -88,6 +91,8 @@ class PPOSettings:
             raise Refused("batch", self.batch, f"at most the {self.blades * self.rollout} samples of a rollout, blades · rollout")
         if self.start == "lqg" and not (self.sees == "belief" and self.actor == "linear"):
             raise Refused("start", self.start, "'idle' unless sees is 'belief' and actor 'linear'")
+        if self.twins and not (self.critic == "quadratic" and self.blades % 2 == 0):
+            raise Refused("twins", self.twins, "false unless critic is 'quadratic' and blades an even number")
 
 
 def _layered(settings: PPOSettings, envs: Envs) -> dict[str, Any]:
@@ -109,7 +114,7 @@ class OnPolicyTraining(SB3Training):
 
     def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
         quadratic = settings.critic == "quadratic"
-        envs = training_envs(tasks, settings, seed, shows_loads=quadratic and len(tasks) == 1)
+        envs = training_envs(tasks, settings, seed, shows_loads=quadratic and len(tasks) == 1, twins=settings.twins)
         model = self.algorithm(
             QuadraticPolicy if quadratic else self.networks,
             envs,
@@ -151,7 +156,7 @@ class OnPolicyTraining(SB3Training):
         return {}
 
     def _callbacks(self) -> list[BaseCallback]:
-        return [FitCritic()] if self.settings.critic == "quadratic" else []
+        return [FitCritic(self.settings.twins)] if self.settings.critic == "quadratic" else []
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}

@@ -14,6 +14,7 @@ from stable_baselines3.common.type_aliases import PyTorchObs
 from torch import Tensor, nn
 
 from train.learning.sb3.asymmetric import AsymmetricPolicy
+from train.learning.sb3.twins import without_the_twin
 
 MODES = 6
 """Of which all products, with each other and with what is seen, are features; of those above, which move little, squares."""
@@ -55,9 +56,8 @@ class Quadratic(nn.Module):
         """(B, 1)."""
         return (self.features(states) @ self.weight)[:, None]
 
-    def fit(self, states: Tensor, returns: Tensor) -> None:
-        """Ridge regression on these rows and, fading, on those before."""
-        features = self.features(states)
+    def fit(self, features: Tensor, returns: Tensor) -> None:
+        """Ridge regression on ``features`` (B, k) and, fading, on those before."""
         latest = torch.cat([features.T @ features, (returns @ features)[None]]).double() / len(features)
         self.squares += latest if not self.squares.any() else (1.0 - MEMORY) * (latest - self.squares)
         matrix, right = self.squares[:-1], self.squares[-1]
@@ -76,10 +76,10 @@ class QuadraticPolicy(AsymmetricPolicy):
         self.quadratic = Quadratic(self.features_dim - self.told, modes, crossed)
 
     def forward(self, obs: Tensor, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
-        """Actions, values and log-probabilities."""
+        """Actions, values and log-probabilities; values are none, as ``FitCritic`` reckons those of a rollout together."""
         distribution = self._get_action_dist_from_latent(self.mlp_extractor.forward_actor(obs))
         actions = distribution.get_actions(deterministic=deterministic)
-        return actions, self.predict_values(obs), distribution.log_prob(actions)
+        return actions, torch.zeros(len(obs), 1), distribution.log_prob(actions)
 
     def evaluate_actions(self, obs: PyTorchObs, actions: Tensor) -> tuple[Tensor, Tensor, Tensor | None]:
         """No values: none are learnt by descent."""
@@ -95,17 +95,30 @@ class QuadraticPolicy(AsymmetricPolicy):
 
 
 class FitCritic(BaseCallback):
-    """At the end of a rollout fits the critic to its returns, and reckons its advantages anew."""
+    """At the end of a rollout fits the critic to its returns, and reckons its advantages anew; with ``twins``, less theirs."""
+
+    def __init__(self, twins: bool = False) -> None:
+        super().__init__()
+        self._twins = twins
 
     def _on_step(self) -> bool:
         return True
 
     def _on_rollout_end(self) -> None:
         model: Any = self.model
-        buffer, policy = model.rollout_buffer, model.policy
-        rows = torch.as_tensor(buffer.observations.reshape(-1, buffer.observations.shape[-1]))
+        buffer, critic, told = model.rollout_buffer, model.policy.quadratic, model.policy.told
+        rows = torch.as_tensor(buffer.observations.reshape(-1, buffer.observations.shape[-1])[:, told:])
         with torch.no_grad():
-            policy.quadratic.fit(rows[:, policy.told :], torch.as_tensor(buffer.returns.reshape(-1)))
-            buffer.values[...] = policy.predict_values(rows).numpy().reshape(buffer.values.shape)
-            last = policy.predict_values(torch.as_tensor(model._last_obs))
-        buffer.compute_returns_and_advantage(last_values=last, dones=model._last_episode_starts)
+            features, last = critic.features(rows), critic.features(torch.as_tensor(model._last_obs[:, told:]))
+            self._reckon(features, last)
+            critic.fit(features, torch.as_tensor(buffer.returns.reshape(-1)))
+            self._reckon(features, last)
+        if self._twins:
+            buffer.advantages[...] = without_the_twin(buffer.advantages, buffer.observations[..., -2:])
+
+    def _reckon(self, features: Tensor, last: Tensor) -> None:
+        """Values, advantages and returns by the critic as it is."""
+        model: Any = self.model
+        buffer, weight = model.rollout_buffer, model.policy.quadratic.weight
+        buffer.values[...] = (features @ weight).numpy().reshape(buffer.values.shape)
+        buffer.compute_returns_and_advantage(last_values=(last @ weight)[:, None], dones=model._last_episode_starts)

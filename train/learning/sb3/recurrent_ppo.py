@@ -75,5 +75,5 @@ class RecurrentPPOTraining(OnPolicyTraining):
         names = ("weight_ih", "weight_hh", "bias_ih", "bias_hh")
         tensors = {name: getattr(cells, f"{name}_l0") for name in names} | {"weight_out": head.weight, "bias_out": head.bias}
         weights = {name: tensor.detach().numpy().copy() for name, tensor in tensors.items()}
-        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
+        lowest, highest = normalised(self._task.design_plant).voltage_limits.astype(np.float32)
         return LSTMPolicy("recurrent PPO", weights, asdict(self.settings), lowest, highest)

@@ -11,18 +11,32 @@ import torch
 from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
+from beamenv.blade.design import Design
 from beamenv.configuration import Refused
 from beamenv.plant.plant import normalised
 from beamenv.task import Task
 from train.controllers.belief_policy import BeliefPolicy
 from train.controllers.policies import HistoryPolicy, Policy
-from train.learning.sb3.belief import seen_by
+from train.learning.sb3.belief import Belief, design_belief, oscillator_bank
+from train.learning.sb3.fitted import two_sided_bank
 from train.learning.sb3.side_by_side import SideBySide
 from train.learning.sb3.vec_env import TrainingVecEnv
 from train.learning.training import on_training_bank, uncontrolled_cost
 from train.learning.validation import Validation
 
 Envs = TrainingVecEnv | SideBySide
+
+REFIT = 5
+"""Updates between two fits of an estimate."""
+
+
+def seen_by(settings: Any, design: Design) -> Belief | None:
+    """What the settings of a trainer show, None for a history."""
+    if settings.sees == "belief":
+        return design_belief(design, settings.modes)
+    if settings.sees == "estimate":
+        return two_sided_bank(design.plant, settings.modes)
+    return oscillator_bank(design.plant) if settings.sees == "oscillators" else None
 
 
 def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) -> Envs:
@@ -33,6 +47,10 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     blades = settings.blades
     seen |= {name: getattr(settings, name) for name in ("history", "energy_horizon", "discount", "held", "approach")}
     seen["belief"] = seen_by(settings, tasks[0].design)
+    if settings.sees == "estimate":
+        if len(tasks) > 1:
+            raise Refused("settings.sees", settings.sees, "another where several scenarios are trained on")
+        seen["fitted"] = settings.modes
     if blades < len(tasks):
         raise ValueError(f"blades = {blades} must be at least one for each of the {len(tasks)} scenarios.")
     if settings.held > min(task.steps for task in tasks):
@@ -77,8 +95,7 @@ class SB3Training:
         self.cost = float("nan")
         self.losses: dict[str, float] = {}
         """What SB3 logged in the last update, by its names."""
-        self._seed, self._design = seed, tasks[0].design_plant
-        self._belief = seen_by(settings, tasks[0].design)
+        self._seed, self._task = seed, tasks[0]
         self._meter, self._validation = Meter(envs), Validation(tasks)
         self.validated = float("nan")
         self._best: tuple[float, Policy] | None = None
@@ -90,6 +107,9 @@ class SB3Training:
         self.model._current_progress_remaining = remaining
         self._free(self.updates >= self.settings.critic_first)
         self._gather_and_learn()
+        if self.settings.sees == "estimate" and (self.updates + 1) % REFIT == 0:
+            assert isinstance(self.envs, TrainingVecEnv)
+            self.envs.refit()
         self.losses = {name: float(value) for name, value in self.model.logger.name_to_value.items()}
         self.model.logger.name_to_value.clear()
         self.updates += 1
@@ -136,10 +156,12 @@ class SB3Training:
 
     def _as_policy(self, name: str, weights: dict[str, np.ndarray[Any, Any]], settings: dict[str, Any]) -> Policy:
         """Layers on a history or on a belief, as the settings have it."""
-        lowest, highest = normalised(self._design).voltage_limits.astype(np.float32)
-        if self._belief is None:
+        lowest, highest = normalised(self._task.design_plant).voltage_limits.astype(np.float32)
+        belief = None if isinstance(self.envs, SideBySide) else self.envs.belief
+        belief = seen_by(self.settings, self._task.design) if belief is None else belief
+        if belief is None:
             return HistoryPolicy(name, weights, settings, lowest, highest)
-        return BeliefPolicy(name, {**self._belief._asdict(), **weights}, settings, lowest, highest)
+        return BeliefPolicy(name, {**belief._asdict(), **weights}, settings, lowest, highest)
 
     def policies(self) -> list[Policy]:
         """``policy`` alone, or the best that validation has seen."""

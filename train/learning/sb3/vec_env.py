@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_lyapunov
 
 from beamenv import BladeVecEnv, VectorSensorHistory
-from beamenv.plant.plant import drive_limit, normalised, sample
+from beamenv.plant.plant import normalised
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 from train.learning.sb3.belief import Belief, VectorBelief
+from train.learning.sb3.fitted import Regression
+from train.learning.sb3.twins import Twins
+from train.learning.sb3.typical import LOAD_UNIT, typical_state
 
 Array = NDArray[Any]
 
@@ -39,6 +41,11 @@ class TrainingVecEnv(BladeVecEnv):
 
     ``reference``, J s, is the cost of an episode without control. If it is given, rewards are in its units, so that those of
     scenarios of very different loads have one size, and ``relative_cost`` is known.
+
+    With ``fitted`` slow modes what the belief shows is an estimate that ``refit`` makes of the true states met since it was last
+    called, see ``train.learning.sb3.fitted``.
+
+    Of ``twins`` the second half of the blades meets what the first half does, see ``train.learning.sb3.twins``.
     """
 
     def __init__(
@@ -57,6 +64,8 @@ class TrainingVecEnv(BladeVecEnv):
         approach: float = 1.0,
         shows_loads: bool = False,
         belief: Belief | None = None,
+        twins: bool = False,
+        fitted: int = 0,
     ) -> None:
         task = environment if isinstance(environment, Task) else None
         super().__init__(count, seed, **{"dtype": "float64", **({} if isinstance(environment, Task) else environment)})
@@ -68,7 +77,8 @@ class TrainingVecEnv(BladeVecEnv):
         self.seen = int(np.prod(self.envs.single_observation_space.shape or ()))
         """How many numbers of an observation sensors show; what follows is the state."""
         self._state_gain = 1.0 / typical_state(self.blades.task, reference) if shows_state else None
-        self._shows_loads, self.approach, self.belief = shows_loads, approach, belief
+        self._shows_loads, self.approach, self.belief, self._twins = shows_loads, approach, belief, twins
+        self._regression = Regression(self.blades.task, fitted) if fitted else None
         self._limits = normalised(self.blades.plant).voltage_limits
         self._voltages: Array = np.zeros((count, *(actions.shape or ())))
         width = self.seen + (0 if self._state_gain is None else len(self._state_gain) + 2 * shows_loads)
@@ -93,8 +103,11 @@ class TrainingVecEnv(BladeVecEnv):
 
     def reset(self) -> Array:
         """Begin episodes, out of step with one another unless the options say how much is ``elapsed``."""
-        steps = self.blades.task.steps
-        elapsed = np.arange(self.num_envs) * steps // self.num_envs // self.held * self.held
+        steps, apart = self.blades.task.steps, self.num_envs // (1 + self._twins)
+        elapsed = np.arange(self.num_envs) % apart * steps // apart // self.held * self.held
+        if self._twins:
+            seeded = np.random.default_rng(self._seed) if self._seed is not None else self.blades.np_random
+            self.blades.np_random, self._seed = Twins(seeded.bit_generator), None
         observations, info = self._begin({"elapsed": elapsed})
         self._energy, self._voltages[...] = info["energy"], 0.0
         return self._with_state(observations)
@@ -103,6 +116,9 @@ class TrainingVecEnv(BladeVecEnv):
         """Where the episodes are: an equally made batch continues from it bit for bit."""
         own = {"states": self._states.copy(), "energy": self._energy.copy(), "last_cost": self.last_cost}
         own["voltages"] = self._voltages.copy()
+        if self._regression is not None:
+            assert self.belief is not None
+            own["estimate"] = {**self._regression.state_dict(), "shown": self.belief.shown.copy()}
         return {"blades": self.blades.state_dict(), "history": self.envs.state_dict(), **own}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
@@ -112,6 +128,19 @@ class TrainingVecEnv(BladeVecEnv):
         self.envs.load_state_dict(state["history"])
         self._states, self._energy, self._voltages = (np.asarray(state[name]).copy() for name in ("states", "energy", "voltages"))
         self.last_cost = state["last_cost"]
+        if self._regression is not None:
+            self._regression.load_state_dict(state["estimate"])
+            self._show(np.asarray(state["estimate"]["shown"], np.float32))
+
+    def refit(self) -> None:
+        """Show the estimate by what was met."""
+        assert self._regression is not None
+        self._show(self._regression.fit())
+
+    def _show(self, shown: Array) -> None:
+        assert self.belief is not None
+        self.belief = self.belief._replace(shown=shown)
+        self.envs.show(self.belief)
 
     def _with_state(self, windows: Array) -> Array:
         if self._state_gain is None:
@@ -141,6 +170,8 @@ class TrainingVecEnv(BladeVecEnv):
             self._energy = info["energy"]
             self.last_cost -= float(rewards.mean()) * self._scale / self.held
         self._voltages[ended] = 0.0
+        if self._regression is not None:
+            self._regression.add(self.envs.estimate, self.blades.state, self.blades.coming_loads)
         return self._with_state(windows), (self._unit * total).astype(np.float32), ended, infos
 
     def _infos(self, before: list[dict[str, Any]], rows: Array, final: Array, terminated: Array) -> list[dict[str, Any]]:
@@ -149,20 +180,3 @@ class TrainingVecEnv(BladeVecEnv):
             last = np.append(final[row], self._states[row])  # the last state shown stands for that at the end
             infos[row] = {"terminal_observation": last, "TimeLimit.truncated": not terminated[row]}
         return infos
-
-
-LOAD_UNIT = np.float32(20.0)
-"""N/m, of the loads that a critic is shown."""
-
-
-def typical_state(task: Task, reference: float | None = None) -> Array:
-    """(n,) standard deviations, √J, under the white load and white voltages of a fifth of the drive limit.
-
-    Where an episode without control costs more than these amount to, ``reference`` in J s, they are enlarged to its measure.
-    """
-    held = sample(task.plant)
-    drive = held.B * (0.2 * drive_limit(task.plant))
-    excitation = drive @ drive.T + held.disturbance_input @ held.process_noise @ held.disturbance_input.T
-    variance = np.diag(solve_discrete_lyapunov(held.A, excitation))
-    energy = 0.5 * float(variance[: task.plant.blade_states].sum()) * task.steps * held.interval
-    return np.sqrt(variance * max(1.0, (reference or 0.0) / energy))

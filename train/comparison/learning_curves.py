@@ -1,0 +1,85 @@
+"""How the shipped agents of Stable-Baselines3 learnt: every training run, without exploration, on validation seeds.
+
+``python -m train.comparison.learning_curves`` writes ``learning.png`` into ``docs/images``, or the folder that is its argument.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.task import resolve_task
+from train.controllers.named import named
+from train.controllers.shipped import FOLDER as SHELF
+from train.controllers.shipped import Shipped, shipped
+from train.figures.figure import Curve, Look, Panel
+from train.figures.palette import LINES, NEUTRAL, colour
+from train.figures.paper import STYLE, draw_panel, handles, save
+from train.learning.validation import Validation
+from train.shared.curve import read_curve
+
+Array = NDArray[np.float64]
+
+FOLDER = Path("docs/images")
+AGENTS = ("ppo", "ppo-belief-idle", "ppo-belief", "sac")
+"""Whose runs are drawn, where they ship."""
+HIGHEST = 2.5
+"""Of J over that of LQG: what is above is a blade that shakes itself."""
+
+
+def reference_cost(scenario: str) -> float:
+    """LQG's J relative to no control on the seeds that ``Validation`` has."""
+    task = resolve_task(scenario=scenario)
+    controller: Any = named("lqg").build_for(task)
+    return Validation([task]).cost(controller)
+
+
+def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
+    """One for each agent and scenario: J over LQG's, against control intervals, a curve for each run."""
+    panels = []
+    for agent, scenario in sorted({(run.agent, run.scenario) for run in runs}, key=lambda pair: (AGENTS.index(pair[0]), pair[1])):
+        own = [run for run in runs if (run.agent, run.scenario) == (agent, scenario)]
+        reference = reference_cost(scenario)
+        curves = []
+        for place, run in enumerate(own):
+            seen = read_curve(run.folder)
+            look = Look(colour(place), width=1.2)
+            curves.append(Curve(seen[:, 1] / 1e6, seen[:, 2] / reference, f"seed {run.seed}", LINES[place % len(LINES)], look))
+        end = max(float(curve.x[-1]) for curve in curves)
+        curves.append(Curve(np.array([0.0, end]), np.ones(2), "LQG", "solid", Look(NEUTRAL, width=0.8)))
+        title = f"{agent}, {scenario}"
+        panels.append(Panel(title, "million intervals", "J / J of LQG", curves, x_limits=(0.0, end), y_limits=(0.8, HIGHEST)))
+    return panels
+
+
+def learning_curves(runs: Sequence[Shipped]) -> Any:
+    """The figure."""
+    import matplotlib.pyplot as plt
+
+    panels = learning_panels(runs)
+    columns = 3
+    rows = -(-len(panels) // columns)
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(rows, columns, figsize=(9.0, 2.7 * rows), layout="constrained", squeeze=False)
+        for axis, panel in zip(axes.ravel(), panels, strict=False):
+            draw_panel(axis, panel)
+        for axis in axes.ravel()[len(panels) :]:
+            axis.set_axis_off()
+        entries = handles(panels)
+        figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+    return figure
+
+
+def main(arguments: Sequence[str] = ()) -> None:
+    """Draw what ships."""
+    folder = Path(arguments[0]) if arguments else FOLDER
+    save(learning_curves([run for run in shipped(SHELF) if run.agent in AGENTS]), folder / "learning.png")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
