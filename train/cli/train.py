@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def train(
     agent: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe.")],
-    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: the benchmark's but the solids.")] = "nominal",
+    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all but those kept for judging.")] = "nominal",
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
     updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the training.")] = 0,

@@ -12,6 +12,9 @@ from train.shared import markdown
 from train.shared.columns import EVALUATION
 from train.shared.files import write_csv
 
+TRUE_STATE = "(true state)"
+"""In the names of laws that see it."""
+
 Tiers = Mapping[str, int] | None
 """Of controllers by their names, for a column of its own; None where there is none."""
 
@@ -39,8 +42,14 @@ def caption(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:
     return (
         f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]}), the same for every controller; "
         f"brackets: {100 * first.confidence:.0f} % bootstrap intervals over seeds. "
-        f"{tiers_told() if tiers else 'Controllers marked (true state) see what no sensor shows: bounds, not rivals.'}"
-    )
+        f"{tiers_told() if tiers else _told_of_state(evaluations)}"
+    ).rstrip()
+
+
+def _told_of_state(evaluations: Sequence[Evaluation]) -> str:
+    """Empty where nobody sees the true state."""
+    seen = any(TRUE_STATE in each.name for each in evaluations)
+    return f"Controllers marked {TRUE_STATE} see what no sensor shows: references, not rivals." if seen else ""
 
 
 def markdown_table(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:

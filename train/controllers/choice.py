@@ -41,7 +41,8 @@ def _is_folder(name: str) -> bool:
 def _by_name(name: str, task: Task, scenario: str, seed: int | None) -> Controller:
     own = set() if name in discover() else {each.scenario for each in shipped() if each.agent == name}
     if own:
-        return Trained(find_shipped(name, scenario if scenario in list(own) else "generalist", seed).folder).build(task)
+        home = "generalist" if scenario not in list(own) and "generalist" in own else scenario
+        return Trained(find_shipped(name, home, seed).folder).build(task)
     if seed is not None:
         raise Refused("trained_seed", seed, f"left out, for {name!r} is no agent that ships")
     return named(name).build_for(task)
