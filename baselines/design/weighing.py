@@ -245,7 +245,7 @@ class MultipleModel(Law):
 
     def _mix(self, transition: Array, weights: Array, new: Memory) -> None:
         """Weights (N, H) and states of what may follow, moved on already: all move by the same matrix."""
-        following = weights @ transition
+        following = np.maximum(weights @ transition, np.finfo(float).tiny)  # where nothing leads, no share of anything is zero
         shares = weights[:, :, None] * transition / following[:, None, :]
         states = self._motion.by_hypothesis(new.predicted)
         states[...] = np.matmul(shares.swapaxes(1, 2), states)

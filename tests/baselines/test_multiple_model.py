@@ -432,3 +432,18 @@ def test_parts_of_a_multiple_model_law_that_do_not_fit_are_told(plant):
     ):
         with pytest.raises(ValueError, match=f"^{words}"):
             replace(law, **changes)
+
+
+def test_hypotheses_that_nothing_leads_to_are_left_and_the_others_decide(small_plant):
+    """As where next to nothing does."""
+    those = [Hypothesis(small_plant(), **fault) for fault in ({}, {"actuator_gain": (0.0, 1.0)}, {"sensor_gain": (0.0, 1.0)})]
+    matrices = [
+        np.array([[share, 1.0 - share, 0.0], [share, 0.9 - share, 0.1], [share, 0.5 - share, 0.5]]) for share in (0.0, 1e-14)
+    ]
+    never, hardly = (multiple_model(those, transition=matrix, floor=0.0) for matrix in matrices)
+    one = other = None
+    for seen in 0.01 * np.random.default_rng(0).normal(size=(40, 3, 2)):
+        action, one = never.predict(seen, one)
+        wanted, other = hardly.predict(seen, other)
+        np.testing.assert_allclose(action, wanted, atol=1e-6)
+    assert (never.weights(one)[:, 0] < 1e-300).all() and np.abs(action).max() > 1e-3

@@ -15,6 +15,7 @@ from beamenv.configuration import FileName, checked
 from train.benchmark import benchmark
 from train.cli.app import app
 from train.cli.benchmark import default_folder
+from train.cli.quick import QUICK_SEEDS
 from train.shared.files import in_a_cell, write_csv
 
 SMALL = {"scenarios": ["nominal"], "controllers": ["lqg-load"], "seeds": 2, "environment": {"duration": 0.02}}
@@ -166,6 +167,8 @@ def test_the_folders_of_the_command_differ_from_the_full_benchmark_s():
     assert default_folder(("all",), (), 128, ()).as_posix() == "results/benchmark"
     assert default_folder(("delay",), (), 128, ()).as_posix() == "results/benchmark-delay"
     assert default_folder(("../my/gusty.toml",), (), 16, ()).as_posix() == "results/benchmark-gusty-16"
+    quick = [default_folder(names, (), seeds, (), quick=True).name for names in ((), ("all",)) for seeds in (QUICK_SEEDS, 128)]
+    assert quick == ["benchmark-quick", "benchmark-quick-128", "benchmark-quick-all", "benchmark-quick-all-128"]
     long = [default_folder(tuple("abcdefghij" * 3), (last,), 128, ()) for last in ("x", "y")]
     assert long[0] != long[1] and all(len(each.name) < 100 for each in long)
     assert default_folder(("../../evil",), (), 128, ()).parent.as_posix() == "results"

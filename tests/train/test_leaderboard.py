@@ -185,6 +185,7 @@ def test_the_digest_is_of_what_was_run_and_not_of_its_name(board, monkeypatch):
         (("--submit", "lqg", "--tier", "1"), "tier is 1, but must be 0, which lqg has"),
         (("--submit", "mine", "--tier", "3"), "tier is 3, but must be a whole number from 0 to 2"),
         (("--submit", "told", "--tier", "0"), "tier is 0, but must be at least 2, as the agent in 'told' says of itself"),
+        (("--submit", ""), "submit is '', but must be the folder of a trained agent"),
         (("--submit", "empty"), "folder = 'empty' must hold a trained agent"),
         (("--submit", "other/lqg"), "'lqg' is a controller that ships"),
         (("--submit", "mine.zip"), "submit = 'mine.zip' is not loaded: a model file can run any code"),
@@ -209,6 +210,16 @@ def test_what_is_no_entry_is_refused_in_one_sentence(arguments, words):
     refused(run(*arguments), words)
     after = sorted(str(path) for path in Path().rglob("*") if path.parts[:2] != ("results", "benchmark-submit-narrow"))
     assert [path for path in after if path != "results"] == before
+
+
+@pytest.mark.parametrize("seconds", ["NaN", "-5.0", "1e999", "true", '"long"'])
+def test_a_training_that_took_no_time_that_could_be_is_refused_before_anything_is_run(seconds, monkeypatch):
+    """The row could not be read again, nor any other of the leaderboard that it stands in."""
+    about = agent(Path("mine"), seconds=0.25) / "agent.json"
+    about.write_text(about.read_text().replace("0.25", seconds))
+    monkeypatch.setattr(submission, "of_listed", lambda *_, **__: pytest.fail("it was run"))
+    refused(run("--submit", "mine"), "agent.json': seconds is ")
+    assert not Path("results").exists()
 
 
 def test_a_declared_tier_is_the_entry_s():

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from baselines import Estimate
-from beamenv.configuration import Count, FileName, Flag, Refused, Text, checked
+from beamenv.configuration import Count, FileName, Flag, Number, Refused, Text, checked
+from beamenv.configuration.files import of_file
 from beamenv.knowledge import TRUTH
 from train.benchmark.bench import Setting
 from train.benchmark.campaign import Progress, checked_progress, jobs_of, of_listed, read_scenarios
@@ -21,6 +22,7 @@ from train.benchmark.table import BOUND, BenchmarkTable, Row
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import discover
 from train.controllers.policy_files import read_about
+from train.controllers.runs import AGENT
 from train.controllers.shipped import FOLDER
 from train.controllers.sources import Classical, ModelFile, Trained
 from train.controllers.tiers import LEARNT
@@ -72,6 +74,7 @@ def submit(
     tier = None if tier is None else checked("tier", tier, Count(0, TRUTH - 1))
     place, folder = as_path("leaderboard", leaderboard) / NAME, None if folder is None else as_path("folder", folder)
     listed = entrant(entry, tier, trusted)
+    trained = seconds(listed)
     settings = [Setting(name, each, SEEDS, ENVIRONMENT) for name, each in read_scenarios(SCENARIOS)[0].items()]
     mark = digest(*(job.digest().encode() for setting in settings for job in jobs_of(listed, setting)))
     check_file(place, "leaderboard")
@@ -82,7 +85,7 @@ def submit(
     table = of_listed(
         [*beside, listed], SCENARIOS, SEEDS, folder, jobs=jobs, arguments=ENVIRONMENT, progress=checked_progress(progress)
     )
-    row = Entry({**measured(table, listed), "training_seconds": seconds(listed), "digest": mark, **today()})
+    row = Entry({**measured(table, listed), "training_seconds": trained, "digest": mark, **today()})
     enter(place, row, overwrite)
     return row, table
 
@@ -98,7 +101,7 @@ def entrant(entry: str, tier: int | None, trusted: bool) -> ListedController:
     path = as_path("submit", entry)
     if path.suffix == MODEL:
         brought = _model(path, tier, trusted)
-    elif os.path.isdir(path):
+    elif os.path.isdir(entry):  # of the empty text the path would be the current folder
         brought = of_folder(path, tier)
     else:
         others = f"the folder of a trained agent, a model's {MODEL} file, or one of {', '.join([*known, *general])}"
@@ -158,11 +161,16 @@ def scores(table: BenchmarkTable, name: str) -> dict[str, float | None]:
 
 
 def seconds(listed: ListedController) -> float | None:
-    """Of training a run, the mean of what their files tell; None where they do not."""
-    abouts = [read_about(source.folder) for source in listed.everywhere.values() if isinstance(source, Trained)]
-    told = [about.get("seconds") for about in abouts]
-    known = [float(each) for each in told if isinstance(each, (int, float)) and not isinstance(each, bool)]
+    """Of training a run, the mean of what their files tell; None where they do not, ``ValueError`` for what is no duration."""
+    places = [source.folder for source in listed.everywhere.values() if isinstance(source, Trained)]
+    known = [each for place in places if (each := _seconds(place)) is not None]
     return _short(float(np.mean(known))) if known and len(known) == len(listed.everywhere) else None
+
+
+def _seconds(folder: Path) -> float | None:
+    about = read_about(folder)
+    with of_file(folder / AGENT):
+        return checked("seconds", about["seconds"], Number(ge=0.0)) if about.get("seconds") is not None else None
 
 
 def today() -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf, isfinite
 
 from beamenv.knowledge import TIERS
 from beamenv.scenarios.named import UNSEEN
@@ -118,37 +119,57 @@ def best(rows: Iterable[Row]) -> Row | None:
 
 def breadth(table: BenchmarkTable, agent: str) -> Finding:
     """In how many scenarios of a single fault a generalist's J is within 3 % of that of the best law told no more."""
-    excess = {name: each for name in table.scenarios if split_of(table, name) == SINGLE and (each := _excess(table, name, agent))}
-    beyond = [f"{name} {_percent(each - 1.0)}" for name, each in excess.items() if each > 1.0 + MARGIN]
-    least, most = (_percent(choose(excess.values()) - 1.0) for choose in (min, max))
+    excess = {
+        name: each
+        for name in table.scenarios
+        if split_of(table, name) == SINGLE and (each := _excess(table, name, agent)) is not None
+    }
+    beyond = [_beyond(table, name, agent, f"{100.0 * each:+.2f} %") for name, each in excess.items() if each > MARGIN]
+    finite = [each for each in excess.values() if isfinite(each)]
+    between = f" ({_percent(min(finite))} to {_percent(max(finite))})" if finite else ""
     sentence = (
         f"{agent}: within {100 * MARGIN:.0f} % of the J of the best law told no more, the least on these very seeds, in "
-        f"{len(excess) - len(beyond)} of {len(excess)} scenarios of a single fault ({least} to {most})"
+        f"{len(excess) - len(beyond)} of {len(excess)} scenarios of a single fault{between}"
     )
     return Finding(f"{sentence}{', but not in ' if beyond else ''}{', '.join(beyond)}.", not beyond)
 
 
 def steadiness(table: BenchmarkTable, agent: str) -> Finding:
     """In how many of the scenarios that nobody trains on at most 2 % of a generalist's episodes are unstable."""
-    rows = [row for name in UNSEEN if split_of(table, name) and (row := table.row(name, agent)) and row.measured]
-    shares = {row.scenario: row.estimates["unstable"].value for row in rows}
-    beyond = [f"{name} {100.0 * each:.0f} %" for name, each in shares.items() if each > UNSTEADY]
+    rows = {name: row for name in UNSEEN if split_of(table, name) and (row := table.row(name, agent))}
+    shares = {name: row.estimates["unstable"].value if row.measured else inf for name, row in rows.items()}
+    beyond = [_beyond(table, name, agent, f"{100.0 * each:.3g} %") for name, each in shares.items() if each > UNSTEADY]
     steady = f"{len(shares) - len(beyond)} of {len(shares)}"
     sentence = f"{agent}: at most {100 * UNSTEADY:.0f} % of episodes unstable in {steady} unseen scenarios"
     return Finding(f"{sentence}{', but not in ' if beyond else ''}{', '.join(beyond)}.", not beyond)
 
 
 def _excess(table: BenchmarkTable, scenario: str, agent: str) -> float | None:
-    """J of an agent over that of the best law told no more; None without either."""
+    """J of an agent over that of the best law told no more, less 1; None where either has nothing to do.
+
+    Infinite where the agent breaks a blade or could not be measured, whatever the law does, and −1 where only the law breaks one.
+    """
     row, law = table.row(scenario, agent), best(choice.laws(table.within(scenario)))
-    return None if row is None or law is None or not row.measured else row.mean_cost / law.mean_cost
+    if row is None or law is None:
+        return None
+    if isfinite(row.mean_cost) and row.mean_cost == law.mean_cost:
+        return 0.0
+    return row.mean_cost / law.mean_cost - 1.0 if isfinite(row.mean_cost) and law.mean_cost > 0.0 else inf
+
+
+def _beyond(table: BenchmarkTable, scenario: str, agent: str, by: str) -> str:
+    """Where a target is missed, and by how much or why."""
+    row = table.row(scenario, agent)
+    if row is None or not row.measured:
+        return f"{scenario} (not measured)"
+    return f"{scenario} {by}" if "inf" not in by else f"{scenario} (a blade breaks)"
 
 
 def _generalists(table: BenchmarkTable) -> Iterator[Finding]:
-    """What there is to say of each."""
-    names = dict.fromkeys(row.controller for row in table.rows if row.controller.endswith(GENERALIST) and row.measured)
+    """What there is to say of each agent that is told no more than the scenario's distribution."""
+    names = dict.fromkeys(row.controller for row in choice.agents(table.rows) if row.controller.endswith(GENERALIST))
     for name in names:
-        if any(_excess(table, each, name) for each in table.scenarios if split_of(table, each) == SINGLE):
+        if any(_excess(table, each, name) is not None for each in table.scenarios if split_of(table, each) == SINGLE):
             yield breadth(table, name)
         if any(table.row(each, name) for each in UNSEEN if split_of(table, each)):
             yield steadiness(table, name)

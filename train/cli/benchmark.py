@@ -88,12 +88,13 @@ def benchmark(
                 raise ValueError(f"{name} = {given} is of an entry on the leaderboard: name that with --submit.")
         if docs is not None:
             check_folder(docs, "docs")
-        usual = default_folder(scenario or (), controller or (), seeds or SEEDS, model or (), quick=quick, runs=runs)
+        episodes = seeds or (QUICK_SEEDS if quick else SEEDS)
+        usual = default_folder(scenario or (), controller or (), episodes, model or (), quick=quick, runs=runs)
         home = usual if folder is None else folder
         table = _measured(
             scenarios=scenario or (QUICK_SCENARIOS if quick else None),
             controllers=controller or (quick_controllers() if quick else None),
-            seeds=seeds or (QUICK_SEEDS if quick else SEEDS),
+            seeds=episodes,
             runs=runs or (QUICK_RUNS if quick else None),
             folder=home,
             models=model or (),
@@ -147,9 +148,10 @@ def default_folder(
     runs: int | None = None,
 ) -> Path:
     """``results/benchmark``, with what is chosen behind it: each choice has a folder of its own."""
-    scenarios = () if list(scenarios) == ["all"] else scenarios
+    scenarios = () if list(scenarios) == ["all"] and not quick else scenarios
+    usual = QUICK_SEEDS if quick else SEEDS
     chosen = [Path(name).stem if name.endswith(ENDINGS) else name for name in (*scenarios, *controllers)]
-    chosen += [path.stem for path in models] + ([] if seeds == SEEDS else [str(seeds)]) + ([] if runs is None else [f"{runs}-runs"])
+    chosen += [path.stem for path in models] + ([] if seeds == usual else [str(seeds)]) + ([] if runs is None else [f"{runs}-runs"])
     name = "-".join(["benchmark", *(["quick"] if quick else []), *chosen])
     short = name if len(name) <= LONGEST else f"{name[:LONGEST]}-{digest(name.encode())}"
     return Path("results", "".join(letter if letter.isalnum() or letter in "-_. " else "_" for letter in short))
