@@ -133,9 +133,10 @@ class FilterBank(ReadOnly):
         keys = step * codes + lost @ (1 << np.arange(lost.shape[1]))
         if (keys == keys[0]).all():
             return self._correction(divmod(int(keys[0]), codes), innovation)
-        most = int(np.bincount(keys).argmax())
+        found, counts = np.unique(keys, return_counts=True)
+        most = int(found[counts.argmax()])
         all_of_them = self._correction(divmod(most, codes), innovation)
-        for key in np.unique(keys[keys != most]).tolist():
+        for key in found[found != most].tolist():
             rows = np.flatnonzero(keys == key)
             for whole, part in zip(all_of_them, self._correction(divmod(key, codes), innovation[:, rows]), strict=True):
                 whole[:, rows] = part

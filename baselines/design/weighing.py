@@ -163,7 +163,8 @@ class MultipleModel(Law):
         reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(np.asarray(memory, dtype=np.float64))
         rows = rows if rows.strides[-1] == rows.itemsize else np.ascontiguousarray(rows)
         voltage, following = np.empty((len(rows), self.instruments.counts[1])), np.empty(rows.shape)
-        size = ceil(len(rows) / ceil(len(rows) * rows.shape[1] / max(AT_ONCE, rows.shape[1])))
+        N, order = rows.shape
+        size = max(1, ceil(N / max(1, ceil(N * order / max(AT_ONCE, order)))))
         for first in range(0, len(rows), size):
             some = slice(first, first + size)
             voltage[some] = self._decided(reading[some], self._held(rows[some]), self._held(following[some]))

@@ -100,3 +100,13 @@ def test_without_its_law_it_is_refused_in_a_sentence(plant, law, tmp_path):
     with pytest.raises(ValueError, match=r"law is None, but must be a multiple-model law with a fallback"):
         alone.beside(None)
     assert alone.beside(law).predict(np.zeros(4))[0].shape == (4,)
+
+
+def test_a_law_in_volts_is_refused(plant, law):
+    policy = actor_of(plant, law, 1.0).policy(0)
+    with pytest.raises(ValueError, match="but must be one of 4 readings and 4 voltages in normalised units"):
+        policy.beside(law.in_physical_units())
+
+
+def test_nobody_asks_and_nobody_is_answered(law):
+    assert law.predict(np.zeros((0, 4)))[0].shape == (0, 4)

@@ -28,9 +28,13 @@ class ModelsPolicy(Policy):
     """With a fallback, in normalised units."""
 
     def beside(self, law: Any) -> ModelsPolicy:
-        """The same policy with its law; ``ValueError`` for what is none."""
+        """The same policy with its law; ``ValueError`` for what is none, or acts in other units or on another drive."""
         if not isinstance(law, MultipleModel) or law.fallback is None:
             raise Refused("law", law, "a multiple-model law with a fallback")
+        m = len(self.lowest)
+        p = self.weights["weight_ih"].shape[1] - 3 * m - 1
+        if law.instruments.counts != (p, m) or not law.instruments.fit(physical_units=False):
+            raise Refused("law", law, f"one of {p} readings and {m} voltages in normalised units")
         return replace(self, law=law)
 
     @property

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from baselines.design.predicting import observed, remembered
 from beamenv.configuration import Refused
 
-_LARGEST = float(np.finfo(np.float32).max)
+_LARGEST = 1e30
+"""Of a reading: beyond it single precision, in which policies are, runs over."""
 Array = NDArray[np.floating[Any]]
 
 
@@ -48,7 +49,7 @@ class Policy:
         """
         readings = observed(observation, self.name)
         if np.abs(readings).max(initial=0.0) > _LARGEST:
-            raise Refused("observation", observation, f"no larger than {_LARGEST:.0e}, which single precision can hold")
+            raise Refused("observation", observation, f"no larger than {_LARGEST:.0e}, with which single precision can reckon")
         readings = readings.astype(np.float32)
         single = readings.ndim == 1
         rows = np.atleast_2d(readings)

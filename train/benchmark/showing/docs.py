@@ -21,8 +21,8 @@ those with a single fault, open ones, in which the blade changes within the epis
 for judging, which no agent trains on and no rule is tuned on. The controllers are files in `train/controllers/named/`: a further
 file in either folder adds a row or a column.
 
-[What learning buys](agents.md#what-learning-buys), and what it does not, is told beside the agents. `beamenv benchmark --submit mine`
-puts a trained agent of yours through every scenario and enters it on the [leaderboard](leaderboard.md).
+[What learning buys](agents.md#what-learning-buys), and what it does not, is told beside the agents. `beamenv benchmark --submit
+mine` puts a trained agent of yours through every scenario and enters it on the [leaderboard](leaderboard.md).
 """
 
 

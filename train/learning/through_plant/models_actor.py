@@ -65,7 +65,6 @@ class ModelsActor(Actor):
     def __init__(self, plant: Plant, settings: ActorSettings, runs: int, law: MultipleModel) -> None:
         super().__init__(plant, settings, runs)
         self.law, self._floor, self._window, self._misfit = law, law.floor, law.window, law.misfit
-        self._holds = bool(law.bank.holds.all())
         self._law = _tensors(law)
         p, m = self.sensors, self.voltages
         self.unit = GatedUnit(runs, p + 3 * m + 1, 3 * m, settings)
