@@ -105,6 +105,13 @@ def test_the_choice_is_the_least_of_each_scenario_and_of_all_together(tmp_path):
     assert read_choice(tmp_path / "none.json") is None
 
 
+def test_no_law_that_is_made_of_a_scenario_stands_for_laws_where_it_is_told_of_none(monkeypatch):
+    monkeypatch.setitem(KINDS, "multiple-model-general", ("adaptive", 1))
+    table = table_of({"none": 1.0, "lqg": 0.6, "told": 0.4, "multiple-model-general": 0.5, "agent-a": 0.55})
+    assert choose(table).laws == {"delay": "told"}
+    assert choose(table).everywhere == {"agents": "agent-a", "laws": "multiple-model-general"}
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [

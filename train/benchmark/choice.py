@@ -26,6 +26,10 @@ SCENARIOS = tuple(name for name in (*BENCHMARK, *OPEN) if name not in UNSEEN)
 
 KINDS = ("agents", "laws")
 
+SAME_EVERYWHERE = ("multiple-model-general",)
+"""Laws of tier 1 that take nothing of the scenario. What the others are told makes them what they are: where a scenario is kept for
+judging they are told of none, and are other laws than those that were measured."""
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:
@@ -58,13 +62,19 @@ def laws(rows: Iterable[Row]) -> list[Row]:
     return [row for row in rows if row.measured and row.kind not in ("learned", "own") and row.tier <= LEARNT]
 
 
+def is_same_everywhere(row: Row) -> bool:
+    """Whether a controller is no other where it is told nothing of the scenario."""
+    return row.tier == 0 or (row.everywhere if row.kind == "learned" else row.controller in SAME_EVERYWHERE)
+
+
 GROUPS = {"agents": agents, "laws": laws}
 
 
 def choose(table: BenchmarkTable) -> Choice:
     """Of a table on validation seeds: in each scenario the least mean J.
 
-    Elsewhere the least interquartile mean over these of J / J₀, of who was measured in all of them.
+    Elsewhere the least interquartile mean over these of J / J₀, of who was measured in all of them and is the same in all of them:
+    agents, laws of tier 0, and ``SAME_EVERYWHERE``.
     """
     found: dict[str, dict[str, str]] = {kind: {} for kind in GROUPS}
     everywhere = {}
@@ -72,7 +82,7 @@ def choose(table: BenchmarkTable) -> Choice:
         rows = {name: group(table.within(name)) for name in table.scenarios}
         found[kind] = {name: min(each, key=lambda row: row.mean_cost).controller for name, each in rows.items() if each}
         ratios: dict[str, list[float]] = {}
-        for row in (row for each in rows.values() for row in each):
+        for row in (row for each in rows.values() for row in each if is_same_everywhere(row)):
             ratios.setdefault(row.controller, []).append(row.estimates["relative_cost"].value)
         means = {name: statistics.interquartile_mean(np.array(each)) for name, each in ratios.items() if len(each) == len(rows)}
         if means:

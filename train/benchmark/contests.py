@@ -15,7 +15,8 @@ AHEAD, BEHIND, LEVEL = "ahead", "behind", "not told apart"
 
 RULE = (
     "Agents against laws: one of each stands for its kind, chosen on validation seeds, which are others than these, by the least "
-    "mean J there; in scenarios that nothing may be chosen on, by the least interquartile mean of J / J₀ over those that may. "
+    "mean J there; in scenarios that nothing may be chosen on, by the least interquartile mean of J / J₀ over those that may, of "
+    "who is the same in all: not of laws made of what they are told of a scenario, for they are told nothing there. "
     "Where nobody was chosen, it is the least J on these very seeds, in brackets, which favours it. The agent is ahead if its J is "
     "below that of every law told no more, each by the paired interval, and behind if J of the chosen law is below that of every "
     "agent."
