@@ -151,6 +151,8 @@ def seen(value, depth=0) -> Any:
         return type(value), bytes(value)
     if isinstance(value, (int, float, complex, str, bytes, np.generic, type(None))):
         return type(value), repr(value)
+    if isinstance(value, slice):
+        return "slice", (value.start, value.stop, value.step)
     if isinstance(value, (set, frozenset)):
         return type(value), frozenset(map(repr, value))
     return type(value), id(value)

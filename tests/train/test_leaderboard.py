@@ -3,7 +3,6 @@
 import csv
 import json
 import shutil
-import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -150,13 +149,17 @@ def test_a_row_waits_for_who_is_at_work_there_but_not_for_ever(board, monkeypatc
         enter(board, entry_like(board, "yours"), overwrite=False)
 
 
+def interrupted(*_):
+    raise KeyboardInterrupt
+
+
 @pytest.mark.parametrize("last", ["write_whole", "write_csv"])
 def test_an_entry_that_was_interrupted_is_entered_the_next_time(last, board, monkeypatch):
     before, mine = board.read_text(), entry_like(board, "mine")
     begun = board.with_name(f".{NAME}.01234567.part")
     begun.write_text("name,tier")
     with monkeypatch.context() as patch:
-        patch.setattr(leaderboard, last, lambda *_: signal.raise_signal(signal.SIGINT))
+        patch.setattr(leaderboard, last, interrupted)
         with pytest.raises(KeyboardInterrupt):
             enter(board, mine, overwrite=False)
     assert board.read_text() == before
