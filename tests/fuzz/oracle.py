@@ -145,14 +145,12 @@ def seen(value, depth=0) -> Any:
         return type(value), tuple(
             (each.name, seen(getattr(value, each.name, None), depth + 1)) for each in fields(value) if each.compare or each.init
         )
-    if isinstance(value, PurePath):
-        return "path", str(value)
+    if isinstance(value, (PurePath, slice)):
+        return "text", str(value)
     if isinstance(value, (bytearray, memoryview)):
         return type(value), bytes(value)
     if isinstance(value, (int, float, complex, str, bytes, np.generic, type(None))):
         return type(value), repr(value)
-    if isinstance(value, slice):
-        return "slice", (value.start, value.stop, value.step)
     if isinstance(value, (set, frozenset)):
         return type(value), frozenset(map(repr, value))
     return type(value), id(value)
