@@ -81,16 +81,22 @@ def recipe_table() -> str:
 
 def shipped_table() -> str:
     """The policies in ``train/controllers/trained``."""
-    from train.controllers.shipped import shipped
+    from train.controllers.policy_files import read_about
+    from train.controllers.shipped import Shipped, shipped
     from train.shared.markdown import markup_table
 
-    seeds: dict[tuple[str, str], list[str]] = {}
+    runs: dict[tuple[str, str], list[Shipped]] = {}
     for each in shipped():
-        seeds.setdefault((each.agent, each.scenario), []).append(str(each.seed))
-    if not seeds:
+        runs.setdefault((each.agent, each.scenario), []).append(each)
+    if not runs:
         return "This copy holds no trained agent."
-    rows = [[f"`{agent}`", scenario, ", ".join(those)] for (agent, scenario), those in seeds.items()]
-    return markup_table(["agent", "trained on", "seeds"], rows)
+    rows = []
+    for (agent, scenario), those in runs.items():
+        abouts = [read_about(each.folder) for each in those]
+        longest = max(float(about["seconds"]) for about in abouts)
+        updates = " to ".join(dict.fromkeys(str(choose(int(about["updates"]) for about in abouts)) for choose in (min, max)))
+        rows.append([f"`{agent}`", scenario, ", ".join(str(each.seed) for each in those), updates, f"{longest:.0f}"])
+    return markup_table(["agent", "trained on", "runs", "updates", "s on the clock"], rows)
 
 
 def command_line() -> str:
