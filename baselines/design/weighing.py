@@ -142,8 +142,7 @@ class MultipleModel(Law):
         if self.fallback is None:
             raise ValueError(f"{self.name} has no fallback.")
         own = self._held(memory).own
-        asked = own @ self.fallback.state_gain.T + self.instruments.read(observation) @ self.fallback.measurement_gain.T
-        return self.instruments.drive(self.instruments.limit(asked))
+        return self.instruments.drive(self._of_fallback(self.fallback, own, self.instruments.read(observation)))
 
     def overruled(self, memory: Array, change: Array) -> Array:
         """The memory (N, order) that ``decide`` gave, once actions were applied that differ from its own by ``change`` (N, m)."""
@@ -239,10 +238,13 @@ class MultipleModel(Law):
 
     def _in_charge(self, fallback: LinearController, old: Memory, new: Memory, reading: Array, voltage: Array) -> Array:
         """(N, m), V: the fallback's voltages where it is in charge; it remembers what is applied whoever is."""
-        own = self.instruments.limit(old.own @ fallback.state_gain.T + reading @ fallback.measurement_gain.T)
-        voltage = np.where(new.astray[:, None] > 0.0, own, voltage)
+        voltage = np.where(new.astray[:, None] > 0.0, self._of_fallback(fallback, old.own, reading), voltage)
         new.own[...] = old.own @ fallback.transition.T + reading @ fallback.measurement_input.T + voltage @ fallback.voltage_input.T
         return voltage
+
+    def _of_fallback(self, fallback: LinearController, own: Array, reading: Array) -> Array:
+        """(N, m), V: what it asks for by its memory and readings (N, p), A, as the drive lets it through."""
+        return self.instruments.limit(own @ fallback.state_gain.T + reading @ fallback.measurement_gain.T)
 
     def _mix(self, transition: Array, weights: Array, new: Memory) -> None:
         """Weights (N, H) and states of what may follow, moved on already: all move by the same matrix."""

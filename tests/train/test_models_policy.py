@@ -10,9 +10,11 @@ from baselines import Hypothesis, multiple_model, reference_lqg
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import normalised
+from beamenv.task import resolve_task
 from train.controllers.policy_files import load_policy, save_policy
 from train.learning.through_plant.actors import ActorSettings
 from train.learning.through_plant.models_actor import ModelsActor
+from train.learning.through_plant.windows import Windows
 
 
 @pytest.fixture(scope="module", name="plant")
@@ -110,3 +112,26 @@ def test_a_law_in_volts_is_refused(plant, law):
 
 def test_nobody_asks_and_nobody_is_answered(law):
     assert law.predict(np.zeros((0, 4)))[0].shape == (0, 4)
+
+
+def test_a_step_against_the_gradient_through_plant_and_filters_lowers_the_cost(plant, law):
+    """Of one and the same window; the law's filters are part of the loop that is differentiated."""
+
+    def cost_of(actor):
+        windows = Windows(resolve_task(duration=0.05), 8, 50, np.random.default_rng(4))
+        cost, left = windows.unroll(actor)
+        return (cost + 0.05 * left).sum()
+
+    actor = actor_of(plant, law, 0.3)
+    before = cost_of(actor)
+    before.backward()
+    gradients = [weights.grad for weights in actor.parameters()]
+    assert all(torch.isfinite(each).all() for each in gradients)
+    length = torch.sqrt(sum((each**2).sum() for each in gradients))
+    assert length > 0.0
+    with torch.no_grad():
+        for weights in actor.parameters():
+            weights -= 1e-2 * weights.grad / length
+        after = cost_of(actor)
+    assert after < before
+    assert float((before - after).detach()) == pytest.approx(1e-2 * float(length), rel=0.2)

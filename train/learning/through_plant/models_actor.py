@@ -15,6 +15,9 @@ from train.controllers.models_policy import SHARPNESS, ModelsPolicy
 from train.learning.through_plant.actors import Actor, ActorSettings, GatedUnit
 from train.learning.through_plant.windows import Memory
 
+Steps = list[tuple[int, Tensor]]
+"""Instants, as far as gains differ, and the blades that are at them."""
+
 
 class Remembered(NamedTuple):
     """Of N blades, as ``baselines.design.weighing.Memory`` has it, by rows of numbers."""
@@ -85,19 +88,10 @@ class ModelsActor(Actor):
         expected, quiet, estimate = torch.split(moved, [p, m, s], dim=2)
         innovation = taken - torch.clamp(expected, -law.full_scale, law.full_scale)
         lost = (taken == old.reading) & (taken.abs() < law.full_scale) & (old.instant > 0.0)
-        whitened, squared, density = self._corrected(innovation, lost, old.instant[:, 0])
-        with torch.no_grad():
-            evidence = old.evidence + density.T
-            weights = torch.softmax(law.log_prior + evidence, dim=1).clamp(min=self._floor)
-            weights = weights / weights.sum(dim=1, keepdim=True)
-            evidence = weights.log() - law.log_prior
-            fading = 1.0 - 1.0 / self._window
-            squares = fading * old.squared + squared.T
-            count = fading * old.readings + (~lost).sum(dim=1, keepdim=True)
-            misfit = (weights * squares).sum(dim=1, keepdim=True)
-            astray = torch.maximum(old.astray, ((misfit > self._misfit * count) & (old.instant >= self._window)).float())
-            fit = torch.tanh(SHARPNESS * torch.log(misfit / count.clamp(min=1.0) + 1e-3))
-        carried = self._carried(whitened, old.instant[:, 0])
+        steps = self._steps(old.instant[:, 0])
+        whitened, squared, density = self._corrected(innovation, lost, steps)
+        weights, squares, count, astray, fit = self._judged(old, squared, density, lost)
+        carried = self._carried(whitened, steps)
         asked = carried[..., :m] - quiet - torch.matmul(old.before, law.voltage_gain.transpose(1, 2))
         volts = (weights.T[..., None] * torch.clamp(asked, law.limits[0], law.limits[1])).sum(dim=0)
         own = old.own @ law.own_gain + taken @ law.own_feedthrough
@@ -115,7 +109,7 @@ class ModelsActor(Actor):
         kept = Remembered(
             hidden,
             predicted,
-            evidence,
+            weights.log() - law.log_prior,
             squares,
             own,
             applied[:, : old.before.shape[1]],
@@ -127,15 +121,27 @@ class ModelsActor(Actor):
         )
         return voltages, tuple(kept)
 
-    def _steps(self, instant: Tensor) -> list[tuple[int, Tensor]]:
+    @torch.no_grad()
+    def _judged(self, old: Remembered, squared: Tensor, density: Tensor, lost: Tensor) -> tuple[Tensor, ...]:
+        """Weights, fading squares and how many, whether none fits any more, and how well any does: all of it counts as given."""
+        weights = torch.softmax(self._law.log_prior + (old.evidence + density.T), dim=1).clamp(min=self._floor)
+        weights = weights / weights.sum(dim=1, keepdim=True)
+        fading = 1.0 - 1.0 / self._window
+        squares = fading * old.squared + squared.T
+        count = fading * old.readings + (~lost).sum(dim=1, keepdim=True)
+        misfit = (weights * squares).sum(dim=1, keepdim=True)
+        astray = torch.maximum(old.astray, ((misfit > self._misfit * count) & (old.instant >= self._window)).float())
+        return weights, squares, count, astray, torch.tanh(SHARPNESS * torch.log(misfit / count.clamp(min=1.0) + 1e-3))
+
+    def _steps(self, instant: Tensor) -> Steps:
         """Which of the gains are whose: blades of one window share an instant."""
         step = instant.clamp(max=len(self._law.onward) - 1).long()
         return [(int(k), torch.nonzero(step == k)[:, 0]) for k in torch.unique(step)]
 
-    def _corrected(self, innovation: Tensor, lost: Tensor, instant: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    def _corrected(self, innovation: Tensor, lost: Tensor, steps: Steps) -> tuple[Tensor, Tensor, Tensor]:
         law, whole = self._law, torch.empty_like(innovation)
         density = torch.empty(innovation.shape[:2])
-        for k, rows in self._steps(instant):
+        for k, rows in steps:
             whole = whole.index_copy(1, rows, torch.bmm(innovation[:, rows], law.inverse[k]))
             density[:, rows] = law.log_determinant[k][:, None]
         if len(law.left) and bool(lost.any()):
@@ -147,9 +153,9 @@ class ModelsActor(Actor):
         squared = (innovation.detach() * whole.detach()).sum(dim=2)
         return whole, squared, -0.5 * (squared + density)
 
-    def _carried(self, whitened: Tensor, instant: Tensor) -> Tensor:
+    def _carried(self, whitened: Tensor, steps: Steps) -> Tensor:
         carried = torch.empty((*whitened.shape[:2], self._law.onward.shape[-1]))
-        for k, rows in self._steps(instant):
+        for k, rows in steps:
             carried = carried.index_copy(1, rows, torch.bmm(whitened[:, rows], self._law.onward[k]))
         return carried
 
