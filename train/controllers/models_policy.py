@@ -19,8 +19,8 @@ SHARPNESS = 0.3
 class ModelsPolicy(Policy):
     """Weighs a multiple-model law and its fallback and adds to them: u = clip((1 + g) ∘ u_models + c ∘ u_fallback + r).
 
-    [g, c, r] is the tanh output of a gated recurrent unit that sees the readings, the voltages held before, what both laws ask for
-    and how well any model fits. Its memory is [hidden units | the law's | voltages].
+    [g, c, r] is the tanh output of a gated recurrent unit that sees the readings, the voltages held before, what both laws ask for,
+    how well any model fits and how likely each is. Its memory is [hidden units | the law's | voltages].
     """
 
     kind = "multiple-model-residual"
@@ -32,7 +32,7 @@ class ModelsPolicy(Policy):
         if not isinstance(law, MultipleModel) or law.fallback is None:
             raise Refused("law", law, "a multiple-model law with a fallback")
         m = len(self.lowest)
-        p = self.weights["weight_ih"].shape[1] - 3 * m - 1
+        p = self.weights["weight_ih"].shape[1] - 3 * m - 1 - law.bank.counts[0]
         if law.instruments.counts != (p, m) or not law.instruments.fit(physical_units=False):
             raise Refused("law", law, f"one of {p} readings and {m} voltages in normalised units")
         return replace(self, law=law)
@@ -56,7 +56,8 @@ class ModelsPolicy(Policy):
         cautious = law.cautious(seen, own)
         asked, own = law.decide(seen, own)
         fit = np.tanh(SHARPNESS * np.log(law.misfits(own) + 1e-3))[:, None]
-        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked, cautious, fit])
+        known = [voltages, asked, cautious, fit, law.weights(own)]
+        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), *known])
         hidden, output = gated_unit(self.weights, inputs.astype(np.float32), hidden.astype(np.float32))
         weight, share, added = np.split(output, 3, axis=1)
         action = np.clip((1.0 + weight) * asked + share * cautious + added, self.lowest, self.highest)
