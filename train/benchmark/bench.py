@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import gymnasium as gym
@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 import beamenv
 from baselines import Episodes, roll_out
 from baselines.evaluation.metrics import cost_without_control, settling_band
+from beamenv.knowledge import on_validation_bank
 from beamenv.scenarios.scenario import Scenario
+from beamenv.task import Task
 from train.controllers.named import named
 from train.shared.held_out import held_out, validation
 
@@ -31,12 +33,17 @@ class Setting:
     arguments: str = "{}"
     """Of the environment besides, as JSON."""
     validation: bool = False
-    """Whether the seeds are those that choose."""
+    """Whether the seeds and the bank of plants are those that choose."""
 
     @property
     def episodes(self) -> range:
         """Their seeds."""
         return validation(self.seeds) if self.validation else held_out(self.seeds)
+
+    @property
+    def played(self) -> Scenario:
+        """The scenario with its bank of plants."""
+        return on_validation_bank(self.scenario) if self.validation else self.scenario
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +51,8 @@ class Blades:
     """The blades of a setting, and what they do without control."""
 
     envs: Any
+    task: Task
+    """What controllers are built for: they are told of the scenario alike, whichever of its banks moves."""
     reference: Episodes
     uncontrolled: Array
     """(N,), J s: J₀."""
@@ -74,6 +83,7 @@ class Bench:
 
 def _made(setting: Setting) -> Blades:
     arguments = {"dtype": "float64", **json.loads(setting.arguments)}
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.scenario, **arguments)
-    reference = roll_out(named("none").build_for(envs.unwrapped.task), envs, setting.episodes)
-    return Blades(envs, reference, cost_without_control(reference), settling_band(reference))
+    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.played, **arguments)
+    task = replace(envs.unwrapped.task, told_scenario=setting.scenario) if setting.validation else envs.unwrapped.task
+    reference = roll_out(named("none").build_for(task), envs, setting.episodes)
+    return Blades(envs, task, reference, cost_without_control(reference), settling_band(reference))

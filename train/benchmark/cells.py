@@ -91,7 +91,7 @@ def measured(job: Job, bench: Bench) -> Cell:
 
 
 def _measured(job: Job, blades: Blades) -> Cell:
-    controller = job.source.build(blades.envs.unwrapped.task)
+    controller = job.source.build(blades.task)
     if not blades.uncontrolled.all():
         raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")
     if not np.isfinite(blades.uncontrolled).all():

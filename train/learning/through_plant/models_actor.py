@@ -68,6 +68,7 @@ class ModelsActor(Actor):
 
     def __init__(self, plant: Plant, settings: ActorSettings, runs: int, law: MultipleModel) -> None:
         super().__init__(plant, settings, runs)
+        law = law.in_single_precision()
         self.law, self._floor, self._window, self._misfit = law, law.floor, law.window, law.misfit
         self._law = _tensors(law)
         p, m = self.sensors, self.voltages
