@@ -24,8 +24,8 @@ AT_ONCE = 2**20
 
 Numbers = NDArray[np.floating[Any]]
 Revision = Callable[[slice, Numbers, Numbers, Numbers, Numbers], Numbers]
-"""Actions (N, m) in place of those that a law asks for, of the blades of a slice: from its own (N, m), those of its fallback (N, m),
-how badly any hypothesis fits (N,), as ``misfits`` has it, and how likely each is (N, H)."""
+"""Actions (N, m) in place of those that a law asks for, of the blades of a slice: from its own (N, m), its fallback's (N, m),
+how badly any hypothesis fits (N,) as ``misfits`` has it, and how likely each is (N, H)."""
 
 
 class Memory(NamedTuple):
