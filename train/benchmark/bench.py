@@ -66,6 +66,7 @@ class Bench:
     def __init__(self) -> None:
         self._setting: Setting | None = None
         self._blades: Blades | None = None
+        self._envs: dict[int, Any] = {}
 
     def blades(self, setting: Setting) -> Blades:
         """Those of a setting, the last ones again where it is the same."""
@@ -74,16 +75,28 @@ class Bench:
             self._setting, self._blades = setting, _made(setting)
         return self._blades
 
+    def envs(self, setting: Setting, times: int) -> Any:
+        """A batch of so many blades for each seed of a setting."""
+        self.blades(setting)
+        if times not in self._envs:
+            self._envs[times] = _envs(setting, times)
+        return self._envs[times]
+
     def close(self) -> None:
         """Let go of the blades."""
-        if self._blades is not None:
-            self._blades.envs.close()
+        for each in (*self._envs.values(), *([] if self._blades is None else [self._blades.envs])):
+            each.close()
         self._setting = self._blades = None
+        self._envs = {}
+
+
+def _envs(setting: Setting, times: int = 1) -> Any:
+    arguments = {"dtype": "float64", **json.loads(setting.arguments)}
+    return gym.make_vec(beamenv.ENV_ID, num_envs=times * setting.seeds, scenario=setting.played, **arguments)
 
 
 def _made(setting: Setting) -> Blades:
-    arguments = {"dtype": "float64", **json.loads(setting.arguments)}
-    envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=setting.seeds, scenario=setting.played, **arguments)
+    envs = _envs(setting)
     task = replace(envs.unwrapped.task, told_scenario=setting.scenario) if setting.validation else envs.unwrapped.task
     reference = roll_out(named("none").build_for(task), envs, setting.episodes)
     return Blades(envs, task, reference, cost_without_control(reference), settling_band(reference))
