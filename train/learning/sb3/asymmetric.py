@@ -9,6 +9,7 @@ from typing import Any
 
 from gymnasium.spaces import Space
 from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
+from sb3_contrib.crossq.policies import CrossQPolicy
 from sb3_contrib.tqc.policies import TQCPolicy
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -106,6 +107,10 @@ class _Apart:
 
 class AsymmetricSACPolicy(_Apart, SACPolicy):
     """SB3's policy, actor and critics apart."""
+
+
+class AsymmetricCrossQPolicy(_Apart, CrossQPolicy):
+    """sb3-contrib's policy, actor and critics apart."""
 
 
 class AsymmetricTQCPolicy(_Apart, TQCPolicy):

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import torch
-from sb3_contrib import TQC
+from sb3_contrib import TQC, CrossQ
 from stable_baselines3 import SAC
 from stable_baselines3.common.type_aliases import TrainFreq, TrainFrequencyUnit
 from torch import nn
@@ -20,8 +20,9 @@ from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Sh
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
-from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
+from train.learning.sb3.asymmetric import AsymmetricCrossQPolicy, AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
+from train.learning.sb3.least_squares import LeastSquaresPolicy, LeastSquaresSAC
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
@@ -43,6 +44,16 @@ class OffPolicySettings:
     """Of the estimate or the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
+    actor: Annotated[str, Choice(("layers", "linear"))] = "layers"
+    """Two hidden layers, or none."""
+    critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
+    """Two layers on the true state and the action, or a quadratic of these and the coming load in closed form, for one scenario."""
+    samples: Annotated[int, SAMPLES] = 16_384
+    """To which a quadratic critic is fitted in an update."""
+    critic_memory: Share = 0.9
+    """Share that earlier fits keep in a quadratic critic."""
+    damping: Annotated[float, RATE] = 1e-8
+    """Adam's ε: gradients far below it, of what hardly moves, change weights in proportion and not by the whole rate."""
     held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms."""
     approach: Annotated[float, RATE] = 1.0
@@ -63,6 +74,8 @@ class OffPolicySettings:
     """Adam's, falling linearly to zero over the training."""
     discount: Annotated[float, RATE] = 0.95
     """γ: 20 actions, 40 ms."""
+    look_ahead: Annotated[int, INSTANTS] = 1
+    """Actions whose rewards are summed before critics are asked."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
     reward_unit: Positive = 0.04
@@ -103,32 +116,44 @@ class OffPolicyTraining(SB3Training):
     name: ClassVar[str]
 
     def __init__(self, tasks: Sequence[Task], settings: OffPolicySettings, seed: int, teacher: Policy | None = None) -> None:
-        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit)
+        quadratic = settings.critic == "quadratic"
+        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit, shows_loads=len(tasks) == 1)
         voltages = int(np.prod(envs.action_space.shape or ()))
-        model = self.algorithm(
-            self.networks,
+        algorithm, networks, made = self.algorithm, self.networks, {}
+        further = {} if algorithm is CrossQ else {"tau": settings.target_rate}
+        if quadratic:
+            algorithm, networks = LeastSquaresSAC, LeastSquaresPolicy
+            made = {"modes": envs.blades.plant.blade_states // 2, "crossed": envs.seen if settings.sees == "belief" else 2*settings.modes + 2 + voltages}
+        model = algorithm(
+            networks,
             envs,
             learning_rate=lambda remaining: settings.learning_rate * max(remaining, 1e-3),
             buffer_size=settings.buffer,
             learning_starts=0,
             batch_size=settings.batch,
-            tau=settings.target_rate,
+            n_steps=settings.look_ahead,
             gamma=settings.discount,
             ent_coef=f"auto_{settings.temperature}",
             target_entropy=voltages * (0.5 * math.log(2.0 * math.pi * math.e) + settings.exploration),
             policy_kwargs={
                 "seen": envs.seen,
                 "actor_gain": settings.input_gain,
-                "net_arch": {"pi": [settings.units] * 2, "qf": [settings.critic_units] * 2},
+                "net_arch": {"pi": [settings.units] * 2 * (settings.actor == "layers"), "qf": [settings.critic_units] * 2},
                 "activation_fn": _ACTIVATIONS[settings.activation],
+                "optimizer_kwargs": {"eps": settings.damping},
+                **made,
             },
             seed=seed,
             device="cpu",
+            **further,
         )
         with torch.no_grad():  # it begins as PPO does: hardly any voltage but that of exploration
-            model.actor.mu.weight *= 0.01
-            model.actor.log_std.weight *= 0.01
+            model.actor.mu.weight *= 0.01 * (settings.actor == "layers")
+            model.actor.log_std.weight *= 0.01 * (settings.actor == "layers")
             model.actor.log_std.bias.fill_(settings.exploration)
+            model.actor.mu.bias.fill_(0.0)
+        if quadratic:
+            model.samples, model.memory = settings.samples, settings.critic_memory
         if teacher is not None:
             check_clonable(settings)
             clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)
@@ -153,8 +178,12 @@ class OffPolicyTraining(SB3Training):
         memory = self.model.replay_buffer
         self.model.collect_rollouts(self.envs, self._callback, frequency, memory)
         if memory.size() * self.envs.num_envs >= self.settings.first:
-            self._free(False)
-            self.model.train(self.settings.critic_steps, self.settings.batch)
+            if self.settings.critic == "quadratic":
+                self.model.fit()
+                if self.updates < self.settings.critic_first: return
+            else:
+                self._free(False)
+                self.model.train(self.settings.critic_steps, self.settings.batch)
             self._free(self.updates >= self.settings.critic_first)
             self.model.train(self.settings.gradient_steps, self.settings.batch)
 
@@ -191,3 +220,9 @@ class TQCTraining(OffPolicyTraining):
     """Critics of quantiles, of which the highest are cut off."""
 
     algorithm, networks, name = TQC, AsymmetricTQCPolicy, "TQC"
+
+
+class CrossQTraining(OffPolicyTraining):
+    """Critics that normalise their layers by batches, and no targets (Bhatt et al. 2024)."""
+
+    algorithm, networks, name = CrossQ, AsymmetricCrossQPolicy, "CrossQ"

@@ -46,6 +46,12 @@ class PPOSettings:
     """Without voltages, or, for a linear actor on the belief, from the gains of LQG with load estimate."""
     critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
     """Two tanh layers on the true state, or a quadratic of it and of the coming load in closed form, for one scenario."""
+    critic_memory: Share = 0.7
+    """Share that earlier rollouts keep in a quadratic critic."""
+    critic_lags: Annotated[bool, Flag()] = False
+    """Whether a quadratic critic judges a rollout before it is fitted to it: what it is fitted to it explains, good luck and good actions alike."""
+    averaging: Share = 0.0
+    """Share that the earlier average keeps in that of the weights after an update, which is what is validated and kept."""
     twins: Annotated[bool, Flag()] = False
     """Blades in pairs that meet the same, one's advantages being taken from the other's: for a quadratic critic."""
     held: Annotated[int, INSTANTS] = 4
@@ -156,7 +162,7 @@ class OnPolicyTraining(SB3Training):
         return {}
 
     def _callbacks(self) -> list[BaseCallback]:
-        return [FitCritic(self.settings.twins)] if self.settings.critic == "quadratic" else []
+        return [FitCritic(self.settings.twins, self.settings.critic_memory, self.settings.critic_lags)] if self.settings.critic == "quadratic" else []
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}
@@ -165,6 +171,10 @@ class OnPolicyTraining(SB3Training):
         self.model.collect_rollouts(self.envs, self._callback, self.model.rollout_buffer, self.model.n_steps)
         if self.settings.critic == "network" or self.updates >= self.settings.critic_first:  # the quadratic has been fitted
             self.model.train()
+            self._average()
+
+    def _average(self) -> None:
+        """Nothing."""
 
 
 class PPOTraining(OnPolicyTraining):
@@ -186,7 +196,16 @@ class PPOTraining(OnPolicyTraining):
     def _held_back(self) -> list[nn.Parameter]:
         return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
 
+    _averaged: Any = None
+
+    def _average(self) -> None:
+        now = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
+        share = self.settings.averaging
+        if share and self._averaged is not None:
+            now = {name: share * self._averaged[name] + (1.0 - share) * each for name, each in now.items()}
+        self._averaged = now if share else None
+
     def policy(self) -> Policy:
         """The actor's mean as arrays."""
-        weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
+        weights = self._averaged or layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
         return self._as_policy("PPO", weights, asdict(self.settings))
