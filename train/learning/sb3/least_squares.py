@@ -17,7 +17,7 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import Tensor, nn
 
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy
-from train.learning.sb3.quadratic import RIDGE, Quadratic
+from train.learning.sb3.quadratic import MODES, Quadratic
 
 Array = NDArray[Any]
 
@@ -25,10 +25,10 @@ Array = NDArray[Any]
 class ActionValues(nn.Module):
     """Q = φᵀw of `Quadratic` features of [action | what ``told`` begins: belief or voltages, true state, load]."""
 
-    def __init__(self, width: int, actions: int, modes: int, told: int, crossed: int) -> None:
+    def __init__(self, width: int, actions: int, modes: int, told: int, crossed: int, low: int = MODES) -> None:
         super().__init__()
         self.told = told
-        self.quadratic = Quadratic(actions + width - told, modes, actions + crossed)
+        self.quadratic = Quadratic(actions + width - told, modes, actions + crossed, low=low)
 
     def features(self, observations: Tensor, actions: Tensor) -> Tensor:
         """(B, k)."""
@@ -56,8 +56,8 @@ class ActionValues(nn.Module):
 class LeastSquaresPolicy(AsymmetricSACPolicy):
     """SB3's policy with `ActionValues` for critics; ``crossed`` of the numbers that the actor sees, the last ones, are told to them."""
 
-    def __init__(self, *args: Any, seen: int, modes: int, crossed: int, **kwargs: Any) -> None:
-        self._told = {"modes": modes, "told": seen - crossed, "crossed": crossed}
+    def __init__(self, *args: Any, seen: int, modes: int, crossed: int, low: int = MODES, **kwargs: Any) -> None:
+        self._told = {"low": low, "modes": modes, "told": seen - crossed, "crossed": crossed}
         super().__init__(*args, seen=seen, **kwargs)
 
     def make_critic(self, features_extractor: BaseFeaturesExtractor | None = None) -> Any:
@@ -71,6 +71,7 @@ class LeastSquaresSAC(SAC):
 
     samples = 16_384
     memory = 0.9
+    ridge = 1e-4
 
     def fit(self) -> None:
         """The critic of the actor as it is: Σ φ (φ − γ φ⁺)ᵀ w = Σ φ r, φ⁺ with the most likely next action and without a load.
@@ -86,7 +87,7 @@ class LeastSquaresSAC(SAC):
             differences = features - self.gamma * following
             latest = torch.cat([features.T @ differences, (rewards @ features)[None], (features**2).sum(dim=0)[None]]).double() / len(rewards)
             self.sums = latest if self.sums is None else self.sums + (1.0 - self.memory) * (latest - self.sums)
-            solved = torch.linalg.solve(self.sums[:-2] + torch.diag(RIDGE * self.sums[-1] + 1e-12), self.sums[-2])
+            solved = torch.linalg.solve(self.sums[:-2] + torch.diag(self.ridge * self.sums[-1] + 1e-12), self.sums[-2])
             if torch.isfinite(solved).all():  # else that of before
                 critic.quadratic.weight[...] = solved.float()
                 critic.bend(actions.shape[1])

@@ -52,6 +52,10 @@ class OffPolicySettings:
     """To which a quadratic critic is fitted in an update."""
     critic_memory: Share = 0.9
     """Share that earlier fits keep in a quadratic critic."""
+    critic_ridge: Annotated[float, RATE] = 1e-4
+    """Of each feature's mean square."""
+    critic_modes: Annotated[int, UNITS] = 6
+    """Of which a quadratic critic has all products."""
     damping: Annotated[float, RATE] = 1e-8
     """Adam's ε: gradients far below it, of what hardly moves, change weights in proportion and not by the whole rate."""
     held: Annotated[int, INSTANTS] = 4
@@ -123,7 +127,7 @@ class OffPolicyTraining(SB3Training):
         further = {} if algorithm is CrossQ else {"tau": settings.target_rate}
         if quadratic:
             algorithm, networks = LeastSquaresSAC, LeastSquaresPolicy
-            made = {"modes": envs.blades.plant.blade_states // 2, "crossed": envs.seen if settings.sees == "belief" else 2*settings.modes + 2 + voltages}
+            made = {"low": settings.critic_modes, "modes": envs.blades.plant.blade_states // 2, "crossed": envs.seen if settings.sees == "belief" else 2*settings.modes + 2 + voltages}
         model = algorithm(
             networks,
             envs,
@@ -154,6 +158,7 @@ class OffPolicyTraining(SB3Training):
             model.actor.mu.bias.fill_(0.0)
         if quadratic:
             model.samples, model.memory = settings.samples, settings.critic_memory
+            model.ridge = settings.critic_ridge
         if teacher is not None:
             check_clonable(settings)
             clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)

@@ -35,9 +35,9 @@ class Quadratic(nn.Module):
     squares: Tensor
     """Sums of features' products, and, last row, of features times returns; kept with the weights, to resume from."""
 
-    def __init__(self, width: int, modes: int, seen: int, loads: int = 2) -> None:
+    def __init__(self, width: int, modes: int, seen: int, loads: int = 2, low: int = MODES) -> None:
         super().__init__()
-        low = min(MODES, modes)
+        low = min(low, modes)
         slow = [*range(low), *range(modes, modes + low)]
         crossed = [*range(seen), *(seen + place for place in slow), *range(width - loads, width)]
         self.crossed, self.alone = crossed, sorted(set(range(width)) - set(crossed))
