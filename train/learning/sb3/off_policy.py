@@ -23,7 +23,7 @@ from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAM
 from train.learning.sb3.asymmetric import AsymmetricCrossQPolicy, AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.least_squares import LeastSquaresPolicy, LeastSquaresSAC
-from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
+from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs, sizes
 
 REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 """Arrays of SB3's replay buffer, a row for each action of every blade."""
@@ -98,6 +98,8 @@ class OffPolicySettings:
     """Of all layers: tanh or relu."""
     input_gain: Positive = 1.0
     """Readings are a few per cent of full scale most of the time."""
+    voltage_gain: Positive = 1.0
+    """Of the voltages held, beyond ``input_gain``: they are small, and their gains have far to go where ``approach`` is small."""
     critic_first: Natural = 50
     """Updates that train the critics alone: an actor must not follow critics that know nothing."""
     smoothing: Share = 0.02
@@ -128,6 +130,7 @@ class OffPolicyTraining(SB3Training):
         if quadratic:
             algorithm, networks = LeastSquaresSAC, LeastSquaresPolicy
             made = {"low": settings.critic_modes, "modes": envs.blades.plant.blade_states // 2, "crossed": envs.seen if settings.sees == "belief" else 2*settings.modes + 2 + voltages}
+        self.sizes = sizes(envs, settings)
         model = algorithm(
             networks,
             envs,
@@ -141,7 +144,7 @@ class OffPolicyTraining(SB3Training):
             target_entropy=voltages * (0.5 * math.log(2.0 * math.pi * math.e) + settings.exploration),
             policy_kwargs={
                 "seen": envs.seen,
-                "actor_gain": settings.input_gain,
+                "actor_gain": settings.input_gain if self.sizes is None else settings.input_gain / self.sizes,
                 "net_arch": {"pi": [settings.units] * 2 * (settings.actor == "layers"), "qf": [settings.critic_units] * 2},
                 "activation_fn": _ACTIVATIONS[settings.activation],
                 "optimizer_kwargs": {"eps": settings.damping},

@@ -23,7 +23,7 @@ from train.learning.sb3.asymmetric import AsymmetricPolicy
 from train.learning.sb3.belief import design_belief, regulator_on
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.quadratic import FitCritic, QuadraticPolicy
-from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs
+from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs, sizes
 from train.learning.sb3.side_by_side import SideBySide
 
 
@@ -85,6 +85,8 @@ class PPOSettings:
     """Gradients are clipped to it: hardly ever."""
     input_gain: Positive = 1.0
     """Readings are a few per cent of full scale most of the time."""
+    voltage_gain: Positive = 1.0
+    """Of the voltages held, beyond ``input_gain``: they are small, and their gains have far to go where ``approach`` is small."""
     critic_first: Natural = 0
     """Updates that train the critic alone, for an actor that is good already."""
     smoothing: Share = 0.2
@@ -121,6 +123,7 @@ class OnPolicyTraining(SB3Training):
     def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
         quadratic = settings.critic == "quadratic"
         envs = training_envs(tasks, settings, seed, shows_loads=quadratic and len(tasks) == 1, twins=settings.twins)
+        self.sizes = sizes(envs, settings)
         model = self.algorithm(
             QuadraticPolicy if quadratic else self.networks,
             envs,
@@ -135,7 +138,7 @@ class OnPolicyTraining(SB3Training):
             max_grad_norm=settings.gradient_norm,
             policy_kwargs={
                 "seen": envs.seen,
-                "actor_gain": settings.input_gain,
+                "actor_gain": settings.input_gain if self.sizes is None else settings.input_gain / self.sizes,
                 "units": settings.units,
                 "log_std_init": settings.exploration,
                 **self._made(settings, envs),
