@@ -9,7 +9,7 @@ from typing import Any
 
 from beamenv.task import Task
 from train.controllers.policies import Policy
-from train.learning.sb3.off_policy import CrossQTraining, OffPolicySettings, SACTraining, TQCTraining
+from train.learning.sb3.off_policy import OffPolicySettings, SACTraining, TQCTraining
 from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings, RecurrentPPOTraining
 from train.learning.through_plant.gradient import GradientSettings, GradientTraining
@@ -32,7 +32,6 @@ AGENTS: Mapping[str, Agent] = MappingProxyType(
         "ppo": Agent(PPOSettings, PPOTraining),
         "sac": Agent(OffPolicySettings, SACTraining),
         "tqc": Agent(OffPolicySettings, TQCTraining),
-        "crossq": Agent(OffPolicySettings, CrossQTraining),
         "recurrent-ppo": Agent(RecurrentPPOSettings, RecurrentPPOTraining),
     }
 )

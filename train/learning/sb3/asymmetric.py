@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import torch
 from gymnasium.spaces import Space
 from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
-from sb3_contrib.crossq.policies import CrossQPolicy
 from sb3_contrib.tqc.policies import TQCPolicy
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -19,14 +17,11 @@ from torch import Tensor, nn
 
 
 class Part(BaseFeaturesExtractor):
-    """The numbers of an observation from ``begin`` to ``end``, times a gain, or a gain of each."""
+    """The numbers of an observation from ``begin`` to ``end``, times a gain."""
 
-    gain: Tensor
-
-    def __init__(self, observation_space: Space[Any], begin: int, end: int, gain: Any = 1.0) -> None:
+    def __init__(self, observation_space: Space[Any], begin: int, end: int, gain: float = 1.0) -> None:
         super().__init__(observation_space, features_dim=end - begin)
-        self.begin, self.end = begin, end
-        self.register_buffer("gain", torch.as_tensor(gain, dtype=torch.float32))
+        self.begin, self.end, self.gain = begin, end, gain
 
     def forward(self, observations: Tensor) -> Tensor:
         """(B, end − begin)."""
@@ -36,12 +31,9 @@ class Part(BaseFeaturesExtractor):
 class AsymmetricNetworks(nn.Module):
     """Two networks on the two parts of the observation: tanh layers, or nothing at all before the output of a linear actor."""
 
-    actor_gain: Tensor
-
-    def __init__(self, seen: int, hidden: int, actor_gain: Any, units: int, linear: bool = False) -> None:
+    def __init__(self, seen: int, hidden: int, actor_gain: float, units: int, linear: bool = False) -> None:
         super().__init__()
-        self.seen = seen
-        self.register_buffer("actor_gain", torch.as_tensor(actor_gain, dtype=torch.float32))
+        self.seen, self.actor_gain = seen, actor_gain
         self.policy_net = nn.Sequential() if linear else tanh_layers(seen, units)
         self.value_net = tanh_layers(hidden, units)
         self.latent_dim_pi, self.latent_dim_vf = seen if linear else units, units
@@ -64,7 +56,7 @@ class AsymmetricNetworks(nn.Module):
 class AsymmetricPolicy(ActorCriticPolicy):
     """SB3's policy with `AsymmetricNetworks`."""
 
-    def __init__(self, *args: Any, seen: int, actor_gain: Any, units: int, linear: bool = False, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, seen: int, actor_gain: float, units: int, linear: bool = False, **kwargs: Any) -> None:
         self._networks = {"seen": seen, "actor_gain": actor_gain, "units": units, "linear": linear}
         super().__init__(*args, **kwargs)
         if linear:  # it begins without voltages
@@ -79,7 +71,7 @@ class AsymmetricPolicy(ActorCriticPolicy):
 class AsymmetricRecurrentPolicy(RecurrentActorCriticPolicy):
     """sb3-contrib's policy: an LSTM and one linear layer act on what is seen; a tanh network values the true state."""
 
-    def __init__(self, *args: Any, seen: int, actor_gain: Any, units: int, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, seen: int, actor_gain: float, units: int, **kwargs: Any) -> None:
         kwargs |= {"share_features_extractor": False, "enable_critic_lstm": False, "lstm_hidden_size": units}
         kwargs |= {"features_extractor_class": Part, "net_arch": {"pi": [], "vf": [units]}}
         kwargs |= {"features_extractor_kwargs": {"begin": 0, "end": seen, "gain": actor_gain}}
@@ -96,7 +88,7 @@ class _Apart:
 
     observation_space: Space[Any]
 
-    def __init__(self, *args: Any, seen: int, actor_gain: Any, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, seen: int, actor_gain: float, **kwargs: Any) -> None:
         self._seen, self._actor_gain = seen, actor_gain
         super().__init__(*args, **kwargs)
 
@@ -114,10 +106,6 @@ class _Apart:
 
 class AsymmetricSACPolicy(_Apart, SACPolicy):
     """SB3's policy, actor and critics apart."""
-
-
-class AsymmetricCrossQPolicy(_Apart, CrossQPolicy):
-    """sb3-contrib's policy, actor and critics apart."""
 
 
 class AsymmetricTQCPolicy(_Apart, TQCPolicy):

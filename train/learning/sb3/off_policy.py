@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import torch
-from sb3_contrib import TQC, CrossQ
+from sb3_contrib import TQC
 from stable_baselines3 import SAC
 from stable_baselines3.common.type_aliases import TrainFreq, TrainFrequencyUnit
 from torch import nn
@@ -20,10 +20,10 @@ from beamenv.configuration import Choice, Natural, Number, Positive, Refused, Sh
 from beamenv.task import Task
 from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
-from train.learning.sb3.asymmetric import AsymmetricCrossQPolicy, AsymmetricSACPolicy, AsymmetricTQCPolicy
+from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.least_squares import LeastSquaresPolicy, LeastSquaresSAC
-from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs, sizes
+from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 """Arrays of SB3's replay buffer, a row for each action of every blade."""
@@ -45,19 +45,10 @@ class OffPolicySettings:
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     actor: Annotated[str, Choice(("layers", "linear"))] = "layers"
-    """Two hidden layers, or none."""
+    """Two hidden layers and a linear one, or the latter alone, which begins without voltages; a hyperbolic tangent bounds either."""
     critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
-    """Two layers on the true state and the action, or a quadratic of these and the coming load in closed form, for one scenario."""
-    samples: Annotated[int, SAMPLES] = 16_384
-    """To which a quadratic critic is fitted in an update."""
-    critic_memory: Share = 0.9
-    """Share that earlier fits keep in a quadratic critic."""
-    critic_ridge: Annotated[float, RATE] = 1e-4
-    """Of each feature's mean square."""
-    critic_modes: Annotated[int, UNITS] = 6
-    """Of which a quadratic critic has all products."""
-    damping: Annotated[float, RATE] = 1e-8
-    """Adam's ε: gradients far below it, of what hardly moves, change weights in proportion and not by the whole rate."""
+    """Two layers on the true state and the action, or, for SAC on one scenario, a quadratic of these and of the coming load, in
+    closed form: see ``least_squares``."""
     held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms."""
     approach: Annotated[float, RATE] = 1.0
@@ -72,14 +63,18 @@ class OffPolicySettings:
     """Samples in a gradient step."""
     buffer: Annotated[int, SAMPLES] = 200_000
     """Actions remembered."""
+    samples: Annotated[int, SAMPLES] = 8192
+    """Of these, to which an update fits a quadratic critic."""
+    critic_memory: Share = 0.96
+    """Share that earlier fits keep in a quadratic critic's sums."""
     first: Natural = 10_000
     """Actions remembered before learning begins."""
     learning_rate: Annotated[float, RATE] = 1e-3
     """Adam's, falling linearly to zero over the training."""
+    damping: Annotated[float, RATE] = 1e-8
+    """Adam's ε: gradients far below it, of what hardly moves, change weights in proportion and not by the whole rate."""
     discount: Annotated[float, RATE] = 0.95
     """γ: 20 actions, 40 ms."""
-    look_ahead: Annotated[int, INSTANTS] = 1
-    """Actions whose rewards are summed before critics are asked."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
     """s: potential of a joule, see ``train.learning.sb3.vec_env``."""
     reward_unit: Positive = 0.04
@@ -98,8 +93,6 @@ class OffPolicySettings:
     """Of all layers: tanh or relu."""
     input_gain: Positive = 1.0
     """Readings are a few per cent of full scale most of the time."""
-    voltage_gain: Positive = 1.0
-    """Of the voltages held, beyond ``input_gain``: they are small, and their gains have far to go where ``approach`` is small."""
     critic_first: Natural = 50
     """Updates that train the critics alone: an actor must not follow critics that know nothing."""
     smoothing: Share = 0.02
@@ -114,6 +107,12 @@ class OffPolicySettings:
             raise Refused("first", self.first, f"at most what the buffer of {self.buffer} holds, or learning never begins")
 
 
+def _told(settings: OffPolicySettings, envs: Any) -> dict[str, int]:
+    """What a quadratic critic is told beside the true state and the load: a belief and the voltages held, or these alone."""
+    crossed = envs.seen if settings.sees == "belief" else int(np.prod(envs.action_space.shape or ()))
+    return {"modes": envs.blades.plant.blade_states // 2, "crossed": crossed}
+
+
 class OffPolicyTraining(SB3Training):
     """Of a squashed network on the history; with a ``teacher``, from its clone on."""
 
@@ -123,14 +122,10 @@ class OffPolicyTraining(SB3Training):
 
     def __init__(self, tasks: Sequence[Task], settings: OffPolicySettings, seed: int, teacher: Policy | None = None) -> None:
         quadratic = settings.critic == "quadratic"
-        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit, shows_loads=len(tasks) == 1)
+        self._check(settings, tasks)
+        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit, shows_loads=quadratic)
         voltages = int(np.prod(envs.action_space.shape or ()))
-        algorithm, networks, made = self.algorithm, self.networks, {}
-        further = {} if algorithm is CrossQ else {"tau": settings.target_rate}
-        if quadratic:
-            algorithm, networks = LeastSquaresSAC, LeastSquaresPolicy
-            made = {"low": settings.critic_modes, "modes": envs.blades.plant.blade_states // 2, "crossed": envs.seen if settings.sees == "belief" else 2*settings.modes + 2 + voltages}
-        self.sizes = sizes(envs, settings)
+        algorithm, networks = (LeastSquaresSAC, LeastSquaresPolicy) if quadratic else (self.algorithm, self.networks)
         model = algorithm(
             networks,
             envs,
@@ -138,34 +133,36 @@ class OffPolicyTraining(SB3Training):
             buffer_size=settings.buffer,
             learning_starts=0,
             batch_size=settings.batch,
-            n_steps=settings.look_ahead,
+            tau=settings.target_rate,
             gamma=settings.discount,
             ent_coef=f"auto_{settings.temperature}",
             target_entropy=voltages * (0.5 * math.log(2.0 * math.pi * math.e) + settings.exploration),
             policy_kwargs={
                 "seen": envs.seen,
-                "actor_gain": settings.input_gain if self.sizes is None else settings.input_gain / self.sizes,
-                "net_arch": {"pi": [settings.units] * 2 * (settings.actor == "layers"), "qf": [settings.critic_units] * 2},
+                "actor_gain": settings.input_gain,
+                "net_arch": {"pi": [] if settings.actor == "linear" else [settings.units] * 2, "qf": [settings.critic_units] * 2},
                 "activation_fn": _ACTIVATIONS[settings.activation],
                 "optimizer_kwargs": {"eps": settings.damping},
-                **made,
+                **(_told(settings, envs) if quadratic else {}),
             },
             seed=seed,
             device="cpu",
-            **further,
         )
         with torch.no_grad():  # it begins as PPO does: hardly any voltage but that of exploration
-            model.actor.mu.weight *= 0.01 * (settings.actor == "layers")
-            model.actor.log_std.weight *= 0.01 * (settings.actor == "layers")
+            small = 0.0 if settings.actor == "linear" else 0.01
+            model.actor.mu.weight *= small
+            model.actor.log_std.weight *= small
+            if settings.actor == "linear":
+                model.actor.mu.bias.zero_()
             model.actor.log_std.bias.fill_(settings.exploration)
-            model.actor.mu.bias.fill_(0.0)
-        if quadratic:
-            model.samples, model.memory = settings.samples, settings.critic_memory
-            model.ridge = settings.critic_ridge
         if teacher is not None:
             check_clonable(settings)
             clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)
         super().__init__(model, envs, tasks, settings, seed)
+
+    def _check(self, settings: OffPolicySettings, tasks: Sequence[Task]) -> None:
+        if settings.critic == "quadratic" and (self.algorithm is not SAC or len(tasks) > 1):
+            raise Refused("settings.critic", settings.critic, "'network' unless SAC is trained on one scenario")
 
     @staticmethod
     def _actor(model: Any) -> list[nn.Module]:
@@ -186,14 +183,20 @@ class OffPolicyTraining(SB3Training):
         memory = self.model.replay_buffer
         self.model.collect_rollouts(self.envs, self._callback, frequency, memory)
         if memory.size() * self.envs.num_envs >= self.settings.first:
-            if self.settings.critic == "quadratic":
-                self.model.fit()
-                if self.updates < self.settings.critic_first: return
-            else:
-                self._free(False)
-                self.model.train(self.settings.critic_steps, self.settings.batch)
-            self._free(self.updates >= self.settings.critic_first)
-            self.model.train(self.settings.gradient_steps, self.settings.batch)
+            self._learn(actor=self.updates >= self.settings.critic_first)
+
+    def _learn(self, actor: bool) -> None:
+        """Critics first, and then, with them, the ``actor``."""
+        settings = self.settings
+        if settings.critic == "quadratic":
+            self.model.fit(settings.samples, settings.critic_memory)
+            if actor:
+                self.model.train(settings.gradient_steps, settings.batch)
+        else:
+            self._free(False)
+            self.model.train(settings.critic_steps, settings.batch)
+            self._free(actor)
+            self.model.train(settings.gradient_steps, settings.batch)
 
     def state_dict(self) -> dict[str, Any]:
         """With the actions remembered."""
@@ -228,9 +231,3 @@ class TQCTraining(OffPolicyTraining):
     """Critics of quantiles, of which the highest are cut off."""
 
     algorithm, networks, name = TQC, AsymmetricTQCPolicy, "TQC"
-
-
-class CrossQTraining(OffPolicyTraining):
-    """Critics that normalise their layers by batches, and no targets (Bhatt et al. 2024)."""
-
-    algorithm, networks, name = CrossQ, AsymmetricCrossQPolicy, "CrossQ"

@@ -23,7 +23,7 @@ from train.learning.sb3.asymmetric import AsymmetricPolicy
 from train.learning.sb3.belief import design_belief, regulator_on
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
 from train.learning.sb3.quadratic import FitCritic, QuadraticPolicy
-from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs, sizes
+from train.learning.sb3.sb3 import Envs, SB3Training, layers_as_arrays, linear_layers, training_envs
 from train.learning.sb3.side_by_side import SideBySide
 
 
@@ -46,12 +46,6 @@ class PPOSettings:
     """Without voltages, or, for a linear actor on the belief, from the gains of LQG with load estimate."""
     critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
     """Two tanh layers on the true state, or a quadratic of it and of the coming load in closed form, for one scenario."""
-    critic_memory: Share = 0.7
-    """Share that earlier rollouts keep in a quadratic critic."""
-    critic_lags: Annotated[bool, Flag()] = False
-    """Whether a quadratic critic judges a rollout before it is fitted to it: what it is fitted to it explains, good luck and good actions alike."""
-    averaging: Share = 0.0
-    """Share that the earlier average keeps in that of the weights after an update, which is what is validated and kept."""
     twins: Annotated[bool, Flag()] = False
     """Blades in pairs that meet the same, one's advantages being taken from the other's: for a quadratic critic."""
     held: Annotated[int, INSTANTS] = 4
@@ -85,8 +79,6 @@ class PPOSettings:
     """Gradients are clipped to it: hardly ever."""
     input_gain: Positive = 1.0
     """Readings are a few per cent of full scale most of the time."""
-    voltage_gain: Positive = 1.0
-    """Of the voltages held, beyond ``input_gain``: they are small, and their gains have far to go where ``approach`` is small."""
     critic_first: Natural = 0
     """Updates that train the critic alone, for an actor that is good already."""
     smoothing: Share = 0.2
@@ -123,7 +115,6 @@ class OnPolicyTraining(SB3Training):
     def __init__(self, tasks: Sequence[Task], settings: PPOSettings, seed: int, teacher: Policy | None = None) -> None:
         quadratic = settings.critic == "quadratic"
         envs = training_envs(tasks, settings, seed, shows_loads=quadratic and len(tasks) == 1, twins=settings.twins)
-        self.sizes = sizes(envs, settings)
         model = self.algorithm(
             QuadraticPolicy if quadratic else self.networks,
             envs,
@@ -138,7 +129,7 @@ class OnPolicyTraining(SB3Training):
             max_grad_norm=settings.gradient_norm,
             policy_kwargs={
                 "seen": envs.seen,
-                "actor_gain": settings.input_gain if self.sizes is None else settings.input_gain / self.sizes,
+                "actor_gain": settings.input_gain,
                 "units": settings.units,
                 "log_std_init": settings.exploration,
                 **self._made(settings, envs),
@@ -165,7 +156,7 @@ class OnPolicyTraining(SB3Training):
         return {}
 
     def _callbacks(self) -> list[BaseCallback]:
-        return [FitCritic(self.settings.twins, self.settings.critic_memory, self.settings.critic_lags)] if self.settings.critic == "quadratic" else []
+        return [FitCritic(self.settings.twins)] if self.settings.critic == "quadratic" else []
 
     def _optimisers(self) -> dict[str, torch.optim.Optimizer]:
         return {"policy": self.model.policy.optimizer}
@@ -174,10 +165,6 @@ class OnPolicyTraining(SB3Training):
         self.model.collect_rollouts(self.envs, self._callback, self.model.rollout_buffer, self.model.n_steps)
         if self.settings.critic == "network" or self.updates >= self.settings.critic_first:  # the quadratic has been fitted
             self.model.train()
-            self._average()
-
-    def _average(self) -> None:
-        """Nothing."""
 
 
 class PPOTraining(OnPolicyTraining):
@@ -199,16 +186,7 @@ class PPOTraining(OnPolicyTraining):
     def _held_back(self) -> list[nn.Parameter]:
         return [parameter for part in self._actor(self.model) for parameter in part.parameters()]
 
-    _averaged: Any = None
-
-    def _average(self) -> None:
-        now = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
-        share = self.settings.averaging
-        if share and self._averaged is not None:
-            now = {name: share * self._averaged[name] + (1.0 - share) * each for name, each in now.items()}
-        self._averaged = now if share else None
-
     def policy(self) -> Policy:
         """The actor's mean as arrays."""
-        weights = self._averaged or layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
+        weights = layers_as_arrays([layer for part in self._actor(self.model) for layer in linear_layers(part)])
         return self._as_policy("PPO", weights, asdict(self.settings))

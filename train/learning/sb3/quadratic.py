@@ -35,30 +35,30 @@ class Quadratic(nn.Module):
     squares: Tensor
     """Sums of features' products, and, last row, of features times returns; kept with the weights, to resume from."""
 
-    def __init__(self, width: int, modes: int, seen: int, loads: int = 2, low: int = MODES) -> None:
+    def __init__(self, width: int, modes: int, seen: int) -> None:
         super().__init__()
-        low = min(low, modes)
+        low = min(MODES, modes)
         slow = [*range(low), *range(modes, modes + low)]
-        crossed = [*range(seen), *(seen + place for place in slow), *range(width - loads, width)]
+        crossed = [*range(seen), *(seen + place for place in slow), width - 2, width - 1]
         self.crossed, self.alone = crossed, sorted(set(range(width)) - set(crossed))
-        self._first, self._second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
-        count = len(self._first) + len(self.alone) + 1
+        self.first, self.second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
+        count = len(self.first) + len(self.alone) + 1
         self.weight = nn.Parameter(torch.zeros(count), requires_grad=False)
         self.register_buffer("squares", torch.zeros(count + 1, count, dtype=torch.float64))
 
     def features(self, states: Tensor) -> Tensor:
         """(B, k)."""
         crossed, alone = states[:, self.crossed], states[:, self.alone]
-        return torch.cat([crossed[:, self._first] * crossed[:, self._second], alone**2, torch.ones(len(states), 1)], dim=1)
+        return torch.cat([crossed[:, self.first] * crossed[:, self.second], alone**2, torch.ones(len(states), 1)], dim=1)
 
     def forward(self, states: Tensor) -> Tensor:
         """(B, 1)."""
         return (self.features(states) @ self.weight)[:, None]
 
-    def fit(self, features: Tensor, returns: Tensor, memory: float = MEMORY) -> None:
+    def fit(self, features: Tensor, returns: Tensor) -> None:
         """Ridge regression on ``features`` (B, k) and, fading, on those before."""
         latest = torch.cat([features.T @ features, (returns @ features)[None]]).double() / len(features)
-        self.squares += latest if not self.squares.any() else (1.0 - memory) * (latest - self.squares)
+        self.squares += latest if not self.squares.any() else (1.0 - MEMORY) * (latest - self.squares)
         matrix, right = self.squares[:-1], self.squares[-1]
         solved = torch.linalg.solve(matrix + torch.diag(RIDGE * torch.diag(matrix) + 1e-12), right)
         if torch.isfinite(solved).all():  # else that of before
@@ -96,9 +96,9 @@ class QuadraticPolicy(AsymmetricPolicy):
 class FitCritic(BaseCallback):
     """At the end of a rollout fits the critic to its returns, and reckons its advantages anew; with ``twins``, less theirs."""
 
-    def __init__(self, twins: bool = False, memory: float = MEMORY, lags: bool = False) -> None:
+    def __init__(self, twins: bool = False) -> None:
         super().__init__()
-        self._twins, self._memory, self._lags = twins, memory, lags
+        self._twins = twins
 
     def _on_step(self) -> bool:
         return True
@@ -110,12 +110,8 @@ class FitCritic(BaseCallback):
         with torch.no_grad():
             features, last = critic.features(rows), critic.features(torch.as_tensor(model._last_obs[:, told:]))
             self._reckon(features, last)
-            advantages = buffer.advantages.copy()
-            critic.fit(features, torch.as_tensor(buffer.returns.reshape(-1)), self._memory)
-            if not self._lags:
-                self._reckon(features, last)
-            else:
-                buffer.advantages[...] = advantages
+            critic.fit(features, torch.as_tensor(buffer.returns.reshape(-1)))
+            self._reckon(features, last)
         if self._twins:
             buffer.advantages[...] = without_the_twin(buffer.advantages, buffer.observations[..., -2:])
 

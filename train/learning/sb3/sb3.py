@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
@@ -26,8 +25,6 @@ from train.learning.training import on_training_bank, uncontrolled_cost
 from train.learning.validation import Validation
 
 Envs = TrainingVecEnv | SideBySide
-
-Array = NDArray[Any]
 
 REFIT = 5
 """Updates between two fits of an estimate."""
@@ -66,12 +63,6 @@ def training_envs(tasks: Sequence[Task], settings: Any, seed: int, **seen: Any) 
     return batches[0] if len(batches) == 1 else SideBySide(batches)
 
 
-def sizes(envs: Envs, settings: Any) -> Array | None:
-    """(seen,) what numbers are divided by that an actor sees, its voltages the last of them."""
-    voltages = int(np.prod(envs.action_space.shape or ()))
-    return None if settings.voltage_gain == 1.0 else np.repeat([1.0, 1.0 / settings.voltage_gain], [envs.seen - voltages, voltages])
-
-
 class Meter(BaseCallback):
     """The running cost relative to no control."""
 
@@ -97,9 +88,6 @@ class SB3Training:
     Its state holds networks, optimisers, generators, the episodes under way and what is remembered of others: by updates it
     resumes bit for bit.
     """
-
-    sizes: Array | None = None
-    """By which what the actor sees is divided."""
 
     def __init__(self, model: Any, envs: Envs, tasks: Sequence[Task], settings: Any, seed: int) -> None:
         self.model, self.envs, self.settings = model, envs, settings
@@ -169,8 +157,6 @@ class SB3Training:
     def _as_policy(self, name: str, weights: dict[str, np.ndarray[Any, Any]], settings: dict[str, Any]) -> Policy:
         """Layers on a history or on a belief, as the settings have it."""
         lowest, highest = normalised(self._task.design_plant).voltage_limits.astype(np.float32)
-        if self.sizes is not None:
-            weights = {**weights, "weight0": (weights["weight0"] / self.sizes).astype(np.float32)}
         belief = None if isinstance(self.envs, SideBySide) else self.envs.belief
         belief = seen_by(self.settings, self._task.design) if belief is None else belief
         if belief is None:
