@@ -54,7 +54,7 @@ class Prior:
     """The scenario's distribution: the design, kinds and ranges of faults, and blades to try laws on.
 
     Their plants come from the training bank, a Latin hypercube of another seed than that of the bank that controllers are compared
-    on, and their episodes from seeds from ``TUNING`` on: neither is ever met where controllers are compared or chosen.
+    on and of that on which they are chosen, and their episodes from seeds from ``TUNING`` on: neither is ever met in either place.
     """
 
     blade: Blade
@@ -131,7 +131,16 @@ class Truth:
 
 def on_training_bank(scenario: Scenario) -> Scenario:
     """The scenario with plants drawn from another bank than the one that controllers are compared on."""
-    return replace(scenario, plants=replace(scenario.plants, seed=scenario.plants.seed + 1))
+    return _on_bank(scenario, 1)
+
+
+def on_validation_bank(scenario: Scenario) -> Scenario:
+    """The scenario with plants drawn from a third bank, that of the episodes which choose."""
+    return _on_bank(scenario, 2)
+
+
+def _on_bank(scenario: Scenario, further: int) -> Scenario:
+    return replace(scenario, plants=replace(scenario.plants, seed=scenario.plants.seed + further))
 
 
 def kept_for_judging(scenario: Scenario) -> bool:

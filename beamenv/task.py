@@ -65,6 +65,8 @@ class Task:
     steps: int
     """Control intervals in an episode."""
     physical_units: bool
+    told_scenario: Scenario | None = None
+    """What controllers are told of where plants are of another bank than that of the scenario they are for; None: ``scenario``."""
 
     @property
     def config(self) -> BladeConfig:
@@ -94,10 +96,11 @@ class Task:
     @cached_property
     def prior(self) -> Prior:
         """What a controller of tier 1 may be built from."""
-        if kept_for_judging(self.scenario):
+        known = self.scenario if self.told_scenario is None else self.told_scenario
+        if kept_for_judging(known):
             own = _alive(_BLADES, Blade(self.design_config))  # the design blade may have a plant file's modes
-            return Prior(own, own, on_training_bank(without_faults(self.scenario)), self.steps)
-        return Prior(self.blade, self.design_blade, on_training_bank(self.scenario), self.steps)
+            return Prior(own, own, on_training_bank(without_faults(known)), self.steps)
+        return Prior(self.blade, self.design_blade, on_training_bank(known), self.steps)
 
     @property
     def truth(self) -> Truth:
@@ -113,6 +116,10 @@ class Task:
     def bank(self) -> Bank:
         """The true plants that episodes draw from."""
         return build_bank(self.blade, self.design_blade, self.scenario.plants, self.steps)
+
+    def on_other_plants(self, scenario: Scenario) -> Task:
+        """The task in the same scenario on another bank of plants, with controllers told no more and nothing else than here."""
+        return replace(self, scenario=scenario, told_scenario=self.told_scenario or self.scenario)
 
     @property
     def note(self) -> str:

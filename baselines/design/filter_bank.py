@@ -147,7 +147,7 @@ class FilterBank(ReadOnly):
         step = self.step(instant)
         if (step == step[0]).all():
             return np.matmul(whitened, onward[step[0]])
-        carried = np.empty((*whitened.shape[:2], onward.shape[-1]))
+        carried = np.empty((*whitened.shape[:2], onward.shape[-1]), whitened.dtype)
         for k in np.unique(step):
             carried[:, step == k] = np.matmul(whitened[:, step == k], onward[k])
         return carried
@@ -171,7 +171,7 @@ class FilterBank(ReadOnly):
             kept = k == len(self.cross) - 1 and code < len(self.left)
             inverse, log_determinant = self.left[code] if kept else _without(self.covariance[k], code)
         whitened = np.matmul(innovation, inverse)
-        squared = (innovation * whitened) @ np.ones(innovation.shape[-1])
+        squared = (innovation * whitened) @ np.ones(innovation.shape[-1], innovation.dtype)
         log_density = -0.5 * (squared + log_determinant[:, None])
         if code and not self.holds.all():
             others = ~self.holds
@@ -182,7 +182,7 @@ class FilterBank(ReadOnly):
 def _without(covariance: Array, code: int) -> tuple[Array, Array]:
     """Inverse (H, p, p), zero in rows and columns of what is lost, and logarithm of the determinant (H,) of what is left."""
     left = np.flatnonzero(~(code >> np.arange(covariance.shape[-1])) & 1)
-    inverse, log_determinant = np.zeros_like(covariance), np.zeros(len(covariance))
+    inverse, log_determinant = np.zeros_like(covariance), np.zeros(len(covariance), covariance.dtype)
     if len(left):
         kept = covariance[:, left[:, None], left]
         inverse[:, left[:, None], left], log_determinant = np.linalg.inv(kept), np.linalg.slogdet(kept)[1]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from itertools import groupby
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,23 @@ from numpy.typing import NDArray
 from baselines.design.controller import Array
 from baselines.design.filter_bank import FilterBank
 from baselines.design.modes import Modes, common_modes, modes_of
+
+T = TypeVar("T")
+
+SINGLE = {np.dtype(np.float64): np.float32, np.dtype(np.complex128): np.complex64}
+
+
+def in_single_precision(part: T) -> T:
+    """The same with all numbers of arrays in single precision, in tuples and dataclasses too."""
+    found: Any = part
+    if isinstance(part, np.ndarray):
+        found = part.astype(SINGLE.get(part.dtype, part.dtype))
+    elif isinstance(part, tuple) and type(part) is tuple:
+        found = tuple(map(in_single_precision, part))
+    elif is_dataclass(part) and not isinstance(part, type):
+        found = type(part)(*(in_single_precision(getattr(part, each.name)) for each in fields(part)))
+    of_the_same_kind: T = found
+    return of_the_same_kind
 
 
 class Motion(ABC):
@@ -107,7 +125,7 @@ class DenseMotion(Motion):
     def _through(self, states: Array, columns: slice) -> Array:
         """(H, N, …): predictions through some columns of ``moved``, shorter ones by what is theirs."""
         predicted, matrix = self.by_hypothesis(states).swapaxes(0, 1), self.moved[..., columns]
-        through = np.empty((*predicted.shape[:2], matrix.shape[-1]))
+        through = np.empty((*predicted.shape[:2], matrix.shape[-1]), states.dtype)
         for those, size in self.bank.alike:
             np.matmul(predicted[those, :, :size], matrix[those, :size], out=through[those])
         return through
@@ -148,7 +166,7 @@ class ModalMotion(Motion):
 
     bank: FilterBank
     alike: tuple[_Alike, ...]
-    eigenvalues: NDArray[np.complex128]
+    eigenvalues: NDArray[np.complexfloating[Any, Any]]
     """(size / 2,)."""
     late: tuple[tuple[int, NDArray[np.intp]], ...]
     """How many instants ago, where not now, the voltages were asked for that act, and by which hypotheses."""
@@ -193,14 +211,14 @@ class ModalMotion(Motion):
     def plain(self, states: Array) -> Array:
         """Modes back into states."""
         H, s = self.bank.counts
-        own = np.empty((len(states), H, s))
+        own = np.empty((len(states), H, s), states.dtype)
         for each in self.alike:
             own[:, each.those] = np.matmul(each.of(states).swapaxes(0, 1), each.back).swapaxes(0, 1)
         return own
 
     def seen(self, states: Array) -> Array:
         """Products with modes of [Cᵀ, Kᵀ]."""
-        shown = np.empty((self.bank.counts[0], len(states), self.alike[0].seen.shape[-1]))
+        shown = np.empty((self.bank.counts[0], len(states), self.alike[0].seen.shape[-1]), states.dtype)
         for each in self.alike:
             np.matmul(each.of(states).swapaxes(0, 1), each.seen, out=shown[each.those])
         return shown
@@ -212,7 +230,7 @@ class ModalMotion(Motion):
     def follow(self, instant: Array, states: Array, whitened: Array, voltages: Array, out: Array) -> None:
         """Each by its eigenvalue, and one product with what comes in: innovations and those voltages that act."""
         step, (H, N, p), last = self.bank.step(instant), whitened.shape, len(self.answer) - 1
-        inputs = np.empty((H, N, p + self.answer.shape[-1]))
+        inputs = np.empty((H, N, p + self.answer.shape[-1]), states.dtype)
         inputs[..., :p] = whitened
         self._act(voltages, inputs[..., p:])
         if (step == step[0]).all():
@@ -221,13 +239,15 @@ class ModalMotion(Motion):
             for k in np.unique(step).tolist():
                 rows = np.flatnonzero(step == k)
                 self._enter(inputs[:, rows], self._entries(k, last), out, rows)
-        onward = np.empty(states.shape)
-        np.multiply(states.view(np.complex128), self.eigenvalues, out=onward.view(np.complex128))
+        onward = np.empty(states.shape, states.dtype)
+        turning = self.eigenvalues.dtype
+        np.multiply(states.view(turning), self.eigenvalues, out=onward.view(turning))
         out += onward
 
     def driven(self, voltages: Array) -> Array:
         """Products with modes of Bᵀ."""
-        acting, driven = np.empty((self.bank.counts[0], len(voltages), self.answer.shape[-1])), np.empty((len(voltages), self.size))
+        H, N, kind = self.bank.counts[0], len(voltages), self.answer.dtype
+        acting, driven = np.empty((H, N, self.answer.shape[-1]), kind), np.empty((N, self.size), kind)
         self._act(voltages, acting)
         for each in self.alike:
             np.matmul(acting[each.those], each.drive, out=each.of(driven).swapaxes(0, 1))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from math import ceil, prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +15,17 @@ from baselines.design.filter_bank import FilterBank
 from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.matrix import keep_matrices
-from baselines.design.motion import Motion, motion_of
+from baselines.design.motion import Motion, in_single_precision, motion_of
 from baselines.design.objects import instance
 
 AT_ONCE = 2**20
 """Numbers of memories that are worked on at once: larger arrays in between would be asked of the system anew at every instant."""
+
+
+Numbers = NDArray[np.floating[Any]]
+Revision = Callable[[slice, Numbers, Numbers, Numbers], Numbers]
+"""Actions (N, m) in place of those that a law asks for, of the blades of a slice: from its own (N, m), those of its fallback (N, m)
+and how badly any hypothesis fits (N,), as ``misfits`` has it."""
 
 
 class Memory(NamedTuple):
@@ -74,6 +81,10 @@ class MultipleModel(Law):
     """Instants over which the test of fit remembers."""
     misfit: float
     """Mean normalised innovation squared over the number of readings from which on no hypothesis fits; 1 where one is right."""
+    single: bool = False
+    """Whether it reckons and remembers in single precision, which takes less than half the time."""
+    _bank: FilterBank = field(init=False)
+    """As it reckons with it."""
     _motion: Motion = field(init=False)
     """How predictions go on."""
     _log_prior: Array = field(init=False)
@@ -91,9 +102,18 @@ class MultipleModel(Law):
         keep_matrices(self, {"state_gain": (H, m, s), "voltage_gain": (H, m, m * depth), "prior": (H,)})
         if self.transition is not None:
             keep_matrices(self, {"transition": (H, H)})
-        object.__setattr__(self, "_motion", motion_of(bank, self.state_gain, self.transition is not None))
-        object.__setattr__(self, "_log_prior", np.log(self.prior))
-        object.__setattr__(self, "_before", np.ascontiguousarray(self.voltage_gain.swapaxes(1, 2)))
+        parts: dict[str, Any] = {
+            "_bank": bank,
+            "_motion": motion_of(bank, self.state_gain, self.transition is not None),
+            "_log_prior": np.log(self.prior),
+            "_before": np.ascontiguousarray(self.voltage_gain.swapaxes(1, 2)),
+        }
+        for name, part in parts.items():
+            object.__setattr__(self, name, in_single_precision(part) if self.single else part)
+
+    def in_single_precision(self) -> MultipleModel:
+        """The same law, reckoning in single precision: its voltages differ by some 1e-5 of the drive."""
+        return self if self.single else replace(self, single=True)
 
     @property
     def order(self) -> int:
@@ -137,14 +157,7 @@ class MultipleModel(Law):
         weights = np.exp(self._log_prior + held.evidence)
         return np.asarray(np.einsum("nh,nh->n", weights, held.squared) / np.maximum(held.readings, 1.0))
 
-    def cautious(self, observation: Array, memory: Array) -> Array:
-        """(N, m): the action that the fallback would ask for, whoever is in charge; ``ValueError`` without one."""
-        if self.fallback is None:
-            raise ValueError(f"{self.name} has no fallback.")
-        own = self._held(memory).own
-        return self.instruments.drive(self._of_fallback(self.fallback, own, self.instruments.read(observation)))
-
-    def overruled(self, memory: Array, change: Array) -> Array:
+    def overruled(self, memory: Any, change: Numbers) -> Any:
         """The memory (N, order) that ``decide`` gave, once actions were applied that differ from its own by ``change`` (N, m)."""
         memory = memory.copy()
         held, m = self._held(memory), change.shape[1]
@@ -156,35 +169,51 @@ class MultipleModel(Law):
             held.own[...] += volts @ self.fallback.voltage_input.T
         return memory
 
-    @np.errstate(over="ignore", invalid="ignore")
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
         """Correct, weigh, drive, mix, predict: all hypotheses and blades at once; of a reading that is no number comes none."""
-        reading, rows = self.instruments.read(np.atleast_2d(observation)), np.atleast_2d(np.asarray(memory, dtype=np.float64))
+        rows = np.atleast_2d(memory)
+        following = np.empty(rows.shape, self._log_prior.dtype)
+        action = self.revised(np.atleast_2d(observation), rows, None, following)
+        return (action, following) if observation.ndim == 2 else (action[0], following[0])
+
+    @np.errstate(over="ignore", invalid="ignore")
+    def revised(self, observation: Array, memory: Numbers, revise: Revision | None, following: Any) -> Array:
+        """The actions (N, m) that are applied, ``revise``d ones if it is given, and writes the memory (N, order) that goes by them.
+
+        ``ValueError`` for a law to revise that has no fallback.
+        """
+        if revise is not None and self.fallback is None:
+            raise ValueError(f"{self.name} has no fallback.")
+        reading, rows = self.instruments.read(observation), np.asarray(memory, dtype=self._log_prior.dtype)
         rows = rows if rows.strides[-1] == rows.itemsize else np.ascontiguousarray(rows)
-        voltage, following = np.empty((len(rows), self.instruments.counts[1])), np.empty(rows.shape)
+        voltage = np.empty((len(rows), self.instruments.counts[1]))
         N, order = rows.shape
         size = max(1, ceil(N / max(1, ceil(N * order / max(AT_ONCE, order)))))
         for first in range(0, len(rows), size):
             some = slice(first, first + size)
-            voltage[some] = self._decided(reading[some], self._held(rows[some]), self._held(following[some]))
-        action = self.instruments.drive(voltage)
-        return (action, following) if observation.ndim == 2 else (action[0], following[0])
+            voltage[some] = self._decided(reading[some], self._held(rows[some]), self._held(following[some]), revise, some)
+        return self.instruments.drive(voltage)
 
-    def _decided(self, reading: Array, old: Memory, new: Memory) -> Array:
+    def _decided(self, reading: Array, old: Memory, new: Memory, revise: Revision | None, some: slice) -> Array:
         """Voltages (N, m), V, from readings (N, p), A, and what was remembered; writes what is to be."""
-        p = self.instruments.counts[0]
+        p, reading = self.instruments.counts[0], reading.astype(old.reading.dtype)
         seen = self._motion.seen(old.predicted)
-        lost = self.bank.lost(reading, old.reading, old.instant == 0.0)
+        lost = self._bank.lost(reading, old.reading, old.instant == 0.0)
         self._compare(seen, reading)
-        correction = self.bank.corrections(old.instant, seen[..., :p], lost)
+        correction = self._bank.corrections(old.instant, seen[..., :p], lost)
         weights, new.evidence[...] = self._weighed(old.evidence + correction.log_density.T)
-        self._judge(old, new, correction.squared.T, lost, weights)
+        badly = self._judge(old, new, correction.squared.T, lost, weights)
         answers = self._motion.answers(old.instant, correction.whitened)
         answers += seen[..., p:]
         before = old.voltages.reshape(len(reading), -1)
         voltage = self._asked(answers, before, weights)
         if self.fallback is not None:
-            voltage = self._in_charge(self.fallback, old, new, reading, voltage)
+            cautious = self._of_fallback(self.fallback, old.own, reading)
+            voltage = np.where(new.astray[:, None] > 0.0, cautious, voltage)
+            if revise is not None:
+                drive = self.instruments.drive
+                voltage = revise(some, drive(voltage), drive(cautious), badly) * self.instruments.voltage_scale
+            self._remember(self.fallback, old, new, reading, voltage)
         voltages = np.concatenate([voltage, before], axis=1)
         if self.transition is None:
             self._motion.follow(old.instant, old.predicted, correction.whitened, voltages, new.predicted)
@@ -200,15 +229,16 @@ class MultipleModel(Law):
     def _compare(self, seen: Array, reading: Array) -> None:
         """Turns expected readings, as they will be taken, clipped, into innovations, and K x̂ into −K x̂, in place."""
         N, m = len(reading), self.instruments.counts[1]
-        highest = np.tile(np.concatenate([self.bank.full_scale, np.full(m, np.inf)]), N)  # all in one row: short ones are slow
+        none = np.zeros((N, m), reading.dtype)
+        highest = np.tile(np.concatenate([self._bank.full_scale, none[0] + np.inf]), N)  # all in one row: short ones are slow
         rows = seen.reshape(len(seen), -1)
         np.minimum(rows, highest, out=rows)
         np.maximum(rows, -highest, out=rows)
-        np.subtract(np.concatenate([reading, np.zeros((N, m))], axis=1).ravel(), rows, out=rows)
+        np.subtract(np.concatenate([reading, none], axis=1).ravel(), rows, out=rows)
 
     def _weighed(self, evidence: Array) -> tuple[Array, Array]:
         """Weights (N, H), each at least the floor, which add up to 1, and the logarithm of each over that beforehand."""
-        logarithm, floor = evidence + self._log_prior, max(self.floor, np.finfo(float).tiny)
+        logarithm, floor = evidence + self._log_prior, max(self.floor, float(np.finfo(evidence.dtype).tiny))
         logarithm -= logarithm.max(axis=1, keepdims=True)
         weights = np.exp(logarithm)
         whole = weights.sum(axis=1, keepdims=True)
@@ -224,23 +254,23 @@ class MultipleModel(Law):
     def _asked(self, answers: Array, before: Array, weights: Array) -> Array:
         """(N, m), V: the mean of what each regulator asks for, from its answer to its estimate, as the drive lets it through."""
         answers -= np.matmul(before, self._before)
-        rows, limits = answers.reshape(len(answers), -1), np.tile(self.instruments.voltage_limits, len(before))
+        limits = np.tile(self.instruments.voltage_limits.astype(answers.dtype), len(before))
+        rows = answers.reshape(len(answers), -1)
         np.minimum(np.maximum(rows, limits[0], out=rows), limits[1], out=rows)
         return np.asarray(np.matmul(weights[:, None], answers.swapaxes(0, 1))[:, 0])
 
-    def _judge(self, old: Memory, new: Memory, squared: Array, lost: NDArray[np.bool_], weights: Array) -> None:
-        """Whether any hypothesis fits; where none has, the fallback stays in charge for the rest of the episode."""
+    def _judge(self, old: Memory, new: Memory, squared: Array, lost: NDArray[np.bool_], weights: Array) -> Array:
+        """How badly any hypothesis fits (N,); where none has, the fallback stays in charge for the rest of the episode."""
         fading = 1.0 - 1.0 / self.window
         new.squared[...] = fading * old.squared + squared
         new.readings[...] = fading * old.readings + np.count_nonzero(~lost, axis=1)
-        misfit = np.einsum("nh,nh->n", weights, new.squared) > self.misfit * new.readings
-        new.astray[...] = np.maximum(old.astray, misfit & (old.instant >= self.window))
+        mean = np.einsum("nh,nh->n", weights, new.squared)
+        new.astray[...] = np.maximum(old.astray, (mean > self.misfit * new.readings) & (old.instant >= self.window))
+        return np.asarray(mean / np.maximum(new.readings, 1.0))
 
-    def _in_charge(self, fallback: LinearController, old: Memory, new: Memory, reading: Array, voltage: Array) -> Array:
-        """(N, m), V: the fallback's voltages where it is in charge; it remembers what is applied whoever is."""
-        voltage = np.where(new.astray[:, None] > 0.0, self._of_fallback(fallback, old.own, reading), voltage)
+    def _remember(self, fallback: LinearController, old: Memory, new: Memory, reading: Array, voltage: Array) -> None:
+        """The fallback remembers what is applied, whoever is in charge."""
         new.own[...] = old.own @ fallback.transition.T + reading @ fallback.measurement_input.T + voltage @ fallback.voltage_input.T
-        return voltage
 
     def _of_fallback(self, fallback: LinearController, own: Array, reading: Array) -> Array:
         """(N, m), V: what it asks for by its memory and readings (N, p), A, as the drive lets it through."""

@@ -20,7 +20,8 @@ from beamenv.configuration import Count, Number, Numbers, Refused, checked, show
 
 MOST_SEEDS = 10**6
 SEEDS = Numbers(Count(0, 2**63 - 1), least=1, of="seeds")
-_NO_LOAD = {"load": {"case": "none"}}
+NO_LOAD = {"load": {"case": "none"}}
+"""Options of a reset: what is left is the tremor under white load and sensor noise."""
 Progress = Callable[[int, int], None]
 
 
@@ -120,14 +121,19 @@ def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[i
     for first in range(0, len(seeds), width):
         batch = seeds[first : first + width]
         padded = batch + batch[-1:] * (width - len(batch))
-        loaded, unloaded = (_run(controller, env, padded, options) for options in (None, _NO_LOAD))
+        loaded, unloaded = (recorded(controller, env, padded, options) for options in (None, NO_LOAD))
         parts.append([series[:, : len(batch)] for series in (*loaded, unloaded[2])])
         known = conditions(env, len(batch))
         under = known if under is None or known is None else under.and_then(known)
         if progress is not None:
             progress(first + len(batch), len(seeds))
-    length = max(steps(env), *(len(series) for part in parts for series in part))
-    cost, effort, tip, voltages, failed, tremor = (_side_by_side(series, length) for series in zip(*parts, strict=True))
+    return of_series(seeds, tuple(_side_by_side(series) for series in zip(*parts, strict=True)), env, under)
+
+
+def of_series(seeds: tuple[int, ...], series: tuple[Array, ...], env: Environment, under: Conditions | None) -> Episodes:
+    """Episodes of what was ``recorded`` of these seeds, and of the tip (T, N, 2) without the load case behind it."""
+    length = max(steps(env), *(len(each) for each in series))
+    cost, effort, tip, voltages, failed, tremor = (_continued(each, length) for each in series)
     plant = attribute(env, "plant")[0]
     return Episodes(
         seeds=seeds,
@@ -149,7 +155,9 @@ def recorded_to_the_end(series: Array) -> bool:
     return bool(known[0].all() and not (known[1:] & ~known[:-1]).any())
 
 
-def _run(controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None) -> tuple[Array, ...]:
+def recorded(
+    controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None = None
+) -> tuple[Array, ...]:
     """Cost, effort (T, N), tip (T, N, 2), voltages (T, N, m) and failures (T, N) of one episode each, NaN once it is over."""
     steps = []
     for instant in islice(instants(controller, env, seeds, options), 1, None):
@@ -158,8 +166,12 @@ def _run(controller: Controller, env: Environment, seeds: tuple[int, ...], optio
     return tuple(np.stack(series) for series in zip(*steps, strict=True))
 
 
-def _side_by_side(parts: Sequence[Array], length: int) -> Array:
-    """Records (T, N, …) beside each other along N, continued with NaN to the same length."""
-    return np.concatenate(
-        [np.concatenate([part, np.full((length - len(part), *part.shape[1:]), np.nan)]) for part in parts], axis=1
-    )
+def _side_by_side(parts: Sequence[Array]) -> Array:
+    """Records (T, N, …) beside each other along N, continued to the longest."""
+    length = max(len(part) for part in parts)
+    return np.concatenate([_continued(part, length) for part in parts], axis=1)
+
+
+def _continued(part: Array, length: int) -> Array:
+    """A record (T, N, …) continued with NaN."""
+    return np.concatenate([part, np.full((length - len(part), *part.shape[1:]), np.nan)])

@@ -60,8 +60,11 @@ class InverseHysteresis(Law):
         reading, (own, plays) = self.instruments.read(observation), np.split(memory, [law.order], axis=-1)
         plays = plays.reshape(*plays.shape[:-1], m, PLAYS)
         wanted = own @ law.state_gain.T + reading @ law.measurement_gain.T
-        voltage = self._hysteresis.inverse(wanted / self._drive, plays, *self._limits)
-        acting, plays = self._hysteresis.step(voltage, plays)
+        if self.loop:
+            voltage = self._hysteresis.inverse(wanted / self._drive, plays, *self._limits)
+            acting, plays = self._hysteresis.step(voltage, plays)
+        else:
+            voltage = acting = np.clip(wanted / self._drive, *self._limits)
         own = own @ law.transition.T + reading @ law.measurement_input.T + (acting * self._drive) @ law.voltage_input.T
         following = np.concatenate([own, plays.reshape(*plays.shape[:-2], m * PLAYS)], axis=-1)
         return self.instruments.drive(voltage * self._drive), following

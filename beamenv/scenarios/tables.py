@@ -68,7 +68,7 @@ class PlantVariation:
     """Plants in the bank: a Latin hypercube of what varies, or the stations of what changes within an episode: of speeds all of
     them, of modulus and mass 16 on each of as many courses."""
     seed: Natural = 0
-    """Of the bank. Agents train on a bank of another seed than the one they are judged on."""
+    """Of the bank. Agents train on a bank of another seed than the one they are judged on, and are chosen on one of a third."""
 
     def __post_init__(self) -> None:
         drawn = self._drawn

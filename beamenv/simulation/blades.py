@@ -65,7 +65,6 @@ class Blades:
         self.count = None if self._sizes is None else sum(self._sizes)
         self._lie = Arrangement.of(self._sizes)
         self.shape = self._shape = self._lie.shape
-        self._multiply = self._lie.product if self._lie.runs else row_product  # a blade alone has no time to ask
         self._physical = physical_units
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
@@ -74,6 +73,8 @@ class Blades:
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
         self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
+        several = self.plants.product if self.plants.drawn and self._shape else row_product  # a blade alone has no time to ask
+        self._multiply = self._lie.product if self._lie.runs else several
         self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
         self._changing = (
             self.bank.runs or self.bank.walk is not None or (self.electronics is not None and self.electronics.changing)

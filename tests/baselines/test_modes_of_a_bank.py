@@ -107,3 +107,44 @@ def test_states_that_are_mixed_have_modes_in_common_or_none():
     assert one is other
     assert common_modes([A, A * (1.0 + 1e-6)]) is None
     assert common_modes([A, np.eye(3)]) is None
+
+
+@pytest.mark.parametrize("switching", [False, True], ids=["fixed", "switching"])
+@pytest.mark.parametrize("modes", [True, False], ids=["by modes", "by whole matrices"])
+def test_in_single_precision_a_bank_decides_as_in_double(small_plant, monkeypatch, switching, modes):
+    """To 1e-3 of the drive, at every instant: single precision rounds at 6e-8, times the conditions of modes and of weights."""
+    plant = small_plant()
+    more = {"transition": 0.94 * np.eye(6) + 0.01} if switching else {}
+    double = both(monkeypatch, hypotheses(plant), lqg(plant), **more)[0 if modes else 1]
+    if not modes:
+        monkeypatch.setattr(weighing, "motion_of", lambda bank, gain, mixed: DenseMotion.of(bank, gain))
+    single = double.in_single_precision()
+    one = other = None
+    for seen in episode(250, [1e-3, 3e-3, 0.02]):
+        a, one = single.predict(seen, one)
+        b, other = double.predict(seen, other)
+        np.testing.assert_allclose(a, b, atol=1e-3)
+    assert (one.dtype, other.dtype) == (np.float32, np.float64)
+    assert single.in_single_precision() is single
+
+
+def test_a_law_that_is_revised_goes_by_what_is_applied(small_plant):
+    """As one that has decided and is then overruled; and the action in place of its own may depend on what it asked for."""
+    plant = small_plant()
+    law = multiple_model(hypotheses(plant), lqg(plant))
+    memory = np.zeros((3, law.order))
+    for seen in episode(60, [1e-3, 3e-3, 0.02]):
+        told, following = [], np.empty_like(memory)
+
+        def half(some, asked, cautious, misfit, told=told):
+            told.append((asked, misfit))
+            return 0.5 * asked + 0.01 * cautious
+
+        action = law.revised(seen, memory, half, following)
+        asked, decided = law.decide(seen, memory)
+        np.testing.assert_array_equal(told[0][0], asked)
+        np.testing.assert_allclose(told[0][1], law.misfits(decided), rtol=1e-9)
+        np.testing.assert_allclose(following, law.overruled(decided, action - asked), rtol=1e-9, atol=1e-9)
+        memory = following
+    with pytest.raises(ValueError, match="has no fallback"):
+        multiple_model(hypotheses(plant)).revised(seen, memory, half, following)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import beamenv
-from beamenv.knowledge import TUNING, on_training_bank
+from beamenv.knowledge import TUNING, on_training_bank, on_validation_bank
 from beamenv.task import resolve_task
 from train.learning.training import on_training_bank as task_of_training
 from train.shared.held_out import held_out
@@ -24,6 +24,22 @@ def test_a_prior_has_the_bank_that_agents_train_on_and_none_of_the_plants_that_j
     assert np.array_equal(given.prior.bank.speeds, task_of_training(given).bank.speeds)
     assert not set(given.prior.bank.speeds) & set(given.bank.speeds)
     assert given.prior.scenario == on_training_bank(given.scenario) == task_of_training(given).scenario
+
+
+def test_plants_that_choose_are_none_that_train_and_none_that_judge():
+    given = task({"plants": {"speed_ratio": [0.9, 1.1], "bank": 6}})
+    choosing = given.on_other_plants(on_validation_bank(given.scenario))
+    banks = [set(each.bank.speeds) for each in (given, task_of_training(given), choosing)]
+    assert len(set().union(*banks)) == 18
+    assert task_of_training(choosing).prior.scenario == choosing.prior.scenario == given.prior.scenario
+
+
+def test_of_a_scenario_kept_for_judging_nothing_is_told_on_other_plants_either():
+    given = task("delay-off-model")
+    choosing = given.on_other_plants(on_validation_bank(given.scenario))
+    assert choosing.prior.scenario == given.prior.scenario
+    assert choosing.prior.scenario.drive.delay == (0, 0)
+    assert len(choosing.prior.bank) == 1
 
 
 def test_a_prior_tells_of_the_ranges_but_not_of_a_plant_file():

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 
 import gymnasium
 import numpy as np
@@ -10,6 +11,7 @@ from gymnasium.vector import AutoresetMode
 
 import beamenv
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv.scenarios.scenario import scenario
 
 BRITTLE = {"magnitude": [100.0, 8000.0], "onset": [0.0, 0.005], "harmonic_magnitude": [100.0, 8000.0]}
 """Loads that break about half of the blades, each at its own time: autoresets are staggered."""
@@ -216,3 +218,27 @@ def test_a_copy_goes_its_own_way_from_where_the_original_was(duplicate, make, se
         assert np.array_equal(twin.state, untouched.state)
     assert np.array_equal(duplicate(untouched).state, twin.state)
     assert not np.array_equal(env.state, twin.state)
+
+
+@pytest.mark.parametrize("name", ["off-model", "drift"])
+def test_blades_that_share_a_plant_move_as_few_of_them_do(name):
+    """Those of one plant are multiplied together where many share it, also once some have begun anew: to rounding as one by one."""
+    of = scenario(name)
+    of = replace(of, plants=replace(of.plants, bank=8))
+    several, few, others = (gymnasium.make_vec(beamenv.ENV_ID, num_envs=n, scenario=of, dtype="float64") for n in (64, 4, 4))
+    seeds, later, random = [*range(4)], [*range(10, 14)], np.random.default_rng(5)
+    several.reset(seed=16 * seeds)
+    few.reset(seed=seeds)
+    for k in range(60):
+        actions = random.uniform(-1.0, 1.0, (4, 4))
+        if k == 20:
+            several.reset(seed=8 * seeds + 8 * later, options={"reset_mask": np.arange(64) >= 32})
+            others.reset(seed=later)
+        moved, own = several.step(np.tile(actions, (16, 1)))[:2], few.step(actions)[:2]
+        anew = own if k < 20 else others.step(actions)[:2]
+        for all_of_them, first, second in zip(moved, own, anew, strict=True):
+            parts = np.array(np.split(all_of_them, 16))
+            np.testing.assert_allclose(parts[:8], np.broadcast_to(first, parts[:8].shape), rtol=1e-9, atol=1e-12)
+            np.testing.assert_allclose(parts[8:], np.broadcast_to(second, parts[8:].shape), rtol=1e-9, atol=1e-12)
+    plants = several.unwrapped._blades.plants
+    assert len(plants._shared.plants) == len(set(plants.index.tolist())) > 1

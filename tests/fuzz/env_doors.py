@@ -1,8 +1,4 @@
-"""Doors of the environments: making, resetting, stepping and wrapping them, plant files."""
-
-import warnings
-from functools import cache
-from pathlib import Path
+"""Doors that make environments."""
 
 import gymnasium as gym
 import numpy as np
@@ -10,31 +6,10 @@ from gymnasium.vector import AutoresetMode
 from hypothesis import strategies as st
 
 import beamenv
-from beamenv.plant.files import load_plant, save_plant
-from beamenv.plant.modal_plant import ModalPlant
-from beamenv.scenarios.load_cases import CASES
 from tests.fuzz import small
 from tests.fuzz.blade_doors import BLADE, BLADE_PARTS, SCENARIO, SCENARIO_PARTS
-from tests.fuzz.meaning import (
-    ANYTHING,
-    ARRAY,
-    COUNT,
-    COUNTS,
-    FLAG,
-    NOTHING,
-    NUMBER,
-    NUMBERS,
-    PATH,
-    RANGE,
-    TEXT,
-    Kind,
-    choice,
-    either,
-    instance,
-    maybe,
-    table,
-)
-from tests.fuzz.oracle import Door, same, seen
+from tests.fuzz.meaning import COUNT, COUNTS, FLAG, NOTHING, NUMBER, TEXT, Kind, maybe
+from tests.fuzz.oracle import Door
 from tests.fuzz.wrong import COPIABLE
 
 NAMED_SCENARIO = Kind(
@@ -76,6 +51,11 @@ BATCH = {
     "max_episode_steps": maybe(COUNT),
 }
 RENDERED = {**SINGLE, "render_mode": maybe(TEXT)}
+SEEDS = Kind(
+    "seeds",
+    lambda value: COUNT.means(value) if COUNT.means(value) is not NOTHING else COUNTS.means(value),
+    st.one_of(COUNTS.near, COUNT.near),
+)
 SINGLE_WORDS = ("speed", "section", "file", "duration", "blade", "beam", "preset", "design", "inlay", "plant", "layup")
 
 
@@ -132,142 +112,11 @@ def read(found):
     return {name: found[name] for name in ("blade", "physical_units", "num_envs")}
 
 
-@cache
-def twin():
-    made = gym.make(beamenv.ENV_ID, blade=small.BLADE, duration=small.DURATION)
-    made.reset(seed=1)
-    return made
-
-
-@cache
-def twins():
-    made = gym.make_vec(beamenv.ENV_ID, num_envs=2, blade=small.BLADE, duration=small.DURATION)
-    made.reset(seed=1)
-    return made
-
-
-def in_episode(env, other, seed, do):
-    """In the middle of an episode: what is refused leaves it going on as its twin's does."""
-    action = np.full(env.action_space.shape, 0.3)
-    for each in (env, other):
-        each.reset(seed=seed)
-        each.step(action)
-    try:
-        return do(env), env.unwrapped.state.copy(), env.step(action)
-    except (ValueError, TypeError, AttributeError, KeyError, IndexError, OverflowError, gym.error.Error, RuntimeError, Warning):
-        if not same(seen(env.step(action)), seen(other.step(action))):
-            raise AssertionError("a refusal changed the episode") from None
-        if env.unwrapped.np_random_seed != other.unwrapped.np_random_seed:
-            raise AssertionError("a refusal changed the seed") from None
-        raise
-
-
-LOAD = table(
-    {
-        "case": choice(*CASES),
-        **dict.fromkeys(("magnitude", "direction_deg", "onset", "duration", "frequency_ratio", "phase_deg"), RANGE),
-    }
-)
-OPTIONS = maybe(table({"load": LOAD, "initial_state": ARRAY}))
-SEEDS = Kind(
-    "seeds",
-    lambda value: COUNT.means(value) if COUNT.means(value) is not NOTHING else COUNTS.means(value),
-    st.one_of(COUNTS.near, COUNT.near),
-)
-MASK = Kind(
-    "mask",
-    lambda value: value if value is None or (isinstance(value, np.ndarray) and value.dtype == bool) else NOTHING,
-    st.just(np.array([True, False])),
-)
-BATCH_OPTIONS = maybe(table({"load": LOAD, "initial_state": ARRAY, "elapsed": either(COUNT, COUNTS), "reset_mask": MASK}))
-
-
-def new_env():
-    return gym.make(beamenv.ENV_ID, blade=small.BLADE, duration=small.DURATION)
-
-
-def new_envs():
-    return gym.make_vec(beamenv.ENV_ID, num_envs=2, blade=small.BLADE, duration=small.DURATION)
-
-
-def wrapper(cls, vector=False):
-    """Around an environment of its own where the example gives none; what is refused leaves it as it was."""
-
-    def call(env=None, **given):
-        own = env is OWN
-        inner = (new_envs() if vector else new_env()) if own else env
-        task = inner.unwrapped.task if own else None
-        try:
-            return lived(cls(inner, **given))
-        except Exception:
-            if own and inner.unwrapped.task is not task:
-                raise AssertionError("a refusal changed the environment") from None
-            raise
-
-    return call
-
-
-OWN = type("Own", (), {"__repr__": lambda self: "an environment"})()
-ENV = Kind(
-    "env",
-    lambda value: value if value is OWN else NOTHING,
-    st.sampled_from(["cartpole", "history", "frames", "rescaled", "physical", "batch"]).map(lambda name: OTHERS[name]()),
-)
-
-
-@cache
-def cartpole():
-    return gym.make("CartPole-v1")
-
-
-def rescaled():
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # Gymnasium's, about its own casting
-        return gym.wrappers.RescaleObservation(new_env(), np.float64(-2.0), np.float64(3.0))
-
-
-OTHERS = {
-    "cartpole": cartpole,
-    "history": cache(lambda: beamenv.SensorHistory(new_env(), 2)),
-    "frames": cache(lambda: gym.wrappers.FrameStackObservation(new_env(), 2)),
-    "rescaled": cache(rescaled),
-    "physical": cache(lambda: gym.make(beamenv.ENV_ID, blade=small.BLADE, duration=small.DURATION, physical_units=True)),
-    "batch": cache(new_envs),
-}
-ANY_UNITS = Kind("env", lambda value: value if value is OWN or value is OTHERS["physical"]() else NOTHING, ENV.near)
-VECTOR_ENV = Kind(
-    "envs", ENV.means, st.sampled_from(["cartpole", "single"]).map(lambda name: {"cartpole": cartpole, "single": new_env}[name]())
-)
-SIDE = Kind(
-    "side",
-    lambda value: (
-        value
-        if isinstance(value, str)
-        else next((read for kind in (COUNT, NUMBERS, RANGES) if (read := kind.means(value)) is not NOTHING), NOTHING)
-    ),
-    st.one_of(
-        NUMBERS.near, COUNT.near, st.sampled_from(["uniform", "optimal", "thesis-table-6.3", {"low": 0.1, "high": 1.0, "count": 2}])
-    ),
-)
-RANGES = table({"low": NUMBER, "high": NUMBER, "count": COUNT})
-LAYOUT = Kind(
-    "layout",
-    lambda value: value if isinstance(value, str) else table({"actuators": SIDE, "sensors": SIDE}).means(value),
-    st.sampled_from(["uniform", "x"]),
-    {"actuators": maybe(SIDE), "sensors": maybe(SIDE)},
-)
-
-
-def placed():
-    """Two, for what is accepted stays."""
-    return tuple(beamenv.PlacementWrapper(new_env()) for _ in range(2))
-
-
-def saved(plant, path):
-    save_plant(plant, path)
-    again = load_plant(path)
-    Path(path).unlink()
-    return again
+def vec(**given):
+    envs = beamenv.BladeVecEnv(**given)
+    first = envs.reset()
+    envs.close()
+    return first, envs.num_envs
 
 
 DOORS = [
@@ -324,69 +173,6 @@ DOORS = [
         public="RotatingBeamVectorEnv",
     ),
     Door(
-        "reset",
-        lambda **given: in_episode(small.env(), twin(), 5, lambda env: env.reset(**given)),
-        {"seed": maybe(COUNT), "options": OPTIONS},
-        lambda: {"seed": 3, "options": {"load": {"case": "step", "magnitude": 20.0}}},
-    ),
-    Door(
-        "step",
-        lambda action: in_episode(small.env(), twin(), 6, lambda env: env.step(action)),
-        {"action": ARRAY},
-        lambda: {"action": np.array([0.1, -0.2])},
-    ),
-    Door(
-        "batch reset",
-        lambda **given: in_episode(small.envs(), twins(), 5, lambda env: env.reset(**given)),
-        {"seed": maybe(SEEDS), "options": BATCH_OPTIONS},
-        lambda: {"seed": [3, 4], "options": {"load": {"case": "step"}}},
-        told=("seed",),
-    ),
-    Door(
-        "batch step",
-        lambda action: in_episode(small.envs(), twins(), 6, lambda env: env.step(action)),
-        {"action": ARRAY},
-        lambda: {"action": np.array([[0.1, -0.2], [0.3, 2.0]])},
-    ),
-    Door(
-        "SensorHistory",
-        wrapper(beamenv.SensorHistory),
-        {"env": ENV, "length": COUNT},
-        lambda: {"env": OWN, "length": 2},
-        plain=True,
-        public="SensorHistory",
-    ),
-    Door(
-        "VectorSensorHistory",
-        wrapper(beamenv.VectorSensorHistory, True),
-        {"env": VECTOR_ENV, "length": COUNT},
-        lambda: {"env": OWN, "length": 2},
-        public="VectorSensorHistory",
-    ),
-    Door(
-        "PlacementWrapper",
-        wrapper(beamenv.PlacementWrapper),
-        {"env": ANY_UNITS, "actuators": maybe(SIDE), "sensors": maybe(SIDE)},
-        lambda: {"env": OWN, "actuators": [0.1, 0.6], "sensors": None},
-        told=("layout", "span"),
-        public="PlacementWrapper",
-    ),
-    Door(
-        "VectorPlacementWrapper",
-        wrapper(beamenv.VectorPlacementWrapper, True),
-        {"env": VECTOR_ENV, "actuators": maybe(SIDE), "sensors": maybe(SIDE), "layouts": ANYTHING, "bank": COUNT},
-        lambda: {"env": OWN, "actuators": [0.1, 0.6], "sensors": None, "layouts": None, "bank": 2},
-        told=("layout", "actuators"),
-        public="VectorPlacementWrapper",
-    ),
-    Door(
-        "PlacementWrapper.reset",
-        lambda **given: in_episode(*placed(), 5, lambda env: env.reset(**given))[0],
-        {"seed": maybe(COUNT), "options": maybe(table({"layout": LAYOUT, "load": LOAD, "initial_state": ARRAY}))},
-        lambda: {"seed": 3, "options": {"layout": {"actuators": [0.1, 0.6]}}},
-        told=("layout", "actuators", "sensors"),
-    ),
-    Door(
         "BladeVecEnv",
         lambda **given: vec(**given),
         {"num_envs": COUNT, "seed": maybe(COUNT), **SINGLE},
@@ -396,22 +182,4 @@ DOORS = [
         COPIABLE,
         public="BladeVecEnv",
     ),
-    Door(
-        "load_plant", load_plant, {"source": PATH}, lambda: {"source": "solid-blade"}, told=("plant", "file"), public="load_plant"
-    ),
-    Door(
-        "save_plant",
-        saved,
-        {"plant": instance(ModalPlant), "path": PATH},
-        lambda: {"plant": load_plant("solid-blade").first(2), "path": "kept.npz"},
-        told=("file",),
-        public="save_plant",
-    ),
 ]
-
-
-def vec(**given):
-    envs = beamenv.BladeVecEnv(**given)
-    first = envs.reset()
-    envs.close()
-    return first, envs.num_envs

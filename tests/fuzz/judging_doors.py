@@ -5,10 +5,10 @@ from hypothesis import strategies as st
 import baselines
 from beamenv.plant.plant import Plant, SampledPlant
 from tests.fuzz import small
-from tests.fuzz.env_doors import cartpole
 from tests.fuzz.law_kinds import LINEAR, PLANT
 from tests.fuzz.meaning import COUNTS, NOTHING, NUMBER, TEXT, Kind, instance, maybe
 from tests.fuzz.oracle import Door
+from tests.fuzz.wrapper_doors import cartpole
 
 EITHER_PLANT = instance(Plant, SampledPlant)
 PLANTS = Kind(

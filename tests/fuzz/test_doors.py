@@ -14,15 +14,18 @@ from hypothesis import strategies as st
 import baselines
 import beamenv
 from tests.fuzz import (
+    archive_doors,
     blade_doors,
     command_doors,
     env_doors,
+    episode_doors,
     file_doors,
     informed_law_doors,
     judging_doors,
     law_doors,
     placement_doors,
     train_doors,
+    wrapper_doors,
 )
 from tests.fuzz.meaning import FLAG, NUMBER
 from tests.fuzz.oracle import Door, examined, shown
@@ -30,7 +33,8 @@ from tests.fuzz.wrong import arguments, copied, value_at
 from train.cli.app import app
 
 OF_LAWS = (law_doors, informed_law_doors, judging_doors, placement_doors)
-DOORS = [door for room in (blade_doors, env_doors, file_doors, *OF_LAWS, train_doors, command_doors) for door in room.DOORS]
+OF_BLADES = (blade_doors, env_doors, episode_doors, wrapper_doors, file_doors, archive_doors)
+DOORS = [door for room in (*OF_BLADES, *OF_LAWS, train_doors, command_doors) for door in room.DOORS]
 
 OUTCOMES = ("refused", "accepted", "fault")
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from beamenv.scenarios.named import UNSEEN
-from train.benchmark import benchmark
+from train.benchmark import benchmark, choice
 from train.benchmark import choose as tool
-from train.benchmark.cells import SERIES, Cell
+from train.benchmark.cells import SERIES, Cell, sources_digest
 from train.benchmark.choice import SCENARIOS, Choice, choose, read_choice, write_choice
-from train.benchmark.contests import AHEAD, BEHIND, LEVEL, contests_by
+from train.benchmark.contests import AHEAD, BEHIND, LEVEL, STALE, contests_by
 from train.benchmark.listed import ListedController
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import tabulate
@@ -160,6 +160,13 @@ def test_tables_say_who_was_not_chosen_and_that_this_favours_it():
     text = markdown(table_of(COSTS, ["gusty"]))
     assert "Agents against laws: one of each stands for its kind" in text
     assert text.count("Agents against laws:") == 1
+
+
+@pytest.mark.parametrize("today", [True, False])
+def test_a_choice_made_with_other_code_is_told(monkeypatch, today):
+    made = Choice(VALIDATION, SEEDS, sources_digest() if today else "1" * 16)
+    monkeypatch.setattr(choice, "read_choice", lambda: made)
+    assert markdown(table_of(COSTS, ["gusty"])).count(STALE) == int(not today)
 
 
 def test_names_in_the_choice_that_ships_exist():

@@ -65,7 +65,7 @@ def benchmark(
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
-    - ``validation``: on the seeds that contenders are chosen on, in place of those that they are compared on.
+    - ``validation``: on the seeds and the bank of plants that contenders are chosen on, in place of those they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.

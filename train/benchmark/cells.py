@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
+from itertools import groupby, islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import EpisodeMetrics, roll_out
+from baselines import Controller, EpisodeMetrics, Episodes, roll_out
 from baselines.design.controller import name_of
 from baselines.evaluation.metrics import finite, measure
 from beamenv.configuration import Refused, Text, checked, checked_table
 from beamenv.configuration.files import of_file
 from train.benchmark.bench import Bench, Blades, Setting
-from train.controllers.sources import Source
+from train.benchmark.together import roll_out_together
+from train.controllers.sources import Classical, Source, Trained
+from train.controllers.tiers import LEARNT
 from train.shared.digests import CONTROLLERS, digest, source_digest
 from train.shared.files import read_json, write_json
 from train.shared.versions import installed_version
@@ -28,11 +31,18 @@ DEPENDS_ON = (
     *CONTROLLERS,
     "train.benchmark.bench",
     "train.benchmark.cells",
+    "train.benchmark.together",
     "train.controllers.models",
     "train.controllers.sources",
     "train.shared.held_out",
 )
 """Modules that decide the numbers of a cell, besides the controller's own file."""
+
+MOST, BLADES = 5, 1280
+"""Cells that are measured together, an agent's runs or as many laws, and blades: more would not be faster, but take memory."""
+
+TOGETHER = (Classical, Trained)
+"""Sources of controllers that decide by what they are shown and remember alone."""
 
 SERIES = tuple(each.name for each in fields(EpisodeMetrics))
 
@@ -82,21 +92,73 @@ class Cell:
     """(N,) each, as in ``EpisodeMetrics``."""
 
 
-def measured(job: Job, bench: Bench) -> Cell:
-    """The cell; whatever fails fails in it alone."""
+def measured(jobs: Sequence[Job], bench: Bench) -> list[Cell]:
+    """The cells of jobs that go ``together``, in one batch; where that fails each alone, and whatever fails fails in its own."""
+    if isinstance(jobs[0].source, TOGETHER) and not _is_reference(jobs[0]) and _fits(jobs[0]):
+        try:
+            return _measured_together(jobs, bench)
+        except Exception:  # noqa: BLE001, S110 - it will come again, in the cell whose it is
+            pass
+    return [_measured_alone(job, bench) for job in jobs]
+
+
+def together(jobs: Iterable[Job]) -> Iterator[list[Job]]:
+    """Jobs next to each other that one batch can measure: of one setting, of sources whose controllers are known to observe alike.
+
+    What a caller brings along goes alone: it may count its calls.
+    """
+    for _, alike in groupby(jobs, key=_goes_with):
+        waiting = iter(alike)
+        while first := next(waiting, None):
+            yield [first, *islice(waiting, min(MOST, BLADES // (2 * first.setting.seeds)) - 1)] if _fits(first) else [first]
+
+
+def _goes_with(job: Job) -> tuple[object, ...]:
+    if isinstance(job.source, Trained):
+        return job.setting.name, LEARNT
+    if isinstance(job.source, Classical) and job.source.controller.tier <= LEARNT and not _is_reference(job):
+        return job.setting.name, job.source.controller.tier
+    return job.setting.name, job.controller, job.run
+
+
+def _fits(job: Job) -> bool:
+    return 2 * job.setting.seeds <= BLADES
+
+
+def _is_reference(job: Job) -> bool:
+    """Whether it is no control, which is measured before all others."""
+    return isinstance(job.source, Classical) and job.controller == "none"
+
+
+def _measured_together(jobs: Sequence[Job], bench: Bench) -> list[Cell]:
+    setting = jobs[0].setting
+    blades, envs = bench.blades(setting), bench.envs(setting, 2 * len(jobs))
+    _check_moved(blades)
+    controllers = [job.source.build(blades.task) for job in jobs]
+    all_of_them = roll_out_together(controllers, envs, setting.episodes)
+    return [_cell(*each, blades) for each in zip(jobs, controllers, all_of_them, strict=True)]
+
+
+def _measured_alone(job: Job, bench: Bench) -> Cell:
     try:
-        return _measured(job, bench.blades(job.setting))
+        blades = bench.blades(job.setting)
+        controller = job.source.build(blades.task)
+        _check_moved(blades)
+        if _is_reference(job):
+            return _cell(job, controller, blades.reference, blades)
+        return _cell(job, controller, roll_out(controller, blades.envs, job.setting.episodes), blades)
     except Exception as error:  # noqa: BLE001 - one cell must not stop the table
         return Cell(job.setting.name, job.controller, job.run, sentence=_sentence(error))
 
 
-def _measured(job: Job, blades: Blades) -> Cell:
-    controller = job.source.build(blades.envs.unwrapped.task)
+def _check_moved(blades: Blades) -> None:
     if not blades.uncontrolled.all():
         raise ValueError("J without control is zero in an episode of this scenario: no other can be relative to it.")
     if not np.isfinite(blades.uncontrolled).all():
         raise ValueError("J without control is infinite in an episode of this scenario: no other can be relative to it.")
-    episodes = roll_out(controller, blades.envs, job.setting.episodes)
+
+
+def _cell(job: Job, controller: Controller, episodes: Episodes, blades: Blades) -> Cell:
     metrics = measure(episodes, blades.band)
     gave_up = getattr(controller, "solver_failures", 0)
     return Cell(

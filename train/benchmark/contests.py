@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from baselines import Estimate
 from train.benchmark import choice, statistics
+from train.benchmark.cells import sources_digest
 from train.benchmark.choice import Choice
 from train.benchmark.table import BenchmarkTable, Row
 
@@ -22,6 +23,18 @@ RULE = (
     "agent."
 )
 """How agents and laws are compared, for whoever shows it."""
+
+
+STALE = (
+    "Who was chosen may not be who would be chosen today, for the choice that ships was made with other code, or other versions of "
+    "NumPy and SciPy, than these."
+)
+
+
+def rule() -> str:
+    """``RULE``, and whether today's code is that which the choice was made with."""
+    made = choice.read_choice()
+    return RULE if made is None or made.digest == sources_digest() else f"{RULE} {STALE}"
 
 
 @dataclass(frozen=True, slots=True)

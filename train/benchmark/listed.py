@@ -16,6 +16,7 @@ from beamenv.knowledge import TRUTH
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, any_scenario, discover
+from train.controllers.near import near
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT, runs_in
 from train.controllers.shipped import FOLDER, shipped
@@ -79,7 +80,8 @@ def listed_controllers(
     names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
     known |= {name: of_folder(Path(name)) for name in names if name not in known and os.path.isdir(name)}
     if unknown := [name for name in names if name not in known]:
-        raise Refused("controller", unknown[0], f"one of {', '.join(known)}, or the folder of a trained agent")
+        others = f"one of {', '.join(known)}, or the folder of a trained agent"
+        raise Refused("controller", unknown[0], others + near(unknown[0], known))
     brought = [ListedController(name, "own", own_tier(each), {"": _given(name, each)}) for name, each in own.items()]
     brought += [ListedController(checked("model", path.stem, FileName()), "own", LEARNT, {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]

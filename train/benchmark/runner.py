@@ -12,7 +12,7 @@ from itertools import islice
 from typing import Any
 
 from train.benchmark.bench import Bench
-from train.benchmark.cells import Cell, Job, measured
+from train.benchmark.cells import Cell, Job, measured, together
 from train.controllers.sources import Source
 from train.shared.interruption import end_with_parent
 from train.shared.threads import ONE_THREAD
@@ -21,33 +21,38 @@ from train.shared.threads import ONE_THREAD
 def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], None]) -> None:
     """Measure every job and call ``finished`` for each, in this process or in several, each of them on one thread.
 
-    An interruption loses only the cells that are being measured. Raises ValueError for objects that cannot be sent to another
-    process, ChildProcessError if a process dies.
+    Neighbours are measured together where they can be. An interruption loses only the cells that are being measured. Raises
+    ValueError for objects that cannot be sent to another process, ChildProcessError if a process dies.
     """
     if processes == 1 or len(jobs) < 2:
         with closing(Bench()) as bench:
-            for job in jobs:
-                finished(job, measured(job, bench))
+            for group in together(jobs):
+                _hand_over(group, measured(group, bench), finished)
         return
     check_portable(jobs)
-    waiting = iter(jobs)
+    waiting = together(jobs)
     with workers(min(processes, len(jobs))) as pool:
-        running: dict[Future[Cell], Job] = {}
+        running: dict[Future[list[Cell]], list[Job]] = {}
         while True:
-            for job in islice(waiting, 2 * processes - len(running)):  # with more, an interrupted pool writes a traceback
-                running[pool.submit(_measured_here, job)] = job
+            for group in islice(waiting, 2 * processes - len(running)):  # with more, an interrupted pool writes a traceback
+                running[pool.submit(_measured_here, group)] = group
             if not running:
                 return
             for future in wait(running, return_when=FIRST_COMPLETED).done:
-                finished(running.pop(future), future.result())
+                _hand_over(running.pop(future), future.result(), finished)
+
+
+def _hand_over(jobs: Sequence[Job], cells: Sequence[Cell], finished: Callable[[Job, Cell], None]) -> None:
+    for job, cell in zip(jobs, cells, strict=True):
+        finished(job, cell)
 
 
 BENCH = Bench()
 """Of this process if it is a worker, which is sent one job after another and has nobody else to keep the blades in between."""
 
 
-def _measured_here(job: Job) -> Cell:
-    return measured(job, BENCH)
+def _measured_here(jobs: Sequence[Job]) -> list[Cell]:
+    return measured(jobs, BENCH)
 
 
 @contextmanager

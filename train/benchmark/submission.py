@@ -21,6 +21,7 @@ from train.benchmark.score import SPLITS, aggregates
 from train.benchmark.table import BOUND, BenchmarkTable, Row
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import discover
+from train.controllers.near import near
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT
 from train.controllers.shipped import FOLDER
@@ -105,7 +106,7 @@ def entrant(entry: str, tier: int | None, trusted: bool) -> ListedController:
         brought = of_folder(path, tier)
     else:
         others = f"the folder of a trained agent, a model's {MODEL} file, or one of {', '.join([*known, *general])}"
-        raise Refused("submit", entry, others)
+        raise Refused("submit", entry, others + near(entry, [*known, *general]))
     if brought.name in {*known, *general}:
         raise Refused("submit", entry, f"called otherwise: {brought.name!r} is a controller that ships")
     return brought

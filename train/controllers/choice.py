@@ -8,7 +8,8 @@ from pathlib import Path
 from baselines import Controller
 from beamenv.configuration import Refused, Text, checked
 from beamenv.task import Task
-from train.controllers.named import discover, named
+from train.controllers.named import discover
+from train.controllers.near import near
 from train.controllers.runs import runs_in
 from train.controllers.shipped import find_shipped, shipped
 from train.controllers.sources import Trained
@@ -45,4 +46,9 @@ def _by_name(name: str, task: Task, scenario: str, seed: int | None) -> Controll
         return Trained(find_shipped(name, home, seed).folder).build(task)
     if seed is not None:
         raise Refused("trained_seed", seed, f"left out, for {name!r} is no agent that ships")
-    return named(name).build_for(task)
+    laws = discover()
+    if name not in laws:
+        agents = sorted({each.agent for each in shipped()})
+        known = f"one of {', '.join(laws)}, of the agents that ship, {', '.join(agents)}, or the folder of a trained agent"
+        raise Refused("controller", name, known + near(name, [*laws, *agents]))
+    return laws[name].build_for(task)

@@ -34,9 +34,12 @@ def general_hypotheses(blade: Blade) -> list[Hypothesis]:
 
 @lru_cache(maxsize=4)
 def general_law(blade: Blade) -> MultipleModel:
-    """The multiple-model law over them, and the cautious LQG where none of them fits; one for all that ask with an equal blade."""
+    """The multiple-model law over them, and the cautious LQG where none of them fits; one for all that ask with an equal blade.
+
+    It reckons in single precision, as the agents that add to it were trained.
+    """
     fallback = detuned_lqg(blade.truth, CAUTIOUS, name="cautious LQG")
-    return multiple_model(general_hypotheses(blade), fallback, rate_weight=BETWEEN)
+    return multiple_model(general_hypotheses(blade), fallback, rate_weight=BETWEEN).in_single_precision()
 
 
 def _unlike(those: Iterable[Hypothesis]) -> list[Hypothesis]:

@@ -35,7 +35,7 @@ class ModelsPolicy(Policy):
         p = self.weights["weight_ih"].shape[1] - 3 * m - 1
         if law.instruments.counts != (p, m) or not law.instruments.fit(physical_units=False):
             raise Refused("law", law, f"one of {p} readings and {m} voltages in normalised units")
-        return replace(self, law=law)
+        return replace(self, law=law.in_single_precision())
 
     @property
     def memory_size(self) -> int:
@@ -49,21 +49,23 @@ class ModelsPolicy(Policy):
         return self.law
 
     def act(self, readings: Array, memory: Array) -> tuple[Array, Array]:
-        """The law and its fallback, the unit, and what all ask for; the law then goes by what is held."""
-        law, units, m = self._law, self.weights["weight_hh"].shape[1], len(self.lowest)
-        hidden, own, voltages = memory[:, :units], np.asarray(memory[:, units:-m], dtype=np.float64), memory[:, -m:]
-        seen = np.asarray(readings, dtype=np.float64)
-        cautious = law.cautious(seen, own)
-        asked, own = law.decide(seen, own)
-        fit = np.tanh(SHARPNESS * np.log(law.misfits(own) + 1e-3))[:, None]
-        inputs = np.hstack([readings * np.float32(self.settings["input_gain"]), voltages, asked, cautious, fit])
-        hidden, output = gated_unit(self.weights, inputs.astype(np.float32), hidden.astype(np.float32))
-        weight, share, added = np.split(output, 3, axis=1)
-        action = np.clip((1.0 + weight) * asked + share * cautious + added, self.lowest, self.highest)
-        return action, np.hstack([hidden, law.overruled(own, action - asked), action])
+        """What both laws ask for, and the unit, which revises it; the law then goes by what is held."""
+        units, m = self.weights["weight_hh"].shape[1], len(self.lowest)
+        hidden, own, voltages = memory[:, :units], memory[:, units:-m], memory[:, -m:]
+        following = np.empty(memory.shape, np.float32)
+
+        def weighed(some: slice, asked: Array, cautious: Array, misfit: Array) -> Array:
+            fit = np.tanh(SHARPNESS * np.log(misfit + 1e-3))[:, None]
+            inputs = np.hstack([readings[some] * np.float32(self.settings["input_gain"]), voltages[some], asked, cautious, fit])
+            following[some, :units], output = gated_unit(self.weights, inputs.astype(np.float32), hidden[some].astype(np.float32))
+            weight, share, added = np.split(output, 3, axis=1)
+            return np.clip((1.0 + weight) * asked + share * cautious + added, self.lowest, self.highest)
+
+        action = self._law.revised(np.asarray(readings, dtype=np.float64), own, weighed, following[:, units:-m])
+        return action, following
 
     def knowing(self, memory: Array, voltages: Array) -> Array:
         """The law, too, goes by the voltages that were held."""
         units, m = self.weights["weight_hh"].shape[1], voltages.shape[1]
-        own = self._law.overruled(np.asarray(memory[:, units:-m], dtype=np.float64), voltages - memory[:, -m:])
+        own = self._law.overruled(memory[:, units:-m], voltages - memory[:, -m:])
         return np.hstack([memory[:, :units], own, voltages])

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
 from baselines import Controller
+from beamenv.plant.fingerprint import fingerprint
 from beamenv.task import Task
 from train.controllers.general_bank import general_law
 from train.controllers.models import fitted, load_model
@@ -37,12 +39,32 @@ class Classical:
     controller: NamedController
 
     def build(self, task: Task) -> Controller:
-        """From what its tier is told of the task."""
-        return self.controller.build_for(task)
+        """From what its tier is told of the task; a fixed law of the nominal plant alone once for all tasks of that design."""
+        if (self.controller.tier, self.controller.kind) != (0, "fixed"):
+            return self.controller.build_for(task)
+        return _designed(self.controller, _Designed(task))
 
     def fingerprint(self) -> str:
         """Of its file."""
         return digest(inspect.getsource(inspect.getmodule(self.controller.build) or self.controller.build).encode())
+
+
+class _Designed:
+    """A task as the designer of a fixed law sees it: equal to others of the same design and units."""
+
+    def __init__(self, task: Task) -> None:
+        self.task, self._seen = task, (task.design_config, fingerprint(task.design_plant), task.physical_units)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Designed) and self._seen == other._seen
+
+    def __hash__(self) -> int:
+        return hash(self._seen[1:])
+
+
+@lru_cache(maxsize=64)
+def _designed(controller: NamedController, design: _Designed) -> Controller:
+    return controller.build_for(design.task)
 
 
 @dataclass(frozen=True, slots=True)

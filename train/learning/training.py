@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -67,7 +67,7 @@ class Training(Protocol):
 
 def on_training_bank(task: Task) -> Task:
     """The task with plants drawn from another bank than the one that controllers are judged on."""
-    return replace(task, scenario=training_scenario(task.scenario))
+    return task.on_other_plants(training_scenario(task.scenario))
 
 
 def uncontrolled_cost(task: Task, episodes: int = 512) -> float:

@@ -1,4 +1,4 @@
-"""How good a policy is without exploration: on validation seeds, which choose among checkpoints and judge nobody."""
+"""How good a policy is without exploration: on plants and seeds of validation, which choose among checkpoints and judge nobody."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.knowledge import on_validation_bank
 from beamenv.simulation.blades import Blades
 from beamenv.task import Task
 from train.controllers.policies import Policy
@@ -22,10 +23,10 @@ HIGHEST = 100.0
 
 
 class Validation:
-    """The same episodes for every policy, of each of some tasks as it is judged on."""
+    """The same episodes for every policy, of each of some tasks on the plants that choose."""
 
     def __init__(self, tasks: Sequence[Task]) -> None:
-        self._tasks = list(tasks)
+        self._tasks = [task.on_other_plants(on_validation_bank(task.scenario)) for task in tasks]
 
     def cost(self, policy: Policy) -> float:
         """J relative to no control, the mean over the tasks."""

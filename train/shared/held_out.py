@@ -9,7 +9,7 @@ HELD_OUT = 1_000_000
 """The first of them: training draws from generators of its own."""
 
 VALIDATION = 3_000_000
-"""The first of those on which settings, checkpoints and contenders are chosen."""
+"""The first of those on which settings, checkpoints and contenders are chosen, on ``beamenv.knowledge.on_validation_bank``."""
 
 SEEDS = Count(2, MOST_SEEDS)
 """How many of them: intervals need more than one episode."""

@@ -9,12 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamenv.simulation.kernel import Operators
+from beamenv.simulation.kernel import Operators, row_product
 from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.plants.bank import Bank
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
+
+
+SHARED = 4
+"""Blades to a plant, on average, from which on those that share one are multiplied together: sorting them takes time, too."""
 
 
 class Passage(NamedTuple):
@@ -24,6 +28,15 @@ class Passage(NamedTuple):
     """(k,)"""
     change: Array
     """(k, n, n): states, as rows, times this are those of the next plant."""
+
+
+class Shared(NamedTuple):
+    """Blades sorted by their plants."""
+
+    order: Rows
+    """(N,)"""
+    plants: list[tuple[int, slice]]
+    """Each with its part of that order; none where too few share one."""
 
 
 class Allotment:
@@ -49,6 +62,8 @@ class Allotment:
         """Of the one plant that all blades have now, of each group's (groups, …), or of each blade's (*shape, …)."""
         self.effort_weight: Array
         """(m, m), (groups, m, m) or (*shape, m, m), J s."""
+        self._shared: Shared | None = None
+        """None until it is asked for."""
         self._gather()
 
     @property
@@ -82,8 +97,32 @@ class Allotment:
         """Give ``rows`` the first plants of their groups."""
         self._allot(rows, self._first[rows])
 
+    def product(self, rows: Any, matrix: Any, out: Any = None) -> Any:
+        """As ``row_product``; blades that share a plant are multiplied by its operators together, where there are many such."""
+        if matrix is not self.operators.fused or not self.drawn or matrix.ndim < 4:
+            return row_product(rows, matrix, out)
+        if self._shared is None:
+            self._shared = self._by_plant()
+        if not self._shared.plants:
+            return row_product(rows, matrix, out)
+        order, sorted_rows = self._shared.order, rows.reshape(len(self.index), -1)[self._shared.order]
+        products = np.empty((len(order), matrix.shape[-1]))
+        for plant, those in self._shared.plants:
+            np.matmul(sorted_rows[those], self._bank.operators.fused[plant], products[those])
+        out = np.empty((*rows.shape[:-1], matrix.shape[-1])) if out is None else out
+        out.reshape(len(order), -1)[order] = products
+        return out
+
+    def _by_plant(self) -> Shared:
+        order = np.argsort(self.index, kind="stable")
+        plants, first = np.unique(self.index[order], return_index=True)
+        if len(order) < SHARED * len(plants):
+            return Shared(order, [])
+        ends = [*first[1:].tolist(), len(order)]
+        return Shared(order, [(k, slice(a, b)) for k, a, b in zip(plants.tolist(), first.tolist(), ends, strict=True)])
+
     def _allot(self, rows: Rows, index: Rows) -> None:
-        self.index[rows] = index
+        self.index[rows], self._shared = index, None
         if self.drawn and self._lie.shape and len(rows) < len(self.index):
             at = self._lie.rows_of(rows)  # in place: operators of many blades are many megabytes
             self.operators.fused[at] = self._bank.operators.fused[index]
@@ -110,7 +149,7 @@ class Allotment:
         self._gather()
 
     def _gather(self) -> None:
-        places = self._places()
+        self._shared, places = None, self._places()
         self.operators = self._bank.operators.pick(places) if len(self._bank) > 1 else self._bank.operators
         if self._lie.runs:  # a product serves a group, but squares are weighted blade by blade
             weights = self._bank.operators.weights[self.index]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from beamenv.knowledge import TIERS
-from train.benchmark.contests import RULE, Contest, contests
+from train.benchmark.contests import Contest, contests, rule
 from train.benchmark.showing.section import COST, Entry, Section, gap, words
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import leaders_of
@@ -39,7 +39,7 @@ def _unstable(row: Row) -> str:
 def agents_and_laws(table: BenchmarkTable) -> Section:
     """One of each against the other in each scenario."""
     headings = ["scenario", "agent", "law", "verdict", "hardest law", "J / J₀, agent less law", "agent less the hardest"]
-    return Section("Agents against laws", RULE, headings, [_contest(each) for each in contests(table)], 5)
+    return Section("Agents against laws", rule(), headings, [_contest(each) for each in contests(table)], 5)
 
 
 def _contest(one: Contest) -> list[Entry]:

@@ -21,6 +21,7 @@ from beamenv.configuration import Count, Refused, checked
 from beamenv.knowledge import TIERS
 from beamenv.scenarios.scenario import Scenario
 from beamenv.task import Task, checked_task
+from train.controllers.near import near
 
 KINDS = ("fixed", "scheduled", "adaptive", "predictive")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed or the time; laws that find out what is the case;
@@ -78,8 +79,11 @@ def discover() -> Mapping[str, NamedController]:
 
 
 def named(name: str) -> NamedController:
-    """A controller by its short name; ``ValueError`` lists the known ones."""
+    """A controller by its short name; ``ValueError`` lists the known ones, and who has a name like it, agents that ship as well."""
     known = discover()
     if not isinstance(name, str) or name not in known:
-        raise Refused("controller", name, f"one of {', '.join(known)}, or the folder of a trained agent")
+        from train.controllers.shipped import shipped  # loads what an agent is made of
+
+        agents = {each.agent: f"{each.agent}, an agent that ships" for each in shipped()}
+        raise Refused("controller", name, f"one of {', '.join(known)}{near(name, [*known, *agents], agents)}")
     return known[name]

@@ -11,7 +11,8 @@ TIER = 1
 
 
 def build(prior: Prior) -> Controller:
-    """Over the scenario's plants, delays and faults, and the cautious LQG where none of them fits."""
+    """Over the scenario's plants, delays and faults, and the cautious LQG where none fits; in single precision, for speed."""
     hypotheses, fallback = hypotheses_of(prior), detuned_lqg(prior.blade.truth, CAUTIOUS, name="cautious LQG")
     rate_weight = BETWEEN if are_drawn(prior) else RATE_WEIGHT
-    return multiple_model(hypotheses, fallback, transition=switches(prior, hypotheses), rate_weight=rate_weight)
+    law = multiple_model(hypotheses, fallback, transition=switches(prior, hypotheses), rate_weight=rate_weight)
+    return law.in_single_precision()
