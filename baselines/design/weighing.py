@@ -23,9 +23,9 @@ AT_ONCE = 2**20
 
 
 Numbers = NDArray[np.floating[Any]]
-Revision = Callable[[slice, Numbers, Numbers, Numbers], Numbers]
-"""Actions (N, m) in place of those that a law asks for, of the blades of a slice: from its own (N, m), those of its fallback (N, m)
-and how badly any hypothesis fits (N,), as ``misfits`` has it."""
+Revision = Callable[[slice, Numbers, Numbers, Numbers, Numbers], Numbers]
+"""Actions (N, m) in place of those that a law asks for, of the blades of a slice: from its own (N, m), its fallback's (N, m),
+how badly any hypothesis fits (N,) as ``misfits`` has it, and how likely each is (N, H)."""
 
 
 class Memory(NamedTuple):
@@ -212,7 +212,7 @@ class MultipleModel(Law):
             voltage = np.where(new.astray[:, None] > 0.0, cautious, voltage)
             if revise is not None:
                 drive = self.instruments.drive
-                voltage = revise(some, drive(voltage), drive(cautious), badly) * self.instruments.voltage_scale
+                voltage = revise(some, drive(voltage), drive(cautious), badly, weights) * self.instruments.voltage_scale
             self._remember(self.fallback, old, new, reading, voltage)
         voltages = np.concatenate([voltage, before], axis=1)
         if self.transition is None:

@@ -14,8 +14,9 @@ from beamenv.plant.plant import normalised
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.kernel import Operators, advance
 from beamenv.task import resolve_task
+from train.learning.recipe import named_recipe
 from train.learning.through_plant.actors import ActorSettings
-from train.learning.through_plant.gradient import GradientSettings, new_actor, train_gradient
+from train.learning.through_plant.gradient import GradientSettings, GradientTraining, new_actor, train_gradient
 from train.learning.through_plant.linear_base import SPREAD, linear_base
 from train.learning.through_plant.windows import Windows
 from train.learning.training import on_training_bank, uncontrolled_cost
@@ -245,3 +246,26 @@ def test_an_interrupted_training_gives_what_it_has():
 
     (policy,) = train_gradient(task_of(), 0, interrupt, seconds=60.0)
     assert policy.predict(np.zeros(4))[0].shape == (4,)
+
+
+@pytest.mark.parametrize("device", ["nowhere", "cuda:99", "meta"])
+def test_a_device_that_is_not_there_is_told_before_training(device):
+    with pytest.raises(ValueError, match=f"settings.device is '{device}', but must be cpu, or a device that torch has here"):
+        GradientTraining([task_of()], GradientSettings(device=device), 0)
+
+
+def test_a_recipe_goes_to_a_device_where_its_trainer_has_one():
+    assert named_recipe("residual").on("cpu") == named_recipe("residual")
+    with pytest.raises(ValueError, match="device is 'cuda', but must be left out: ppo trains on the processor"):
+        named_recipe("ppo").on("cuda")
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU here")
+@pytest.mark.parametrize("scenario", ["failure", "hysteresis", "gust-speed"])
+def test_a_gpu_unrolls_what_the_processor_does(scenario):
+    trained = []
+    for device in ("cpu", "cuda"):
+        training = GradientTraining([task_of(scenario, 0.05)], GradientSettings(episodes=16, window=50, device=device), 0)
+        training.update(1.0)
+        trained.append(training.cost)
+    np.testing.assert_allclose(*trained, rtol=1e-4)

@@ -35,6 +35,10 @@ def train(
         bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments, to the same result.")
     ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the training or agent that the folder holds.")] = False,
+    device: Annotated[
+        str | None,
+        typer.Option(help="cpu or cuda, of what is trained through the plant; the recipe's if left out."),
+    ] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -51,6 +55,7 @@ def train(
 
         checked("agent", agent, FileName())
         chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
+        chosen = chosen if device is None else chosen.on(device)
         budget = _budget(minutes, updates, chosen.updates)
         environment = environment_arguments(preset, speed, blade)
         home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"

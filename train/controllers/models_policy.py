@@ -19,8 +19,8 @@ SHARPNESS = 0.3
 class ModelsPolicy(Policy):
     """Weighs a multiple-model law and its fallback and adds to them: u = clip((1 + g) ∘ u_models + c ∘ u_fallback + r).
 
-    [g, c, r] is the tanh output of a gated recurrent unit that sees the readings, the voltages held before, what both laws ask for
-    and how well any model fits. Its memory is [hidden units | the law's | voltages].
+    [g, c, r] is the tanh output of a gated recurrent unit that sees the readings, the voltages held before, what both laws ask for,
+    how well any model fits and how likely each is. Its memory is [hidden units | the law's | voltages].
     """
 
     kind = "multiple-model-residual"
@@ -32,9 +32,10 @@ class ModelsPolicy(Policy):
         if not isinstance(law, MultipleModel) or law.fallback is None:
             raise Refused("law", law, "a multiple-model law with a fallback")
         m = len(self.lowest)
-        p = self.weights["weight_ih"].shape[1] - 3 * m - 1
-        if law.instruments.counts != (p, m) or not law.instruments.fit(physical_units=False):
-            raise Refused("law", law, f"one of {p} readings and {m} voltages in normalised units")
+        told = self.weights["weight_ih"].shape[1] - 3 * m - 1
+        (p, voltages), models = law.instruments.counts, law.bank.counts[0]
+        if (p + models, voltages) != (told, m) or not law.instruments.fit(physical_units=False):
+            raise Refused("law", law, f"one of {m} voltages and, together, {told} readings and models, in normalised units")
         return replace(self, law=law.in_single_precision())
 
     @property
@@ -54,9 +55,10 @@ class ModelsPolicy(Policy):
         hidden, own, voltages = memory[:, :units], memory[:, units:-m], memory[:, -m:]
         following = np.empty(memory.shape, np.float32)
 
-        def weighed(some: slice, asked: Array, cautious: Array, misfit: Array) -> Array:
+        def weighed(some: slice, asked: Array, cautious: Array, misfit: Array, likely: Array) -> Array:
             fit = np.tanh(SHARPNESS * np.log(misfit + 1e-3))[:, None]
-            inputs = np.hstack([readings[some] * np.float32(self.settings["input_gain"]), voltages[some], asked, cautious, fit])
+            seen = readings[some] * np.float32(self.settings["input_gain"])
+            inputs = np.hstack([seen, voltages[some], asked, cautious, fit, likely])
             following[some, :units], output = gated_unit(self.weights, inputs.astype(np.float32), hidden[some].astype(np.float32))
             weight, share, added = np.split(output, 3, axis=1)
             return np.clip((1.0 + weight) * asked + share * cautious + added, self.lowest, self.highest)

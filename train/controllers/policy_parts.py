@@ -142,8 +142,8 @@ def _residual(sizes: _Sizes, m: int, p: int | None) -> Shapes:
 
 
 def _multiple_model(sizes: _Sizes, m: int, p: int | None) -> Shapes:
-    p = max(sizes.of("weight_ih")[1] - 3 * m - 1, 1) if p is None else p
-    return _cells(sizes, 3, p + 3 * m + 1, 3 * m)
+    """Beside readings and voltages it sees one number, and one of each model, of which it alone cannot say how many there are."""
+    return _cells(sizes, 3, max(sizes.of("weight_ih")[1], (p or 1) + 3 * m + 2), 3 * m)
 
 
 def _lstm(sizes: _Sizes, m: int, p: int | None) -> Shapes:

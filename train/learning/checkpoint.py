@@ -28,12 +28,12 @@ def write_checkpoint(folder: Path, content: Mapping[str, Any]) -> None:
 
 
 def as_tensors(content: Any) -> Any:
-    """The content with its arrays as tensors: torch reads arrays only where code may be executed."""
+    """The content with its arrays as tensors of the processor: torch reads arrays only where code may be executed."""
     if isinstance(content, Mapping):
         return {name: as_tensors(value) for name, value in content.items()}
     if isinstance(content, list | tuple):
         return [as_tensors(value) for value in content]
-    return torch.as_tensor(content) if isinstance(content, np.ndarray) else content
+    return torch.as_tensor(content).cpu() if isinstance(content, np.ndarray | torch.Tensor) else content
 
 
 def read_checkpoint(folder: Path, keys: Sequence[str] = ()) -> dict[str, Any]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any
 
-from beamenv.configuration import Choice, Text, Whole, checked, checked_table, configuration, read
+from beamenv.configuration import Choice, Refused, Text, Whole, checked, checked_table, configuration, read
 from beamenv.configuration.files import of_file, parsed_table, read_table
 from train.learning import recipes
 from train.learning.agents import AGENTS
@@ -30,6 +30,12 @@ class Recipe:
     """Of the shipped run."""
     settings: Any
     """The trainer's settings dataclass."""
+
+    def on(self, device: str) -> Recipe:
+        """The same on a device of torch; ``ValueError`` for what is trained on the processor alone."""
+        if not hasattr(self.settings, "device"):
+            raise Refused("device", device, f"left out: {self.agent} trains on the processor")
+        return replace(self, settings=replace(self.settings, device=device))
 
     def to_dict(self) -> dict[str, Any]:
         """Every setting written out, as JSON can hold it."""

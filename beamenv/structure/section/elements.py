@@ -34,7 +34,7 @@ RIGID = 6
 @lru_cache
 def lobatto_nodes(order: int) -> Array:
     """(order + 1,) nodes on −1 … 1."""
-    inner = legendre.legroots(legendre.legder(np.eye(order + 1)[order])) if order > 1 else np.zeros(0)
+    inner = legendre.legroots(legendre.legder(np.eye(order + 1)[order])).real if order > 1 else np.zeros(0)  # complex from 2.5 on
     nodes = np.concatenate([[-1.0], np.sort(inner), [1.0]])
     nodes.setflags(write=False)
     return nodes

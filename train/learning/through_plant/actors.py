@@ -49,7 +49,7 @@ class Actor(nn.Module):
 
     def start(self, count: int) -> Memory:
         """Nothing remembered."""
-        return tuple(torch.zeros(count, size) for size in (*self.sizes, self.voltages))
+        return tuple(torch.zeros(count, size, device=self.limits.device) for size in (*self.sizes, self.voltages))
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -64,7 +64,7 @@ class Actor(nn.Module):
         return torch.clamp(voltages, self.limits[0], self.limits[1])
 
     def _bounds(self) -> tuple[Any, Any]:
-        lowest, highest = self.limits.numpy().copy()
+        lowest, highest = self.limits.numpy(force=True).copy()
         return lowest, highest
 
 
@@ -84,7 +84,7 @@ class Layer(nn.Module):
     def arrays(self, run: int, suffix: str) -> dict[str, Any]:
         """Weight (outputs, inputs) and bias (outputs,) of a run."""
         weight, bias = self.weight[run].T, self.bias[run, 0]
-        return {f"weight{suffix}": weight.detach().numpy().copy(), f"bias{suffix}": bias.detach().numpy().copy()}
+        return {f"weight{suffix}": _array(weight), f"bias{suffix}": _array(bias)}
 
 
 class GatedUnit(nn.Module):
@@ -171,7 +171,7 @@ class ResidualActor(Actor):
 
     def policy(self, run: int) -> Policy:
         """What a run has learnt, as arrays."""
-        weights = self.unit.arrays(run) | {name: getattr(self, name).numpy().copy() for name in LinearBase._fields}
+        weights = self.unit.arrays(run) | {name: _array(getattr(self, name)) for name in LinearBase._fields}
         return ResidualPolicy("residual (LQG + GRU)", weights, asdict(self.settings), *self._bounds())
 
 
@@ -258,4 +258,4 @@ def _for_each(runs: int, matrix: Array) -> Tensor:
 
 
 def _array(matrix: Tensor) -> Any:
-    return matrix.detach().numpy().copy()
+    return matrix.numpy(force=True).copy()

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 import torch
 
-from beamenv.configuration import Choice, Count, Number, Positive, configuration
+from beamenv.configuration import Choice, Count, Number, Positive, Refused, Text, configuration
 from beamenv.task import Task
 from train.controllers.general_bank import general_law
 from train.controllers.policies import Policy
@@ -67,6 +67,8 @@ class GradientSettings:
     the others nor go unheard."""
     compositions: Annotated[int, Count(0, 1000)] = 0
     """Scenarios composed at random (``compositions``) that a training of several scenarios meets besides."""
+    device: Annotated[str, Text()] = "cpu"
+    """Where it is trained, as torch names it: "cpu", or "cuda" where there is such a GPU. Episodes are drawn on the processor."""
 
 
 def new_actor(task: Task, settings: GradientSettings) -> Actor:
@@ -81,6 +83,15 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
     if settings.actor == "multiple-model-residual":
         return ModelsActor(plant, own, runs, general_law(task.prior.blade))
     return ResidualActor(plant, own, runs, linear_base(settings.base, task))
+
+
+def device_of(settings: GradientSettings) -> torch.device:
+    """The device of a training; ``ValueError`` for one that torch does not have here."""
+    try:
+        torch.zeros(1, device=settings.device).cpu()  # meta, which holds nothing, is a device to torch
+    except (RuntimeError, AssertionError, NotImplementedError):  # torch has one for each way not to have it
+        raise Refused("settings.device", settings.device, "cpu, or a device that torch has here, such as cuda") from None
+    return torch.device(settings.device)
 
 
 def calmed(cost: torch.Tensor, calm: float) -> torch.Tensor:
@@ -98,14 +109,16 @@ class GradientTraining:
     def __init__(self, tasks: Sequence[Task], settings: GradientSettings, seed: int, teacher: Policy | None = None) -> None:
         if teacher is not None:
             raise ValueError("agent = 'gradient' must start from scratch: only ppo, sac and tqc start from a teacher.")
+        device = device_of(settings)
         torch.manual_seed(seed)
         self.settings, self._generator = settings, np.random.default_rng(seed)
-        self.actor = new_actor(tasks[0], settings)
+        self.actor = new_actor(tasks[0], settings).to(device)
         self._parameters = [weights for weights in self.actor.parameters() if weights.requires_grad]
         self._optimiser = torch.optim.Adam(self._parameters, lr=settings.learning_rate)
         further = compositions(tasks[0], settings.compositions, COMPOSED) if len(tasks) > 1 else []
         apart = [on_training_bank(task) for task in [*tasks, *further]]
-        self._windows = [Windows(task, settings.runs * settings.episodes, settings.window, self._generator) for task in apart]
+        blades = settings.runs * settings.episodes
+        self._windows = [Windows(task, blades, settings.window, self._generator, device) for task in apart]
         self._references = [uncontrolled_cost(task, 512 if len(apart) == 1 else 128) for task in apart]
         self._order: list[int] = []
         self.steps = 0
@@ -134,7 +147,7 @@ class GradientTraining:
         self._optimiser.step()
         self.updates += 1
         self.steps += self.settings.episodes * windows.length
-        latest = (cost.detach().view(self.settings.runs, -1).mean(dim=1).numpy() * scale).clip(max=100.0)
+        latest = (cost.detach().view(self.settings.runs, -1).mean(dim=1).numpy(force=True) * scale).clip(max=100.0)
         weight = 0.05 / len(self._windows) if self.updates > len(self._windows) else 1.0 / self.updates
         self.cost = latest if self.updates == 1 else self.cost + weight * (latest - self.cost)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -67,10 +68,17 @@ class ModelsActor(Actor):
 
     def __init__(self, plant: Plant, settings: ActorSettings, runs: int, law: MultipleModel) -> None:
         super().__init__(plant, settings, runs)
+        law = law.in_single_precision()
         self.law, self._floor, self._window, self._misfit = law, law.floor, law.window, law.misfit
         self._law = _tensors(law)
         p, m = self.sensors, self.voltages
-        self.unit = GatedUnit(runs, p + 3 * m + 1, 3 * m, settings)
+        self.unit = GatedUnit(runs, p + 3 * m + 1 + law.bank.counts[0], 3 * m, settings)
+
+    def _apply(self, fn: Callable[[Tensor], Tensor], recurse: bool = True) -> ModelsActor:
+        """The law, too, goes where the weights go."""
+        self._law = Law(*map(fn, self._law))
+        super()._apply(fn, recurse)  # type: ignore[no-untyped-call]
+        return self
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -98,7 +106,7 @@ class ModelsActor(Actor):
         cautious = torch.clamp(own, law.limits[0], law.limits[1])
         volts = torch.where(astray > 0.0, cautious, volts)
         of_models, of_fallback = volts / law.drive, cautious / law.drive
-        inputs = [self.settings.input_gain * readings, old.voltages, of_models, of_fallback, fit]
+        inputs = [self.settings.input_gain * readings, old.voltages, of_models, of_fallback, fit, weights]
         hidden, output = self.unit(torch.cat(inputs, dim=1), old.hidden)
         weight, share, added = torch.split(output, m, dim=1)
         voltages = self._within((1.0 + weight) * of_models + share * of_fallback + added)
@@ -140,13 +148,13 @@ class ModelsActor(Actor):
 
     def _corrected(self, innovation: Tensor, lost: Tensor, steps: Steps) -> tuple[Tensor, Tensor, Tensor]:
         law, whole = self._law, torch.empty_like(innovation)
-        density = torch.empty(innovation.shape[:2])
+        density = innovation.new_empty(innovation.shape[:2])
         for k, rows in steps:
             whole = whole.index_copy(1, rows, torch.bmm(innovation[:, rows], law.inverse[k]))
             density[:, rows] = law.log_determinant[k][:, None]
         if len(law.left) and bool(lost.any()):
             rows = torch.nonzero(lost.any(dim=1))[:, 0]
-            codes = (lost[rows] * 2 ** torch.arange(lost.shape[1])).sum(dim=1)
+            codes = (lost[rows] * 2 ** torch.arange(lost.shape[1], device=lost.device)).sum(dim=1)
             part = torch.einsum("hnp,nhpq->hnq", innovation[:, rows], law.left[codes])
             whole = whole.index_copy(1, rows, part)
             density[:, rows] = law.log_left[codes].T
@@ -154,7 +162,7 @@ class ModelsActor(Actor):
         return whole, squared, -0.5 * (squared + density)
 
     def _carried(self, whitened: Tensor, steps: Steps) -> Tensor:
-        carried = torch.empty((*whitened.shape[:2], self._law.onward.shape[-1]))
+        carried = whitened.new_empty((*whitened.shape[:2], self._law.onward.shape[-1]))
         for k, rows in steps:
             carried = carried.index_copy(1, rows, torch.bmm(whitened[:, rows], self._law.onward[k]))
         return carried

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -39,29 +39,32 @@ class Acting(Protocol):
 class Windows:
     """A batch of episodes of one task, cut into windows unrolled one after the other; blades are spread over the windows."""
 
-    def __init__(self, task: Task, episodes: int, window: int, generator: np.random.Generator) -> None:
+    def __init__(
+        self, task: Task, episodes: int, window: int, generator: np.random.Generator, device: torch.device | None = None
+    ) -> None:
+        self._device = device or torch.device("cpu")
         self.length = min(window, task.steps)
         self.count = task.steps // self.length
         self._generator = generator
         self._blades = Blades(task.bank, task.scenario, episodes)
-        self._operators = task.bank.operators.convert(_float)
+        self._operators = task.bank.operators.convert(self._float)
         self._moving = task.bank.runs or task.bank.walk is not None  # blades come to other plants within an episode
         self._sensors, self._energetic = len(task.plant.C), task.plant.blade_states
         self._phase: NDArray[np.int64] = np.arange(episodes) % self.count
         self._loads = np.zeros((*self._blades.shape, 2))
-        self._limits = _float(normalised(task.plant).voltage_limits)
+        self._limits = self._float(normalised(task.plant).voltage_limits)
         self._memory: Memory | None = None
         self._signals: SignalMemory | None = None
         first = self._blades.begin(generator)
-        self._state, self._readings = _float(self._blades.moving), _float(first.observation)
+        self._state, self._readings = self._float(self._blades.moving), self._float(first.observation)
         self._remember_signals(np.arange(episodes))
 
     def _begin(self, rows: NDArray[np.int64], actor: Acting) -> None:
         if not len(rows):
             return
         first = self._blades.begin(self._generator, rows)
-        self._state[rows] = _float(self._blades.moving[rows])
-        self._readings[rows] = _float(first.observation)
+        self._state[rows] = self._float(self._blades.moving[rows])
+        self._readings[rows] = self._float(first.observation)
         self._remember_signals(rows)
         assert self._memory is not None
         for part, fresh in zip(self._memory, actor.start(len(rows)), strict=True):
@@ -71,16 +74,16 @@ class Windows:
         electronics = self._blades.electronics
         if electronics is None:
             return
-        fresh = SignalMemory(*(_float(part) for part in electronics.memory))
+        fresh = SignalMemory(*(self._float(part) for part in electronics.memory))
         if self._signals is None:
             self._signals = fresh
         for part, begun in zip(self._signals, fresh, strict=True):
             part[rows] = begun[rows]
         self._convert_faults(electronics)
-        self._hysteresis = None if electronics.hysteresis is None else electronics.hysteresis.convert(_float)
+        self._hysteresis = None if electronics.hysteresis is None else electronics.hysteresis.convert(self._float)
 
     def _convert_faults(self, electronics: Electronics) -> None:
-        self._faults = electronics.faults.convert(lambda part: _float(part) if part.dtype.kind == "f" else torch.as_tensor(part))
+        self._faults = electronics.faults.convert(lambda part: self._float(part) if part.dtype.kind == "f" else self._whole(part))
 
     def state_dict(self) -> dict[str, Any]:
         """Copies of what moves, before the next window; the generator is the caller's."""
@@ -96,9 +99,10 @@ class Windows:
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of equally made windows."""
         self._phase = np.asarray(state["phase"]).copy()
-        self._state, self._readings = state["state"].clone(), state["readings"].clone()
-        self._memory = None if state["memory"] is None else tuple(part.clone() for part in state["memory"])
-        self._signals = None if state["signals"] is None else SignalMemory(*(part.clone() for part in state["signals"]))
+        memory, signals = state["memory"], state["signals"]
+        self._state, self._readings = self._copies((state["state"], state["readings"]))
+        self._memory = None if memory is None else tuple(self._copies(memory))
+        self._signals = None if signals is None else SignalMemory(*self._copies(signals))
         self._blades.load_state_dict(state["blades"])
         if self._blades.electronics is not None:
             self._convert_faults(self._blades.electronics)
@@ -109,8 +113,8 @@ class Windows:
         assert isinstance(disturbances, SharedDisturbances)  # one generator serves the batch
         for _ in range(self.length):
             disturbances.loads(self._loads)
-            loads = _float(self._loads.reshape(batch, 2))
-            yield loads, _float(disturbances.next(self._generator).reshape(batch, -1))
+            loads = self._float(self._loads.reshape(batch, 2))
+            yield loads, self._float(disturbances.next(self._generator).reshape(batch, -1))
 
     def unroll(self, actor: Acting) -> tuple[Tensor, Tensor]:
         """Cost (B,) of a window in J s and energy (B,) left at its end in J; differentiable in the actor's weights."""
@@ -118,7 +122,7 @@ class Windows:
         if self._memory is None:
             self._memory = actor.start(len(self._phase))
         state, readings, memory, signals = self._state, self._readings, self._memory, self._signals
-        cost, operators = torch.zeros(len(state)), self._now()
+        cost, operators = torch.zeros(len(state), device=self._device), self._now()
         for loads, disturbance in self._disturbances():
             voltages, memory = actor(readings, memory)
             acting = voltages
@@ -143,14 +147,14 @@ class Windows:
             self._convert_faults(electronics)
         if passage is None:
             return state
-        rows = torch.as_tensor(passage.rows)
-        return state.index_copy(0, rows, (state[rows, None] @ _float(passage.change))[:, 0])
+        rows = self._whole(passage.rows)
+        return state.index_copy(0, rows, (state[rows, None] @ self._float(passage.change))[:, 0])
 
     def _now(self) -> Any:
         index = self._blades.index
         if len(self._blades.bank) == 1:
             return self._operators
-        return self._operators.pick(torch.as_tensor(index))
+        return self._operators.pick(self._whole(index))
 
     def _read(self, output: Tensor, disturbance: Tensor, signals: SignalMemory | None) -> tuple[Tensor, SignalMemory | None]:
         noise = disturbance[:, : self._sensors]
@@ -168,6 +172,11 @@ class Windows:
         self._memory = tuple(part.detach().clone() for part in memory)
         self._signals = None if signals is None else SignalMemory(*(part.detach().clone() for part in signals))
 
+    def _copies(self, parts: Iterable[Tensor]) -> list[Tensor]:
+        return [part.to(self._device, copy=True) for part in parts]
 
-def _float(array: Any) -> Tensor:
-    return torch.tensor(np.ascontiguousarray(array), dtype=torch.float32)  # a copy: plants are read-only
+    def _float(self, array: Any) -> Tensor:
+        return torch.tensor(np.ascontiguousarray(array), dtype=torch.float32, device=self._device)  # a copy: plants are read-only
+
+    def _whole(self, array: Any) -> Tensor:
+        return torch.as_tensor(array, device=self._device)
