@@ -19,6 +19,9 @@ from torch import Tensor, nn
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy
 from train.learning.sb3.quadratic import RIDGE, Quadratic
 
+SLOW = 12
+"""Modes whose products with actions, and with each other, are features: what is left out of these is noise."""
+
 
 class ActionValues(nn.Module):
     """Q = φᵀw of `Quadratic` features of [action | what ``told`` begins: belief, voltages held, true state, loads (2)]."""
@@ -29,7 +32,7 @@ class ActionValues(nn.Module):
     def __init__(self, width: int, actions: int, modes: int, told: int, crossed: int) -> None:
         super().__init__()
         self.told, self._actions = told, actions
-        self.quadratic = Quadratic(actions + width - told, modes, actions + crossed)
+        self.quadratic = Quadratic(actions + width - told, modes, actions + crossed, slow=SLOW)
         count = len(self.quadratic.weight)
         self.register_buffer("sums", torch.zeros(count + 2, count, dtype=torch.float64))
 

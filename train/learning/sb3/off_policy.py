@@ -45,7 +45,7 @@ class OffPolicySettings:
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
     actor: Annotated[str, Choice(("layers", "linear"))] = "layers"
-    """Two hidden layers and a linear one, or the latter alone, which begins without voltages; a hyperbolic tangent bounds either."""
+    """Two hidden layers and a linear one, or the latter alone, which begins without voltages; a tanh bounds either."""
     critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
     """Two layers on the true state and the action, or, for SAC on one scenario, a quadratic of these and of the coming load, in
     closed form: see ``least_squares``."""
