@@ -86,6 +86,7 @@ MAY_BE_ZERO = {
     "compositions",
     "first",
     "critic_first",
+    "critic_memory",
     "energy_horizon",
     "exploration",
     "output_gain",

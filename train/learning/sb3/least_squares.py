@@ -115,12 +115,13 @@ class LeastSquaresSAC(SAC):
         weight: Any = self.log_ent_coef
         memory: Any = self.replay_buffer
         critic: Any = self.critic
+        wanted = float(self.target_entropy)
         self._update_learning_rate([self.actor.optimizer, entropy])
         for _ in range(gradient_steps):
             observations = memory.sample(batch_size).observations
             actions, likelihood = self.actor.action_log_prob(observations)
             temperature = weight.detach().exp()
-            _descend(entropy, -(weight * (likelihood + self.target_entropy).detach()).mean())
+            _descend(entropy, -(weight * (likelihood + wanted).detach()).mean())
             (values,) = critic(observations, actions)
             loss = (temperature * likelihood[:, None] - values).mean()
             _descend(self.actor.optimizer, loss)

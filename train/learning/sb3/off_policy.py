@@ -65,7 +65,7 @@ class OffPolicySettings:
     """Actions remembered."""
     samples: Annotated[int, SAMPLES] = 8192
     """Of these, to which an update fits a quadratic critic."""
-    critic_memory: Share = 0.96
+    critic_memory: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.96
     """Share that earlier fits keep in a quadratic critic's sums."""
     first: Natural = 10_000
     """Actions remembered before learning begins."""
@@ -125,9 +125,9 @@ class OffPolicyTraining(SB3Training):
         self._check(settings, tasks)
         envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit, shows_loads=quadratic)
         voltages = int(np.prod(envs.action_space.shape or ()))
-        algorithm, networks = (LeastSquaresSAC, LeastSquaresPolicy) if quadratic else (self.algorithm, self.networks)
-        model = algorithm(
-            networks,
+        kinds: tuple[Any, Any] = (LeastSquaresSAC, LeastSquaresPolicy) if quadratic else (self.algorithm, self.networks)
+        model = kinds[0](
+            kinds[1],
             envs,
             learning_rate=lambda remaining: settings.learning_rate * max(remaining, 1e-3),
             buffer_size=settings.buffer,
