@@ -85,6 +85,8 @@ def test_generalists_train_on_every_scenario_but_those_kept_for_judging():
 MAY_BE_ZERO = {
     "compositions",
     "first",
+    "last_share",
+    "last_window",
     "critic_first",
     "energy_horizon",
     "exploration",
@@ -93,7 +95,7 @@ MAY_BE_ZERO = {
     "smoothing",
     "validation",
 }
-"""Settings that mean something at zero: none, no wait, potential or look, a deviation of one, an idle start, a mean."""
+"""Settings that mean something at zero: none, no wait, potential or look, a deviation of one, an idle start, a mean, windows of one length."""
 
 NUMBERS = [
     (name, table, each.name)
