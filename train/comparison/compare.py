@@ -60,7 +60,7 @@ class Comparison:
 
     environment: Annotated[Mapping[str, Any], Table()] = field(default_factory=dict)
     """Keyword arguments of the environment, as JSON can hold them."""
-    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"belief": 60.0, "ppo-belief": 240.0})
+    budget: Annotated[Mapping[str, float], Table()] = field(default_factory=lambda: {"belief": 30.0, "ppo-belief": 60.0})
     """Seconds of training of each agent, a trainer with its own settings or a recipe; none are trained where it is empty."""
     seeds: Annotated[int, SEEDS] = 64
     """Held-out episodes."""
