@@ -95,7 +95,7 @@ MAY_BE_ZERO = {
     "smoothing",
     "validation",
 }
-"""Settings that mean something at zero: none, no wait, potential or look, a deviation of one, an idle start, a mean, windows of one length."""
+"""Settings that mean something at zero: none, no wait, potential or look, a deviation of one, an idle start, a mean."""
 
 NUMBERS = [
     (name, table, each.name)
