@@ -240,6 +240,51 @@ def test_forty_steps_of_training_damp_the_blade():
     assert len(seen) == 40
 
 
+@pytest.mark.parametrize(
+    ("changes", "lengths"),
+    [
+        ({"last_window": 20, "last_share": 0.5}, [10, 10, 20, 20]),
+        ({"last_window": 20, "last_share": 0.0}, [10, 10, 10, 10]),
+        ({"last_window": 20, "last_share": 1.0}, [20, 20, 20, 20]),
+        ({"last_window": 10, "last_share": 1.0}, [10, 10, 10, 10]),
+        ({}, [10, 10, 10, 10]),
+    ],
+)
+def test_windows_grow_for_the_last_share_of_a_training_and_learning_slows(changes, lengths):
+    settings = GradientSettings(episodes=4, window=10, learning_rate=0.1, last_rate=0.5, **changes)
+    training, begun, rates = GradientTraining([task_of("white", 0.02)], settings, 0), [], []
+    for remaining in (1.0, 0.75, 0.5, 0.25):
+        first = training._windows
+        training.update(remaining)
+        begun.append(training._windows is not first)
+        rates.append(training._optimiser.param_groups[0]["lr"] / (0.1 * remaining))
+    assert training.steps == 4 * sum(lengths)
+    assert sum(begun) == (20 in lengths)
+    assert rates == pytest.approx([0.5 if each == 20 else 1.0 for each in lengths])
+
+
+def test_by_the_clock_windows_grow_for_the_last_share_of_the_seconds(ticking):
+    seen = []
+    settings = GradientSettings(episodes=4, window=10, last_window=20, last_share=0.5)
+    with ticking(1.0):  # every look at the clock takes a second
+        train_gradient(task_of("white", 0.02), 0, seen.append, settings, seconds=4.0)
+    assert [progress.steps for progress in seen] == [40, 80, 160, 240]
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"last_window": 124}, "last_window is 124, but must be 0, or at least the window, 125"),
+        ({"last_window": -1}, "last_window is -1, but must be"),
+        ({"last_share": 1.1}, "last_share is 1.1, but must be"),
+        ({"last_rate": 0.0}, "last_rate is 0.0, but must be"),
+    ],
+)
+def test_windows_that_shrink_are_refused(changes, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        GradientSettings(**changes)
+
+
 def test_an_interrupted_training_gives_what_it_has():
     def interrupt(progress):
         raise KeyboardInterrupt

@@ -85,7 +85,10 @@ def test_generalists_train_on_every_scenario_but_those_kept_for_judging():
 MAY_BE_ZERO = {
     "compositions",
     "first",
+    "last_share",
+    "last_window",
     "critic_first",
+    "critic_memory",
     "energy_horizon",
     "exploration",
     "output_gain",

@@ -141,6 +141,21 @@ def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrup
     assert costs[0] == costs[1]
 
 
+LENGTHENING = replace(GRADIENT, settings=replace(GRADIENT.settings, last_window=20, last_share=0.5, last_rate=0.3))
+"""Of its six updates the fourth is the first with long windows."""
+
+
+@pytest.mark.parametrize("updates", [2, 3, 4, 5])
+def test_a_training_whose_windows_grow_resumes_to_the_very_weights_before_at_and_after_it(updates, tmp_path):
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    run(job(LENGTHENING, "rotor"), whole, ignore)
+    run(job(LENGTHENING, "rotor"), broken, interrupted_after(updates))
+    run(job(LENGTHENING, "rotor"), broken, ignore, resume=True)
+    assert_same(weights(whole), weights(broken))
+    assert [float(row["steps"]) for row in curve(whole)] == [80.0, 160.0, 240.0, 400.0, 560.0, 720.0]
+    assert [row["cost"] for row in curve(whole)] == [row["cost"] for row in curve(broken)]
+
+
 STABLE_BASELINES = [PPO, RECURRENT, SAC, TQC]
 
 

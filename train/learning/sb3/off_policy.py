@@ -22,6 +22,7 @@ from train.controllers.policies import Policy
 from train.learning.ranges import BLADES, INSTANTS, LOGARITHM, PASSES, RATE, SAMPLES, SEEN, UNITS
 from train.learning.sb3.asymmetric import AsymmetricSACPolicy, AsymmetricTQCPolicy
 from train.learning.sb3.cloning import Cloning, check_clonable, clone
+from train.learning.sb3.least_squares import LeastSquaresPolicy, LeastSquaresSAC
 from train.learning.sb3.sb3 import SB3Training, layers_as_arrays, linear_layers, training_envs
 
 REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
@@ -43,6 +44,11 @@ class OffPolicySettings:
     """Of the estimate or the belief, the slowest ones, that are shown."""
     history: Annotated[int, INSTANTS] = 12
     """Instants the agent sees, 6 ms."""
+    actor: Annotated[str, Choice(("layers", "linear"))] = "layers"
+    """Two hidden layers and a linear one, or the latter alone, which begins without voltages; a tanh bounds either."""
+    critic: Annotated[str, Choice(("network", "quadratic"))] = "network"
+    """Two layers on the true state and the action, or, for SAC on one scenario, a quadratic of these and of the coming load, in
+    closed form: see ``least_squares``."""
     held: Annotated[int, INSTANTS] = 4
     """Control intervals for which an action is held, 2 ms."""
     approach: Annotated[float, RATE] = 1.0
@@ -57,10 +63,16 @@ class OffPolicySettings:
     """Samples in a gradient step."""
     buffer: Annotated[int, SAMPLES] = 200_000
     """Actions remembered."""
+    samples: Annotated[int, SAMPLES] = 8192
+    """Of these, to which an update fits a quadratic critic."""
+    critic_memory: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.96
+    """Share that earlier fits keep in a quadratic critic's sums."""
     first: Natural = 10_000
     """Actions remembered before learning begins."""
     learning_rate: Annotated[float, RATE] = 1e-3
     """Adam's, falling linearly to zero over the training."""
+    damping: Annotated[float, RATE] = 1e-8
+    """Adam's ε: gradients far below it, of what hardly moves, change weights in proportion and not by the whole rate."""
     discount: Annotated[float, RATE] = 0.95
     """γ: 20 actions, 40 ms."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.03
@@ -95,6 +107,12 @@ class OffPolicySettings:
             raise Refused("first", self.first, f"at most what the buffer of {self.buffer} holds, or learning never begins")
 
 
+def _told(settings: OffPolicySettings, envs: Any) -> dict[str, int]:
+    """What a quadratic critic is told beside the true state and the load: a belief and the voltages held, or these alone."""
+    crossed = envs.seen if settings.sees == "belief" else int(np.prod(envs.action_space.shape or ()))
+    return {"modes": envs.blades.plant.blade_states // 2, "crossed": crossed}
+
+
 class OffPolicyTraining(SB3Training):
     """Of a squashed network on the history; with a ``teacher``, from its clone on."""
 
@@ -103,10 +121,13 @@ class OffPolicyTraining(SB3Training):
     name: ClassVar[str]
 
     def __init__(self, tasks: Sequence[Task], settings: OffPolicySettings, seed: int, teacher: Policy | None = None) -> None:
-        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit)
+        quadratic = settings.critic == "quadratic"
+        self._check(settings, tasks)
+        envs = training_envs(tasks, settings, seed, reward_unit=settings.reward_unit, shows_loads=quadratic)
         voltages = int(np.prod(envs.action_space.shape or ()))
-        model = self.algorithm(
-            self.networks,
+        kinds: tuple[Any, Any] = (LeastSquaresSAC, LeastSquaresPolicy) if quadratic else (self.algorithm, self.networks)
+        model = kinds[0](
+            kinds[1],
             envs,
             learning_rate=lambda remaining: settings.learning_rate * max(remaining, 1e-3),
             buffer_size=settings.buffer,
@@ -119,20 +140,29 @@ class OffPolicyTraining(SB3Training):
             policy_kwargs={
                 "seen": envs.seen,
                 "actor_gain": settings.input_gain,
-                "net_arch": {"pi": [settings.units] * 2, "qf": [settings.critic_units] * 2},
+                "net_arch": {"pi": [] if settings.actor == "linear" else [settings.units] * 2, "qf": [settings.critic_units] * 2},
                 "activation_fn": _ACTIVATIONS[settings.activation],
+                "optimizer_kwargs": {"eps": settings.damping},
+                **(_told(settings, envs) if quadratic else {}),
             },
             seed=seed,
             device="cpu",
         )
         with torch.no_grad():  # it begins as PPO does: hardly any voltage but that of exploration
-            model.actor.mu.weight *= 0.01
-            model.actor.log_std.weight *= 0.01
+            small = 0.0 if settings.actor == "linear" else 0.01
+            model.actor.mu.weight *= small
+            model.actor.log_std.weight *= small
+            if settings.actor == "linear":
+                model.actor.mu.bias.zero_()
             model.actor.log_std.bias.fill_(settings.exploration)
         if teacher is not None:
             check_clonable(settings)
             clone(nn.Sequential(*self._actor(model), nn.Tanh()), envs, teacher, settings.input_gain, Cloning(), seed)
         super().__init__(model, envs, tasks, settings, seed)
+
+    def _check(self, settings: OffPolicySettings, tasks: Sequence[Task]) -> None:
+        if settings.critic == "quadratic" and (self.algorithm is not SAC or len(tasks) > 1):
+            raise Refused("settings.critic", settings.critic, "'network' unless SAC is trained on one scenario")
 
     @staticmethod
     def _actor(model: Any) -> list[nn.Module]:
@@ -153,10 +183,20 @@ class OffPolicyTraining(SB3Training):
         memory = self.model.replay_buffer
         self.model.collect_rollouts(self.envs, self._callback, frequency, memory)
         if memory.size() * self.envs.num_envs >= self.settings.first:
+            self._learn(actor=self.updates >= self.settings.critic_first)
+
+    def _learn(self, actor: bool) -> None:
+        """Critics first, and then, with them, the ``actor``."""
+        settings = self.settings
+        if settings.critic == "quadratic":
+            self.model.fit(settings.samples, settings.critic_memory)
+            if actor:
+                self.model.train(settings.gradient_steps, settings.batch)
+        else:
             self._free(False)
-            self.model.train(self.settings.critic_steps, self.settings.batch)
-            self._free(self.updates >= self.settings.critic_first)
-            self.model.train(self.settings.gradient_steps, self.settings.batch)
+            self.model.train(settings.critic_steps, settings.batch)
+            self._free(actor)
+            self.model.train(settings.gradient_steps, settings.batch)
 
     def state_dict(self) -> dict[str, Any]:
         """With the actions remembered."""

@@ -29,28 +29,28 @@ RIDGE = 1e-4
 class Quadratic(nn.Module):
     """V = Σ w_ij s_i s_j + Σ w_k s_k² + w on rows [seen | displacements | velocities | electronics | loads (2)].
 
-    ``seen`` is how many numbers of what the actor sees are in a row: a belief's, which may be wrong, and the voltages held.
+    ``seen`` is how many numbers of what the actor sees are in a row: a belief's, which may be wrong, and the voltages held. s_i are
+    these, the loads, and the states of so many ``slow`` modes.
     """
 
-    weight: Tensor
     squares: Tensor
     """Sums of features' products, and, last row, of features times returns; kept with the weights, to resume from."""
 
-    def __init__(self, width: int, modes: int, seen: int) -> None:
+    def __init__(self, width: int, modes: int, seen: int, slow: int = MODES) -> None:
         super().__init__()
-        low = min(MODES, modes)
-        slow = [*range(low), *range(modes, modes + low)]
-        crossed = [*range(seen), *(seen + place for place in slow), width - 2, width - 1]
+        low = min(slow, modes)
+        places = [*range(low), *range(modes, modes + low)]
+        crossed = [*range(seen), *(seen + place for place in places), width - 2, width - 1]
         self.crossed, self.alone = crossed, sorted(set(range(width)) - set(crossed))
-        self._first, self._second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
-        count = len(self._first) + len(self.alone) + 1
-        self.register_buffer("weight", torch.zeros(count))
+        self.first, self.second = (torch.as_tensor(each) for each in np.triu_indices(len(crossed)))
+        count = len(self.first) + len(self.alone) + 1
+        self.weight = nn.Parameter(torch.zeros(count), requires_grad=False)
         self.register_buffer("squares", torch.zeros(count + 1, count, dtype=torch.float64))
 
     def features(self, states: Tensor) -> Tensor:
         """(B, k)."""
         crossed, alone = states[:, self.crossed], states[:, self.alone]
-        return torch.cat([crossed[:, self._first] * crossed[:, self._second], alone**2, torch.ones(len(states), 1)], dim=1)
+        return torch.cat([crossed[:, self.first] * crossed[:, self.second], alone**2, torch.ones(len(states), 1)], dim=1)
 
     def forward(self, states: Tensor) -> Tensor:
         """(B, 1)."""

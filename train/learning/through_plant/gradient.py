@@ -56,6 +56,12 @@ class GradientSettings:
     """Blades of each run unrolled together."""
     window: Annotated[int, INSTANTS] = 125
     """Steps back-propagated through, 62 ms: two periods of the slowest mode."""
+    last_window: Annotated[int, Count(0, 10_000)] = 0
+    """Steps of the longer windows at the training's end, which lean less on ``energy_horizon``; 0 for windows of one length."""
+    last_share: Annotated[float, Number(ge=0.0, le=1.0)] = 0.4
+    """Share of the training, at its end, that has ``last_window``."""
+    last_rate: Annotated[float, RATE] = 1.0
+    """Share of the learning rate in it."""
     learning_rate: Annotated[float, RATE] = 5e-3
     """Adam's, falling linearly to zero over the training."""
     energy_horizon: Annotated[float, Number(ge=0.0, unit="s")] = 0.05
@@ -69,6 +75,10 @@ class GradientSettings:
     """Scenarios composed at random (``compositions``) that a training of several scenarios meets besides."""
     device: Annotated[str, Text()] = "cpu"
     """Where it is trained, as torch names it: "cpu", or "cuda" where there is such a GPU. Episodes are drawn on the processor."""
+
+    def __post_init__(self) -> None:
+        if 0 < self.last_window < self.window:
+            raise Refused("last_window", self.last_window, f"0, or at least the window, {self.window}")
 
 
 def new_actor(task: Task, settings: GradientSettings) -> Actor:
@@ -116,10 +126,9 @@ class GradientTraining:
         self._parameters = [weights for weights in self.actor.parameters() if weights.requires_grad]
         self._optimiser = torch.optim.Adam(self._parameters, lr=settings.learning_rate)
         further = compositions(tasks[0], settings.compositions, COMPOSED) if len(tasks) > 1 else []
-        apart = [on_training_bank(task) for task in [*tasks, *further]]
-        blades = settings.runs * settings.episodes
-        self._windows = [Windows(task, blades, settings.window, self._generator, device) for task in apart]
-        self._references = [uncontrolled_cost(task, 512 if len(apart) == 1 else 128) for task in apart]
+        self._tasks, self._device = [on_training_bank(task) for task in [*tasks, *further]], device
+        self._begin(last=False)
+        self._references = [uncontrolled_cost(task, 512 if len(self._tasks) == 1 else 128) for task in self._tasks]
         self._order: list[int] = []
         self.steps = 0
         """Control intervals so far."""
@@ -130,10 +139,20 @@ class GradientTraining:
         """It acts as it is trained, without exploration."""
         self.losses: dict[str, float] = {}
 
+    def _begin(self, last: bool) -> None:
+        """New episodes of every task, in windows of the last length or of the first."""
+        window = self.settings.last_window if last else self.settings.window
+        blades = self.settings.runs * self.settings.episodes
+        self._windows = [Windows(task, blades, window, self._generator, self._device) for task in self._tasks]
+        self._last = last
+
     def update(self, remaining: float) -> None:
         """One step of Adam, at the share ``remaining`` of its learning rate."""
+        if not self._last and self.settings.last_window > self.settings.window and remaining <= self.settings.last_share:
+            self._begin(last=True)
+        rate = self.settings.learning_rate * (self.settings.last_rate if self._last else 1.0)
         for group in self._optimiser.param_groups:
-            group["lr"] = self.settings.learning_rate * max(remaining, 1e-3)
+            group["lr"] = rate * max(remaining, 1e-3)
         self._order = self._order or self._generator.permutation(len(self._windows)).tolist()
         turn = self._order.pop()
         windows, reference = self._windows[turn], self._references[turn]
@@ -165,11 +184,12 @@ class GradientTraining:
         return [self.actor.policy(run) for run in range(self.settings.runs)]
 
     def state_dict(self) -> dict[str, Any]:
-        """Weights, optimiser, generator, counters, and the episodes under way."""
+        """Weights, optimiser, generator, counters, whether the last windows have begun, and the episodes under way."""
         return {
             "actor": self.actor.state_dict(),
             "optimiser": self._optimiser.state_dict(),
             "generator": self._generator.bit_generator.state,
+            "last": self._last,
             "windows": [windows.state_dict() for windows in self._windows],
             "counters": {"order": list(self._order), "steps": self.steps, "updates": self.updates, "cost": self.cost.copy()},
         }
@@ -178,7 +198,9 @@ class GradientTraining:
         """Resume from the ``state_dict`` of an equally made training, with its tensors and arrays or as a checkpoint has them."""
         self.actor.load_state_dict(state["actor"])
         self._optimiser.load_state_dict(state["optimiser"])
-        self._generator.bit_generator.state = state["generator"]
+        if state["last"] != self._last:
+            self._begin(state["last"])
+        self._generator.bit_generator.state = state["generator"]  # after what new windows draw
         for windows, saved in zip(self._windows, state["windows"], strict=True):
             windows.load_state_dict(saved)
         counters = state["counters"]
