@@ -161,7 +161,7 @@ def evaluate(
 @app.command()
 def compare(
     folder: Annotated[Path, typer.Argument(help="Where tables, figures and agents are written.")] = Path("results/compare"),
-    minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 5.0,
+    minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 1.5,
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
