@@ -20,7 +20,8 @@ and agents, which train on the scenario's distribution, are used as shipped. The
 those with a single fault, open ones, in which the blade changes within the episode or everything is wrong at once, and those kept
 for judging, which no agent trains on by themselves and by which nothing is chosen, though development looked at agents there.
 Their pairs of faults are of no new kinds: `unknown-everything`, an open one, by its definition puts all of these kinds together,
-each mildly, and agents train on it by today's recipes. The controllers are files in `train/controllers/named/`: a further file in either folder adds a row or a column.
+each mildly, and agents train on it by today's recipes. The controllers are files in `train/controllers/named/`: a further file in
+either folder adds a row or a column.
 
 [What learning buys](agents.md#what-learning-buys), and what it does not, is told beside the agents. `beamenv benchmark --submit
 mine` puts a trained agent of yours through every scenario and enters it on the [leaderboard](leaderboard.md).
