@@ -136,14 +136,15 @@ def test_a_law_that_is_revised_goes_by_what_is_applied(small_plant):
     for seen in episode(60, [1e-3, 3e-3, 0.02]):
         told, following = [], np.empty_like(memory)
 
-        def half(some, asked, cautious, misfit, told=told):
-            told.append((asked, misfit))
+        def half(some, asked, cautious, misfit, likely, told=told):
+            told.append((asked, misfit, likely))
             return 0.5 * asked + 0.01 * cautious
 
         action = law.revised(seen, memory, half, following)
         asked, decided = law.decide(seen, memory)
         np.testing.assert_array_equal(told[0][0], asked)
         np.testing.assert_allclose(told[0][1], law.misfits(decided), rtol=1e-9)
+        np.testing.assert_allclose(told[0][2], law.weights(decided), rtol=1e-9)
         np.testing.assert_allclose(following, law.overruled(decided, action - asked), rtol=1e-9, atol=1e-9)
         memory = following
     with pytest.raises(ValueError, match="has no fallback"):

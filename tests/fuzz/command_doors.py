@@ -94,6 +94,7 @@ COMMANDS = {
             "--folder": "made",
             "--recipe": None,
             "--from": None,
+            "--device": "cpu",
             "--preset": "thesis",
             "--speed": "20",
             "--blade": "blade.toml",
