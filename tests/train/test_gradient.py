@@ -293,7 +293,7 @@ def test_an_interrupted_training_gives_what_it_has():
     assert policy.predict(np.zeros(4))[0].shape == (4,)
 
 
-@pytest.mark.parametrize("device", ["nowhere", "cuda:99", "meta"])
+@pytest.mark.parametrize("device", ["nowhere", "cuda:99", "meta", "privateuseone", "cpu:3"])
 def test_a_device_that_is_not_there_is_told_before_training(device):
     with pytest.raises(ValueError, match=f"settings.device is '{device}', but must be cpu, or a device that torch has here"):
         GradientTraining([task_of()], GradientSettings(device=device), 0)

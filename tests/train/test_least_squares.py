@@ -95,3 +95,15 @@ def test_a_quadratic_critic_is_sacs_on_one_scenario():
         trained(kind=TQCTraining)
     with pytest.raises(ValueError, match="settings.critic is 'quadratic'"):
         SACTraining([*TASKS, resolve_task(scenario="failure", **SHORT)], TINY, 0)
+
+
+def test_an_action_held_for_a_whole_episode_has_no_next_one_to_fit_a_critic_by():
+    with pytest.raises(ValueError, match="settings.held is 20, but must be below the 20 intervals of an episode"):
+        SACTraining(TASKS, replace(TINY, held=20), 0)
+
+
+def test_sums_that_are_not_finite_are_not_remembered():
+    critic = ActionValues(width=4, actions=1, modes=1, told=0, crossed=0)
+    critic.solve(torch.full_like(critic.sums, torch.nan), 0.5)
+    assert not critic.sums.any()
+    assert torch.isfinite(critic.quadratic.weight).all()

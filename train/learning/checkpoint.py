@@ -16,7 +16,7 @@ from beamenv.configuration.writing import write_whole
 
 NAME = "checkpoint.pt"
 
-FORMAT = 3
+FORMAT = 4
 """Of what a checkpoint holds of a training; one of another format is not resumed."""
 
 

@@ -48,7 +48,9 @@ class ActionValues(nn.Module):
         """Nothing depends on it."""
 
     def solve(self, latest: Tensor, memory: float) -> None:
-        """Weights by ``latest`` sums and, fading by ``memory``, those before."""
+        """Weights by ``latest`` sums, if they are finite, and, fading by ``memory``, those before."""
+        if not torch.isfinite(latest).all():
+            return
         self.sums += latest if not self.sums.any() else (1.0 - memory) * (latest - self.sums)
         matrix, right, squares = self.sums[:-2], self.sums[-2], self.sums[-1]
         solved = torch.linalg.solve(matrix + torch.diag(RIDGE * squares + 1e-12), right)

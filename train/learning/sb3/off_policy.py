@@ -163,6 +163,8 @@ class OffPolicyTraining(SB3Training):
     def _check(self, settings: OffPolicySettings, tasks: Sequence[Task]) -> None:
         if settings.critic == "quadratic" and (self.algorithm is not SAC or len(tasks) > 1):
             raise Refused("settings.critic", settings.critic, "'network' unless SAC is trained on one scenario")
+        if settings.critic == "quadratic" and settings.held >= tasks[0].steps:  # there would be no action after any
+            raise Refused("settings.held", settings.held, f"below the {tasks[0].steps} intervals of an episode for this critic")
 
     @staticmethod
     def _actor(model: Any) -> list[nn.Module]:

@@ -97,11 +97,15 @@ def new_actor(task: Task, settings: GradientSettings) -> Actor:
 
 def device_of(settings: GradientSettings) -> torch.device:
     """The device of a training; ``ValueError`` for one that torch does not have here."""
+    refused = Refused("settings.device", settings.device, "cpu, or a device that torch has here, such as cuda")
     try:
-        torch.zeros(1, device=settings.device).cpu()  # meta, which holds nothing, is a device to torch
-    except (RuntimeError, AssertionError, NotImplementedError):  # torch has one for each way not to have it
-        raise Refused("settings.device", settings.device, "cpu, or a device that torch has here, such as cuda") from None
-    return torch.device(settings.device)
+        device = torch.device(settings.device)
+        torch.zeros(1, device=device).cpu()  # meta, which holds nothing, is a device to torch
+    except (RuntimeError, AssertionError, NotImplementedError, ImportError):  # torch has one for each way not to have it
+        raise refused from None
+    if device.type == "cpu" and settings.device != "cpu":  # to torch there are 128 of it, and as many more below zero
+        raise refused
+    return device
 
 
 def calmed(cost: torch.Tensor, calm: float) -> torch.Tensor:
