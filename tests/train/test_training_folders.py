@@ -9,7 +9,7 @@ import torch
 
 from tests.train.brief import GRADIENT, PPO, RECURRENT, SAC, TQC, assert_same, ignore, interrupted_after, job, weights
 from train.controllers.policy_files import load_policy
-from train.learning.checkpoint import NAME, read_checkpoint, write_checkpoint
+from train.learning.checkpoint import FORMAT, NAME, read_checkpoint, write_checkpoint
 from train.learning.job import run
 
 STABLE_BASELINES = [PPO, RECURRENT, SAC, TQC]
@@ -93,9 +93,9 @@ def test_half_a_checkpoint_is_told_in_a_sentence(tmp_path):
     ("content", "sentence"),
     [
         ([1, 2], "holds a list"),
-        ({"weights": 1}, "is of format None where this version of beamenv reads 3"),
-        ({"format": 4}, "is of format 4 where"),
-        ({"format": 3, "identity": ""}, "has no 'training'"),
+        ({"weights": 1}, f"is of format None where this version of beamenv reads {FORMAT}"),
+        ({"format": FORMAT + 1}, f"is of format {FORMAT + 1} where"),
+        ({"format": FORMAT, "identity": ""}, "has no 'training'"),
     ],
 )
 def test_another_kind_of_checkpoint_is_told_with_the_file_s_name(content, sentence, tmp_path):
