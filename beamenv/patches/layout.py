@@ -8,7 +8,7 @@ import numpy as np
 
 from beamenv.configuration import Choice, Flag, Number, Patches, Refused, checked, configuration
 from beamenv.patches.material import PATCH_MATERIALS, PatchMaterial
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay
 
 ACTUATOR_WALL, SENSOR_WALL = "top", "bottom"
 
@@ -47,10 +47,18 @@ class PatchLayout:
 
     def inlays(self, beam_length: float) -> tuple[Inlay, ...]:
         """The patches as foreign material in the walls; none when they are not passive."""
-        if not self.passive:
-            return ()
-        walls = ((ACTUATOR_WALL, self.actuator_positions(beam_length)), (SENSOR_WALL, self.sensor_positions(beam_length)))
-        return tuple(self.patch.inlay(wall, start, self.length, self.width) for wall, starts in walls for start in starts)
+        return (*self.actuator_inlays(beam_length), *self.sensor_inlays(beam_length)) if self.passive else ()
+
+    def actuator_inlays(self, beam_length: float) -> tuple[Inlay, ...]:
+        """The actuators as foreign material, whether or not that counts."""
+        return self._inlays(ACTUATOR_WALL, self.actuator_positions(beam_length))
+
+    def sensor_inlays(self, beam_length: float) -> tuple[Inlay, ...]:
+        """The sensors as foreign material, whether or not that counts."""
+        return self._inlays(SENSOR_WALL, self.sensor_positions(beam_length))
+
+    def _inlays(self, wall: str, starts: tuple[float, ...]) -> tuple[Inlay, ...]:
+        return tuple(self.patch.inlay(wall, start, self.length, self.width) for start in starts)
 
 
 def _span(beam_length: float) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, configuration
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
 from beamenv.structure.walls.materials import Lamina, strain_rotation
 
@@ -63,9 +63,19 @@ class PatchMaterial:
         """Charge that Eq. 4.37, ∫ē ε dA, counts per unit of generalised force per volt times displacement: spacing/thickness."""
         return self.electrode_spacing / self.thickness
 
-    def inlay(self, wall: str, start: float, length: float, width: float) -> Inlay:
-        """The sheet as foreign material in a wall: its passive effect."""
-        return Inlay(wall, start, length, width, Ply(self.lamina, FIBRE_ANGLE_DEG), self.thickness)
+    def inlay(
+        self,
+        wall: str,
+        start: float,
+        length: float,
+        width: float,
+        offset: float = 0.0,
+        face: str = "outer",
+        bonded: bool = False,
+    ) -> Inlay:
+        """The sheet as foreign material in a wall, or on it: its passive effect."""
+        ply = Ply(self.lamina, FIBRE_ANGLE_DEG)
+        return Inlay(wall, start, length, width, ply, self.thickness, offset, face, bonded)
 
 
 MFC = PatchMaterial(

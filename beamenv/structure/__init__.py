@@ -2,9 +2,10 @@
 
 from beamenv.structure.beam import RotatingBeam
 from beamenv.structure.modes import Modes
+from beamenv.structure.section.closed_sections import BoxSection, PolygonSection
 from beamenv.structure.section.properties import SectionProperties
-from beamenv.structure.section.section import BoxSection, PolygonSection, Section
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.section.section import Section
+from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Laminate, Layup, Ply
 from beamenv.structure.walls.materials import AS4_3501_6, GRAPHITE_EPOXY, Lamina
 

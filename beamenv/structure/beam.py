@@ -16,12 +16,14 @@ from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strai
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import Planform, SectionsAlong
+from beamenv.structure.inlays import SHORTEST, check_inlays
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
 from beamenv.structure.scale import OUT_OF_SCALE, in_scale
-from beamenv.structure.section.section import THEORY, Metres, Section, SpanWalls
+from beamenv.structure.section.section import THEORY, Metres, Section
+from beamenv.structure.section.span_walls import SpanWalls
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Layup
 
 Array = NDArray[np.float64]
@@ -36,12 +38,7 @@ the energy; here it is near the least for boxes, isotropic and of 30° plies."""
 CLAMP_PIECE = 5.0
 """Piece of the span beside the clamp that has stations of its own, in reaches."""
 
-SHORTEST = 1e-9
-"""Of the span: what lies closer together is in one place."""
-
 TERMS = Count(1, 30)
-SPEED = Number(ge=0.0, unit="rad/s")
-
 SPEED = Number(ge=0.0, unit="rad/s")
 
 
@@ -83,11 +80,18 @@ class RotatingBeam:
     """Foreign material let into the walls, with its mass and stiffness."""
 
     def __post_init__(self) -> None:
-        self.layup.check_walls(self.section.walls)
-        self.section.check_thickness(min(1.0, 1.0 / self.taper), "section.thickness")
+        self.layup.check_walls(self.section.wall_names)
+        self.section.check_thickness(self.narrowest, "section.thickness")
         checked_flow(self.model, self.shear_flow)
+        if self.model == "thesis":
+            self.section.check_one_cell()
         check_steady_state(self.model, self.steady_state)
         check_inlays(self)
+
+    @property
+    def narrowest(self) -> float:
+        """Size of the section where it is smallest, over that at the root, or 1."""
+        return min(1.0, 1.0 / self.taper)
 
     @cached_property
     def space(self) -> TrialSpace:
@@ -162,12 +166,11 @@ class RotatingBeam:
         ends = np.unique(np.clip([0.0, *edges, self.length], 0.0, self.length))
         return ends[np.append(True, np.diff(ends) > SHORTEST * self.length)]
 
-    def walls_at(self, z: Array, cuts: tuple[tuple[str, float], ...] = ()) -> SpanWalls:
-        """The walls at stations z (m), split at (wall, width) ``cuts`` too."""
+    def walls_at(self, z: Array, cuts: tuple[Strip, ...] = ()) -> SpanWalls:
+        """The walls at stations z (m) by the thesis' kinematics, split at the edges of strips too."""
         tip = 1.0 / self.taper
-        return SpanWalls.build(
-            self.section,
-            self.layup,
+        return self.section.walls_at(
+            self.section.hosts(self.layup),
             z=z,
             scale=tip + (1.0 - tip) * (1.0 - z / self.length),
             angle=np.radians(self.presetting_deg + self.pretwist_deg * z / self.length),
@@ -265,32 +268,3 @@ class RotatingBeam:
         stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
-
-
-def check_inlays(beam: RotatingBeam) -> None:
-    """``ValueError`` for inlays that do not fit their wall or overlap."""
-    for inlay in beam.inlays:
-        check_fit(beam, inlay)
-    for wall in {inlay.wall for inlay in beam.inlays}:
-        ordered = sorted((inlay for inlay in beam.inlays if inlay.wall == wall), key=lambda inlay: inlay.start)
-        for first, second in zip(ordered[:-1], ordered[1:], strict=True):
-            if second.start < first.start + first.length - 1e-9 * beam.length:
-                raise ValueError(
-                    f"inlays at {first.start!r} and {second.start!r} m on the {wall} wall must be {first.length!r} m apart."
-                )
-
-
-def check_fit(beam: RotatingBeam, inlay: Inlay) -> None:
-    """``ValueError`` for an inlay that leaves the blade, is as thick as its wall or wider than it at the narrow end."""
-    end = inlay.start + inlay.length
-    if not (inlay.start >= 0.0 and end <= beam.length * (1.0 + 1e-12)):
-        raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {beam.length!r} m.")
-    if not inlay.length > SHORTEST * beam.length:
-        raise ValueError(f"inlay length = {inlay.length!r} m must be above {SHORTEST * beam.length:.3g} m.")
-    narrowest = beam.section.wall_width(inlay.wall) * min(1.0, 1.0 / beam.taper)
-    if not 0.0 < inlay.width <= narrowest * (1.0 + 1e-12):
-        raise ValueError(f"inlay width = {inlay.width!r} m must be positive and at most the {inlay.wall} wall's {narrowest:.6g} m.")
-    if not 0.0 < inlay.thickness < beam.section.thickness:
-        raise ValueError(
-            f"inlay thickness = {inlay.thickness!r} m must be positive and below the wall's {beam.section.thickness!r} m."
-        )

@@ -26,6 +26,7 @@ from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
 from beamenv.structure.modes import normal_modes
+from beamenv.structure.walls.inlay import Strip
 
 Array = NDArray[np.float64]
 
@@ -203,7 +204,8 @@ def tension_of(bare: RotatingBeam, z: Array) -> Array:
 def force_samples(beam: RotatingBeam, config: BladeConfig, span: ChebyshevSpan, basis: Array) -> tuple[Array, Array]:
     """Force per volt and metre (nodes, N) of a patch on the actuators' and on the sensors' wall."""
     layout = config.patches
-    on_top, below = (force_per_span(beam, layout.patch, wall, layout.width, span.nodes) for wall in (ACTUATOR_WALL, SENSOR_WALL))
+    strips = (Strip(wall, layout.width) for wall in (ACTUATOR_WALL, SENSOR_WALL))
+    on_top, below = (force_per_span(beam, layout.patch, strip, span.nodes) for strip in strips)
     return on_top @ basis, below @ basis
 
 

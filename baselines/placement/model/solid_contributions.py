@@ -113,9 +113,9 @@ class Covering:
         """Of a configuration, whose patches may lie in ``span``."""
         layout, half = config.patches, 0.5 * span.end
         sides = ((ACTUATOR_WALL, 0.0), (SENSOR_WALL, 0.5 * half))  # every combination occurs somewhere
-        inlays = [layout.patch.inlay(wall, start, half, layout.width) for wall, start in sides] if layout.passive else []
-        covered = replace(bare, inlays=tuple(inlays))
-        work = tuple(work_on_section(covered, layout.patch, wall, layout.width) for wall, _ in sides)
+        inlays = [layout.patch.inlay(wall, start, half, layout.width) for wall, start in sides]
+        covered = replace(bare, inlays=tuple(inlays) if layout.passive else ())
+        work = tuple(work_on_section(covered, layout.patch, inlay) for inlay in inlays)
         return cls(config, covered.exact.sections, work)
 
     def bare(self, exact: ExactBeam) -> ExactBeam:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed_property
 from beamenv.structure.geometrically_exact.rotations import about_span
-from beamenv.structure.section.mesh import ring
+from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.section import Section
 from beamenv.structure.section.solid_sections import SolidSections
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Laminate, Layup
 
 Array = NDArray[np.float64]
@@ -79,30 +79,30 @@ class SectionsAlong(Sealed):
 
     @classmethod
     def build(
-        cls, section: Section, layup: Layup, planform: Planform, inlays: Sequence[Inlay], cuts: Sequence[tuple[str, float]] = ()
+        cls, section: Section, layup: Layup, planform: Planform, inlays: Sequence[Inlay], cuts: Sequence[Strip] = ()
     ) -> SectionsAlong:
         """Those of a blade whose inlays may lie anywhere."""
         kinds = _kinds(inlays)
         codes = _combinations(inlays, kinds)
-        widths = sorted({*cuts, *((inlay.wall, inlay.width) for inlay in inlays)})
-        hosts = tuple(Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls)
-        sheets = tuple((kind.wall, kind.width, kind.ply, kind.thickness) for kind in kinds)
-        key = (section, hosts, sheets, codes.tobytes(), tuple(widths), planform.rate, planform.taper)
+        strips = tuple(sorted({*cuts, *(inlay.strip for inlay in inlays)}, key=lambda each: (each.wall, each.width, each.offset)))
+        hosts = section.hosts(layup)
+        sheets = tuple(kind.kind for kind in kinds)
+        key = (section, tuple(hosts.items()), sheets, codes.tobytes(), strips, planform.rate, planform.taper)
         solid = _ALIVE.get(key)
         if solid is None:
-            solid = _ALIVE[key] = _solid_sections(section, hosts, planform, kinds, codes, widths)
+            solid = _ALIVE[key] = _solid_sections(section, hosts, planform, kinds, codes, strips)
         return cls(section, layup, planform, tuple(inlays), kinds, codes, solid)
 
-    def cut_for(self, wall: str, width: float) -> SectionsAlong:
-        """The same sections, with the wall's elements cut where a strip of some width in its middle begins and ends."""
-        cut = SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [(wall, width)])
+    def cut_for(self, strip: Strip) -> SectionsAlong:
+        """The same sections, with a wall's elements cut where a strip begins and ends."""
+        cut = SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [strip])
         return replace(cut, solid=cut.solid.aligned(self.solid))
 
     def at(self, z: Array, values: Array) -> Array:
         """(S, …): what the sections have (V, …), at stations z (m)."""
         code = np.zeros(len(z), dtype=np.intp)
         for bit, kind in enumerate(self.kinds):
-            covered = np.any([inlay.covers(z) for inlay in self.inlays if _same_kind(inlay, kind)], axis=0)
+            covered = np.any([inlay.covers(z) for inlay in self.inlays if inlay.kind == kind.kind], axis=0)
             code += covered.astype(np.intp) << bit
         return self._of(np.searchsorted(self.codes, code), z, values)
 
@@ -146,23 +146,22 @@ patches are, or on how many terms there are."""
 
 def _solid_sections(
     section: Section,
-    hosts: Sequence[Laminate],
+    hosts: Mapping[str, Laminate],
     planform: Planform,
     kinds: Sequence[Inlay],
     codes: NDArray[np.intp],
-    widths: Sequence[tuple[str, float]],
+    strips: Sequence[Strip],
 ) -> SolidSections:
     sizes = planform.sizes
-    vertices = np.tile(sizes[:, None, None] * section.placed_vertices, (len(codes), 1, 1))
-    elements = ring(vertices, section.walls, section.thickness, widths)
-    by_wall, laminates = dict(zip(section.walls, hosts, strict=True)), dict[Laminate, int]()
+    elements = mesh(section.placed_chains, np.tile(sizes, len(codes)), strips)
+    laminates = dict[Laminate, int]()
     which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
     for row, code in enumerate(codes.tolist()):
         for k, edge in enumerate(elements.edges):
-            laminate = by_wall[edge.wall]
+            laminate = hosts[edge.wall]
             for bit, kind in enumerate(kinds):
                 if code >> bit & 1 and edge.lies_under(kind):
-                    laminate = laminate.with_outer_layer(kind.ply, kind.thickness)
+                    laminate = kind.let_into(laminate)
             which[row, k] = laminates.setdefault(laminate, len(laminates))
     return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), planform.rate)
 
@@ -175,14 +174,10 @@ def between(nodes: Array, at: Array) -> Array:
     return np.asarray(factors.prod(axis=2))
 
 
-def _same_kind(one: Inlay, other: Inlay) -> bool:
-    return (one.wall, one.width, one.ply, one.thickness) == (other.wall, other.width, other.ply, other.thickness)
-
-
 def _kinds(inlays: Sequence[Inlay]) -> tuple[Inlay, ...]:
     found: list[Inlay] = []
     for inlay in inlays:
-        if not any(_same_kind(inlay, kind) for kind in found):
+        if not any(inlay.kind == kind.kind for kind in found):
             found.append(inlay)
     return tuple(found)
 
@@ -194,6 +189,6 @@ def _combinations(inlays: Sequence[Inlay], kinds: Sequence[Inlay]) -> NDArray[np
     code = np.zeros(len(middles), dtype=np.intp)
     for bit, kind in enumerate(kinds):
         for inlay in inlays:
-            if _same_kind(inlay, kind):
+            if inlay.kind == kind.kind:
                 code |= inlay.covers(middles).astype(np.intp) << bit
     return np.unique(np.append(code, 0))
