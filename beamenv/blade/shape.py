@@ -47,7 +47,7 @@ class Skin:
 
 def body(beam: RotatingBeam, span: Array) -> Skin:
     """The outer contour of the blade at stations ``span`` (S,), m from the root; its K corners run counter-clockwise."""
-    return Skin(span, outer_contour(beam.section, _size(beam, span)), _angle(beam, span))
+    return Skin(span, outer_contour(beam.section, beam.planform.scale(span)), beam.planform.angle(span))
 
 
 def patch(beam: RotatingBeam, wall: str, width: float, span: Array, raised: float = 0.0) -> Skin:
@@ -57,11 +57,11 @@ def patch(beam: RotatingBeam, wall: str, width: float, span: Array, raised: floa
     """
     beam.section.wall_width(wall)
     k = beam.section.walls.index(wall)
-    vertices, size = beam.section.vertices, _size(beam, span)
+    vertices, size = beam.section.vertices, beam.planform.scale(span)
     start, end = vertices[k], vertices[(k + 1) % len(vertices)]
     along = (end - start) / np.linalg.norm(end - start)
     middle = size[:, None] * 0.5 * (start + end) + (0.5 * beam.section.thickness + raised) * np.array([along[1], -along[0]])
-    return Skin(span, np.stack([middle + 0.5 * width * along, middle - 0.5 * width * along], axis=1), _angle(beam, span))
+    return Skin(span, np.stack([middle + 0.5 * width * along, middle - 0.5 * width * along], axis=1), beam.planform.angle(span))
 
 
 def outer_contour(section: Section, size: Array) -> Array:
@@ -126,15 +126,6 @@ def _area(a: Array, b: Array, c: Array) -> Array:
     """Twice the area of triangles, positive counter-clockwise."""
     one, other = b - a, c - a
     return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
-
-
-def _size(beam: RotatingBeam, span: Array) -> Array:
-    """(S,): of the section over that at the root."""
-    return 1.0 + (1.0 / beam.taper - 1.0) * span / beam.length
-
-
-def _angle(beam: RotatingBeam, span: Array) -> Array:
-    return np.radians(beam.presetting_deg + beam.pretwist_deg * span / beam.length)
 
 
 def magnification(deflection: float, drawn: float, digits: Sequence[int] = range(1, 10)) -> float:

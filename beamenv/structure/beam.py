@@ -15,10 +15,11 @@ from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
-from beamenv.structure.geometrically_exact.sections_along import Planform, SectionsAlong
+from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.inlays import SHORTEST, check_inlays
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
+from beamenv.structure.planform import TABLE, Planform, Steps, check_table
 from beamenv.structure.scale import OUT_OF_SCALE, in_scale
 from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.span_walls import SpanWalls
@@ -66,6 +67,10 @@ class RotatingBeam:
     """Angle of the root section's chord from the plane of rotation."""
     taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
+    twist_table: Annotated[Steps | None, TABLE] = None
+    """Pretwist along the span in place of an even one: pairs of the share of the span, from 0 to 1, and degrees."""
+    chord_table: Annotated[Steps | None, TABLE] = None
+    """Size along the span in place of an even taper: pairs of the share of the span and the size over that of the root."""
     model: Annotated[str, MODEL] = "blade"
     """"blade": as it is; "thesis": as the thesis computes it."""
     shear: Annotated[str, THEORY] = "higher_order"
@@ -81,17 +86,29 @@ class RotatingBeam:
 
     def __post_init__(self) -> None:
         self.layup.check_walls(self.section.wall_names)
+        check_table("beam.twist_table", self.twist_table)
+        check_table("beam.chord_table", self.chord_table, least=0.0)
         self.section.check_thickness(self.narrowest, "section.thickness")
         checked_flow(self.model, self.shear_flow)
         if self.model == "thesis":
             self.section.check_one_cell()
+            for name in ("twist_table", "chord_table"):
+                if getattr(self, name) is not None:
+                    raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
         check_inlays(self)
 
     @property
     def narrowest(self) -> float:
         """Size of the section where it is smallest, over that at the root, or 1."""
-        return min(1.0, 1.0 / self.taper)
+        return self.planform.narrowest
+
+    @cached_property
+    def planform(self) -> Planform:
+        """How the section is turned and scaled along the span."""
+        twists = self.twist_table and tuple((share, float(np.radians(angle))) for share, angle in self.twist_table)
+        even = float(np.radians(self.pretwist_deg)), float(np.radians(self.presetting_deg)), self.taper
+        return Planform(self.length, *even, twists, self.chord_table)
 
     @cached_property
     def space(self) -> TrialSpace:
@@ -108,12 +125,12 @@ class RotatingBeam:
     @cached_property
     def exact(self) -> ExactBeam:
         """The geometrically exact beam on solid sections: what the blade's model computes with."""
-        planform = Planform(self.length, np.radians(self.pretwist_deg), np.radians(self.presetting_deg), self.taper)
         beside_clamp = CLAMP_PIECE * self.space.clamp_reach
+        changes = [piece.start for piece in self.planform.pieces]
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.stations_per_span),
-            sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
+            stations=Stations.graded(self.breakpoints([*self._edges, *changes, beside_clamp]), self.stations_per_span),
+            sections=SectionsAlong.build(self.section, self.layup, self.planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
         )
@@ -135,7 +152,7 @@ class RotatingBeam:
     @property
     def stations_per_span(self) -> int:
         """Gauss stations on a piece as long as the span: for the trial functions, and for pretwist beyond a quarter of a turn."""
-        turned = abs(np.radians(self.pretwist_deg)) - 0.5 * np.pi
+        turned = self.planform.turned - 0.5 * np.pi
         return self.space.terms + EXTRA_STATIONS + max(0, int(np.ceil(turned)))
 
     @property

@@ -58,7 +58,7 @@ def _check_contour(beam: RotatingBeam, inlay: Inlay) -> None:
     scale = beam.narrowest
     room = scale * (section.wall_width(inlay.wall) - 2.0 * abs(inlay.offset))
     if not 0.0 < inlay.width <= room * (1.0 + ROUNDING):
-        where = f" {inlay.offset!r} m from its middle" if inlay.offset else ""
+        where = f" (offset {inlay.offset!r} m from its middle)" if inlay.offset else ""
         raise ValueError(
-            f"inlay width = {inlay.width!r} m must be positive and at most the {room:.6g} m that the {inlay.wall} wall has{where}."
+            f"inlay width = {inlay.width!r} m must be positive and at most the {inlay.wall} wall's {room:.6g} m{where}."
         )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed_property
-from beamenv.structure.geometrically_exact.rotations import about_span
+from beamenv.structure.planform import Planform
 from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.section import Section
 from beamenv.structure.section.solid_sections import SolidSections
@@ -18,45 +18,6 @@ from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Laminate, Layup
 
 Array = NDArray[np.float64]
-
-SIZES = 9
-"""Sizes at which the sections of a tapered blade are worked out; between them its properties, smooth functions of the size, follow
-a polynomial."""
-
-
-@dataclass(frozen=True, slots=True)
-class Planform:
-    """How the section is turned and scaled along the span."""
-
-    length: float
-    pretwist: float
-    presetting: float
-    """rad, of the whole span and of the root."""
-    taper: float
-
-    def scale(self, z: Array) -> Array:
-        """Size over that of the root (S,)."""
-        tip = 1.0 / self.taper
-        return tip + (1.0 - tip) * (1.0 - z / self.length)
-
-    def frames(self, z: Array) -> Array:
-        """C₀ (S, 3, 3): the axes of the sections."""
-        return about_span(self.presetting + self.pretwist * z / self.length)
-
-    @property
-    def rate(self) -> float:
-        """rad/m."""
-        return self.pretwist / self.length
-
-    @property
-    def sizes(self) -> Array:
-        """Chebyshev points from the size of the root to that of the tip, both included; one for a blade without taper."""
-        if self.taper == 1.0:
-            return np.ones(1)
-        nodes = np.cos(np.pi * np.arange(SIZES) / (SIZES - 1))
-        tip = 1.0 / self.taper
-        return 0.5 * (1.0 + tip) + 0.5 * (1.0 - tip) * nodes
-
 
 NOTHING = 1e-9
 """Energy, over that of one strain alone, that rounding may take."""
@@ -75,7 +36,7 @@ class SectionsAlong(Sealed):
     codes: NDArray[np.intp]
     """(C,) ascending: which combinations of kinds occur, as sums of powers of two."""
     solid: SolidSections
-    """C times SIZES of them (or one), combination after combination."""
+    """C times as many as the planform's pieces have sizes, combination after combination."""
 
     @classmethod
     def build(
@@ -87,7 +48,14 @@ class SectionsAlong(Sealed):
         strips = tuple(sorted({*cuts, *(inlay.strip for inlay in inlays)}, key=lambda each: (each.wall, each.width, each.offset)))
         hosts = section.hosts(layup)
         sheets = tuple(kind.kind for kind in kinds)
-        key = (section, tuple(hosts.items()), sheets, codes.tobytes(), strips, planform.rate, planform.taper)
+        key = (
+            section,
+            tuple(hosts.items()),
+            sheets,
+            codes.tobytes(),
+            strips,
+            tuple((piece.rate, piece.sizes) for piece in planform.pieces),
+        )
         solid = _ALIVE.get(key)
         if solid is None:
             solid = _ALIVE[key] = _solid_sections(section, hosts, planform, kinds, codes, strips)
@@ -111,32 +79,53 @@ class SectionsAlong(Sealed):
         return self._of(np.full(len(z), np.searchsorted(self.codes, code)), z, values)
 
     def _of(self, which: NDArray[np.intp], z: Array, values: Array) -> Array:
-        sizes = self.planform.sizes
-        if len(sizes) == 1:
+        count = sum(len(piece.sizes) for piece in self.planform.pieces)
+        if count == 1:
             return values[which]
-        by_size = values.reshape(len(self.codes), len(sizes), *values.shape[1:])[which]
-        return np.einsum("sn,sn...->s...", self._weights(self.planform.scale(z)), by_size)
+        by_size = values.reshape(len(self.codes), count, *values.shape[1:])[which]
+        return np.einsum("sn,sn...->s...", self._weights(z), by_size)
 
-    def _weights(self, scale: Array) -> Array:
-        """(S, SIZES): of the sizes known, for sections of other sizes."""
-        sizes = self.planform.sizes
-        if self._smooth:
+    def _weights(self, z: Array) -> Array:
+        """(S, sizes): of the sections known, for those at stations z (m)."""
+        pieces, scale = self.planform.pieces, self.planform.scale(z)
+        if len(pieces) == 1:
+            return self._within(0, scale)
+        ends = np.array([piece.end for piece in pieces[:-1]])
+        where, weights = np.searchsorted(ends, z, side="right"), []
+        for k in range(len(pieces)):
+            own = where == k
+            part = np.zeros((len(z), len(pieces[k].sizes)))
+            part[own] = self._within(k, scale[own])
+            weights.append(part)
+        return np.concatenate(weights, axis=1)
+
+    def _within(self, piece: int, scale: Array) -> Array:
+        """(S, n): of the n sections of a piece, for those of other sizes."""
+        sizes = np.array(self.planform.pieces[piece].sizes)
+        if len(sizes) == 1:
+            return np.ones((len(scale), 1))
+        if self._smooth[piece]:
             return between(sizes, scale)
         order = np.argsort(sizes)
         return np.stack([np.interp(scale, sizes[order], row[order]) for row in np.eye(len(sizes))], axis=-1)
 
     @sealed_property
-    def _smooth(self) -> bool:
-        """Whether the polynomial between sizes leaves every section some energy in every strain. That of very thin walls under
-        strong pretwist, which warp otherwise at every size, may not; then the mean of two neighbours does.
+    def _smooth(self) -> tuple[bool, ...]:
+        """Whether the polynomial between sizes leaves every section some energy in every strain, piece by piece. That of very thin
+        walls under strong pretwist, which warp otherwise at every size, may not; then the mean of two neighbours does.
         """
-        sizes = self.planform.sizes
-        halfway = between(sizes, np.linspace(sizes.min(), sizes.max(), 4 * len(sizes)))
-        energy = self.solid.energy.reshape(len(self.codes), len(sizes), -1)
-        size = self.solid.energy.shape[-1]
+        found, pieces = [], self.planform.pieces
+        energy = self.solid.energy.reshape(len(self.codes), -1, *self.solid.energy.shape[1:])
+        size, first = energy.shape[-1], 0
         unit = 1.0 / np.sqrt(np.diagonal(self.solid.energy[0]))
-        every = np.einsum("sn,cne->cse", halfway, energy).reshape(-1, size, size) * np.outer(unit, unit)
-        return bool(np.linalg.eigvalsh(every).min() > -NOTHING)
+        for piece in pieces:
+            sizes, count = np.array(piece.sizes), len(piece.sizes)
+            halfway = between(sizes, np.linspace(sizes.min(), sizes.max(), 4 * count)) if count > 1 else np.ones((1, 1))
+            own = energy[:, first : first + count].reshape(len(self.codes), count, -1)
+            every = np.einsum("sn,cne->cse", halfway, own).reshape(-1, size, size) * np.outer(unit, unit)
+            found.append(bool(np.linalg.eigvalsh(every).min() > -NOTHING))
+            first += count
+        return tuple(found)
 
 
 _ALIVE: WeakValueDictionary[Hashable, SolidSections] = WeakValueDictionary()
@@ -152,7 +141,8 @@ def _solid_sections(
     codes: NDArray[np.intp],
     strips: Sequence[Strip],
 ) -> SolidSections:
-    sizes = planform.sizes
+    sizes = np.concatenate([piece.sizes for piece in planform.pieces])
+    rates = np.concatenate([np.full(len(piece.sizes), piece.rate) for piece in planform.pieces])
     elements = mesh(section.placed_chains, np.tile(sizes, len(codes)), strips)
     laminates = dict[Laminate, int]()
     which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
@@ -163,7 +153,7 @@ def _solid_sections(
                 if code >> bit & 1 and edge.lies_under(kind):
                     laminate = kind.let_into(laminate)
             which[row, k] = laminates.setdefault(laminate, len(laminates))
-    return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), planform.rate)
+    return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), np.tile(rates, len(codes)))
 
 
 def between(nodes: Array, at: Array) -> Array:

@@ -44,7 +44,9 @@ class ClosedSection(Section):
         """``ValueError`` for webs that do not fit, or named as a wall is, thicknesses of walls that are none, and thick walls."""
         for k, web in enumerate(self.webs):
             if web.name in self.walls:
-                raise Refused(f"webs[{k}].name", web.name, f"another name than those of the walls: {', '.join(dict.fromkeys(self.walls))}")
+                raise Refused(
+                    f"webs[{k}].name", web.name, f"another name than those of the walls: {', '.join(dict.fromkeys(self.walls))}"
+                )
         names = self.wall_names
         for wall, _ in self.thicknesses:
             if wall not in names:
@@ -91,8 +93,8 @@ class BoxSection(ClosedSection):
 class TubeSection(ClosedSection):
     """A round tube: the axes ``width`` along x and ``depth`` along y of its mid-line, an ellipse, and wall ``thickness``, all in m.
 
-    Its walls are right, top, left and bottom, a quarter each. Raises ``ValueError`` for a dimension that is not positive or a wall too
-    thick.
+    Its walls are right, top, left and bottom, a quarter each. Raises ``ValueError`` for a dimension that is not positive or a wall
+    too thick.
     """
 
     width: Metres

@@ -8,7 +8,7 @@ normal, or along the mitre at a corner, or along the face of the wall that a web
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,11 @@ class Mesh(Sealed):
     joints: tuple[Joint, ...]
     opens: NDArray[np.bool_]
     """(K,): whether an element is of a chain that does not close."""
+
+    def rows(self, rows: NDArray[np.intp]) -> Mesh:
+        """The elements at some of the sizes."""
+        by_size = ("points", "directions", "last_points", "last_directions", "tangents")
+        return replace(self, **{name: getattr(self, name)[rows] for name in by_size})
 
     @property
     def order(self) -> int:

@@ -65,7 +65,10 @@ class StripSection(OpenSection):
 
 @configuration("section")
 class CSection(OpenSection):
-    """A channel, open to the right: mid-lines of flanges ``width`` long and of a web ``depth`` high, m. Its walls are top, web, bottom."""
+    """A channel, open to the right: mid-lines of flanges ``width`` long and of a web ``depth`` high, m.
+
+    Its walls are top, web, bottom.
+    """
 
     width: Metres
     depth: Metres
@@ -179,8 +182,10 @@ def _pairs(value: Any) -> Any:
 
 @configuration("section")
 class WallsSection(OpenSection):
-    """Any open section, by the mid-lines of its walls: points [x, y] (m) of each. A wall that begins where the one before it ends goes
-    on from it; one that ends on another's mid-line stands on it. Seen along a wall, its outer face is on the right.
+    """Any open section, by the mid-lines of its walls: points [x, y] (m) of each.
+
+    A wall that begins where the one before it ends goes on from it; one that ends on another's mid-line stands on it. Seen along a
+    wall, its outer face is on the right.
 
     Raises ``ValueError`` for walls that cross, or that touch no other.
     """

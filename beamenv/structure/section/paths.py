@@ -1,7 +1,7 @@
 """Where the walls of a section run at each of its sizes, and where one wall ends on another.
 
-A web ends on a face of the wall that holds it. There the holding wall has a piece as long as the web is thick, its *seat*; the web's
-last line across lies along the face of that piece. Seats keep their length, the web's thickness, whatever the section's size.
+A web ends on a face of the wall that holds it. There that wall has a piece as long as the web is thick, its *seat*; the web's last
+line across lies along the face of that piece. Seats keep their length, the web's thickness, whatever the section's size.
 """
 
 from __future__ import annotations
@@ -219,4 +219,6 @@ def _along(points: Array, arcs: Array, at: Array) -> Array:
 
 def _too_near(chain: Chain) -> ValueError:
     names = ", ".join(dict.fromkeys(chain.walls))
-    return ValueError(f"section has a web on {names} that must end further, by its own thickness, from corners, ends and other webs.")
+    return ValueError(
+        f"section has a web on {names} that must end further, by its own thickness, from corners, ends and other webs."
+    )

@@ -8,14 +8,14 @@ beam is as stiff as the (6, 6) matrix says; at the clamp they vanish, which Sain
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed, sealed_property
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
-from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
+from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes, loads_of_vibrations
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.mesh import Mesh
@@ -39,8 +39,8 @@ class SolidSections(Sealed):
     mesh: Mesh
     shapes: Array
     """(V, K, size, AMPLITUDES): displacements of each element's nodes."""
-    pretwist: float
-    """rad/m."""
+    pretwist: Array
+    """(V,), rad/m."""
     stiffness: Array
     """Saint-Venant's (V, 6, 6): rows Vx, Vy, N, Mx, My, Mz."""
     energy: Array
@@ -56,25 +56,52 @@ class SolidSections(Sealed):
     _forces: dict[tuple[Strip, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
 
     @classmethod
-    def build(cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> SolidSections:
-        """Sections whose element k has the wall ``laminates[which[v, k]]``; they twist by ``pretwist`` rad/m along the span."""
-        sums = element_sums(mesh, laminates, which, pretwist)
+    def build(cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float | Array) -> SolidSections:
+        """Sections whose element k has the wall ``laminates[which[v, k]]``; they twist by ``pretwist`` rad/m, all alike or
+        each (V,).
+        """
+        rates = np.broadcast_to(np.asarray(pretwist, dtype=np.float64), (len(which),))
+        parts: list[SolidSections] = []
+        places, meant = [], None
+        for rate in dict.fromkeys(rates.tolist()):
+            rows = np.flatnonzero(rates == rate)
+            part, meant = cls._of_rate(mesh.rows(rows), laminates, which[rows], rate, meant)
+            parts.append(part)
+            places.append(rows)
+        if len(parts) == 1:
+            return parts[0]
+        order = np.argsort(np.concatenate(places))
+        by_section = ("shapes", "pretwist", "stiffness", "energy", "inertia", "shape_mass", "stress_moments", "saint_venant")
+        whole = {name: np.concatenate([getattr(part, name) for part in parts])[order] for name in by_section}
+        return cls(mesh=mesh, **whole)
+
+    @classmethod
+    def _of_rate(
+        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: tuple[Array, Array] | None
+    ) -> tuple[SolidSections, tuple[Array, Array]]:
+        """Those of one pretwist, and what amplitudes of 1 mean: the resultants (6,), in the first section of unit energy, and the
+        loads that distort. ``meant`` is that of other sections of the blade.
+        """
+        sums = element_sums(mesh, laminates, which, rate)
         system = Factorised.of(sums)
-        central = central_solution(system, pretwist)
-        unit = np.sqrt(np.diagonal(central.stiffness[0]))  # resultants of unit energy, the same in all sections
-        shapes = np.concatenate([central.warping * unit, distortion_shapes(system)], axis=-1)
+        central = central_solution(system, rate)
+        if meant is None:
+            meant = np.sqrt(np.diagonal(central.stiffness[0])), loads_of_vibrations(system.first)
+        unit, loads = meant
+        shapes = np.concatenate([central.warping * unit, distortion_shapes(system, loads)], axis=-1)
         here = sums.gather(shapes)
-        return cls(
+        sections = cls(
             mesh=mesh,
             shapes=here,
-            pretwist=pretwist,
+            pretwist=np.full(len(which), rate),
             stiffness=central.stiffness,
             energy=_energy(sums, here),
             inertia=sums.inertia,
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, here),
-            saint_venant=_saint_venant(central, unit, pretwist),
+            saint_venant=_saint_venant(central, unit, rate),
         )
+        return sections, meant
 
     def aligned(self, other: SolidSections) -> SolidSections:
         """The same sections with distortions that mean what equal amplitudes mean in ``other``, whose elements are cut elsewhere.
@@ -178,7 +205,10 @@ class SolidSections(Sealed):
         shapes = self.shapes.reshape(-1, *self.shapes.shape[2:])[members]
         e, q, nodes = here.value.shape
         tables = here.tables()
-        B, S, Z = strain_of_tables(self.pretwist)
+        rates = self.pretwist[members // len(self.mesh.edges)]
+        if np.any(rates != rates[0]):
+            return self._strain_by_rate(here, members, rates)
+        B, S, Z = strain_of_tables(float(rates[0]))
         moved = shapes.reshape(e, nodes, 3, -1)
         of_shapes = tables[..., : 4 * nodes].reshape(e, q * 4, nodes) @ moved.reshape(e, nodes, -1)
         fields = of_shapes.reshape(e, q, 4, 3, -1)
@@ -186,6 +216,14 @@ class SolidSections(Sealed):
         onward = np.einsum("eqcj,kc->eqkj", fields[:, :, 3], S)
         beam = np.einsum("eqt,tkc->eqkc", tables[..., 4 * nodes :], Z)
         return np.concatenate([beam, strained, onward], axis=-1)
+
+    def _strain_by_rate(self, here: Places, members: NDArray[np.intp], rates: Array) -> Array:
+        strain = np.empty((*here.x.shape, 6, STRAINS))
+        for rate in np.unique(rates):
+            own = rates == rate
+            parts = {each.name: getattr(here, each.name)[own] for each in fields(here)}
+            strain[own] = self._strain(replace(here, **parts), members[own])
+        return strain
 
 
 def faces_of(mesh: Mesh) -> list[tuple[NDArray[np.intp], bool, float]]:

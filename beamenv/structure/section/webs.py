@@ -26,7 +26,7 @@ class Web:
 
 
 def web_chains(webs: Sequence[Web], contour: Chain, thickness: dict[str, float], usual: float) -> tuple[Chain, ...]:
-    """The webs as chains from mid-line to mid-line; ``ValueError`` for one that does not cross the contour twice, or another web."""
+    """The webs, from mid-line to mid-line; ``ValueError`` for one that does not cross the contour twice, or crosses another."""
     chains = tuple(_chain(web, k, contour, thickness.get(web.name, usual)) for k, web in enumerate(webs))
     for k, one in enumerate(chains):
         for other in chains[:k]:
@@ -42,7 +42,9 @@ def _chain(web: Web, number: int, contour: Chain, thickness: float) -> Chain:
     direction = np.array([np.sin(tilt), np.cos(tilt)])
     reached = _crossings(contour, through, direction)
     if len(reached) != 2:
-        raise Refused(f"webs[{number}].position", web.position, f"one at which {web.name!r} ends on two walls, not on {len(reached)}")
+        raise Refused(
+            f"webs[{number}].position", web.position, f"one at which {web.name!r} ends on two walls, not on {len(reached)}"
+        )
     return Chain(through + np.sort(reached)[:, None] * direction, (web.name,), (thickness,), closed=False)
 
 
