@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 from typing import Any, get_args
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -34,7 +34,7 @@ class Variant(Kind):
         return {"type": "object", "properties": {self.key: {"enum": list(self.classes)}}, "required": [self.key]}
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
-        tables: list[JsonSchema] = [handler(each.__pydantic_core_schema__) for each in self.classes.values()]
+        tables = [_whole(name, each, self.key, handler) for name, each in self.classes.items()]
         optional = schema["type"] == "custom-error" and schema["schema"]["type"] == "nullable"
         return {"anyOf": [*tables, {"type": "null"}] if optional else tables}
 
@@ -63,7 +63,23 @@ class Items(Kind):
         return self.schema(type(None) in get_args(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
-        return {"type": "array", "items": handler(self.of.__pydantic_core_schema__)}
+        return {"type": "array", "items": _items(self.of, handler)}
+
+
+def _whole(name: str, cls: type[Any], key: str, handler: GetJsonSchemaHandler) -> JsonSchema:
+    """The table of one class, whose fields without a default are needed, as is the key."""
+    # apart from the table itself, of which ``json_schema`` makes every field optional
+    return {
+        "allOf": [handler(cls.__pydantic_core_schema__), {"required": [key, *_needed(cls)]}, {"properties": {key: {"const": name}}}]
+    }
+
+
+def _items(cls: type[Any], handler: GetJsonSchemaHandler) -> JsonSchema:
+    return {"allOf": [handler(cls.__pydantic_core_schema__), {"required": _needed(cls)}]}
+
+
+def _needed(cls: type[Any]) -> list[str]:
+    return [each.name for each in fields(cls) if each.default is MISSING and each.default_factory is MISSING]
 
 
 def _as_tuple(value: Any) -> Any:

@@ -96,12 +96,20 @@ def _read_field(cls: Any, name: str, before: Any, value: Any, path: str) -> Any:
     """What a field is to be, given a value or a table in its place."""
     kind = next((kind for kind in cls.__pydantic_fields__[name].metadata if isinstance(kind, (Variant, Items))), None)
     if isinstance(kind, Items):
-        return [made(kind.of, each, f"{path}[{k}]") for k, each in enumerate(value)] if isinstance(value, (list, tuple)) else value
+        return _items(kind, value, path)
     if isinstance(kind, Variant):
         return _variant(kind, before, value, path) if isinstance(value, Mapping) else value
     table = isinstance(value, Mapping) or _choice(cls, name) is None
     stood = _stood(cls, name, before)
     return read(stood, value, path) if table and is_dataclass(stood) else value
+
+
+def _items(kind: Items, value: Any, path: str) -> Any:
+    """A list with objects in place of tables; one table is a list of it."""
+    listed = [value] if isinstance(value, Mapping) else value
+    if not isinstance(listed, (list, tuple)) or not any(isinstance(each, Mapping) for each in listed):
+        return value
+    return [made(kind.of, each, f"{path}[{k}]") for k, each in enumerate(listed)]
 
 
 def _variant(kind: Variant, before: Any, table: Mapping[str, Any], path: str) -> Any:

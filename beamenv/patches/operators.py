@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from beamenv.configuration import Instance, checked
 from beamenv.configuration.read_only import Sealed
-from beamenv.patches.layout import PatchLayout
+from beamenv.patches.group import PatchGroup
+from beamenv.patches.layout import SIDES, PatchLayout, Side
 from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
@@ -45,7 +47,7 @@ def work_on_section(beam: RotatingBeam, patch: PatchMaterial, inlay: Inlay) -> t
     """The sections of a blade, and the work (V, STRAINS) per volt and metre of a patch where an inlay is on each one's strains."""
     sections = beam.exact.cut_for(inlay.strip)
     low, high = inlay.depths(beam.section.thickness_of(inlay.wall))
-    hoop, span, shear = (patch.stress_in_wall() / patch.electrode_spacing).tolist()
+    hoop, span, shear = (patch.stress_in_wall(inlay.ply.angle_deg) / patch.electrode_spacing).tolist()
     return sections, sections.solid.layer_force(inlay.strip, low, high, (hoop, span, shear))
 
 
@@ -97,15 +99,22 @@ def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Ar
     vibrates about its steady state at ``speed`` rad/s.
     """
     _check_parts(beam, layout)
-    forces = patch_forces(beam, layout.patch, layout.actuator_inlays(beam.length), speed)
-    return forces.sum(axis=1, keepdims=True) if layout.ganged else forces
+    return np.hstack([_by_channel(_forces(beam, group, "actuators", speed), group) for group in layout.groups("actuators")])
 
 
 def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
     """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
     _check_parts(beam, layout)
-    forces = patch_forces(beam, layout.patch, layout.sensor_inlays(beam.length), speed)
-    return layout.patch.charge_per_reaction * forces.T
+    forces = [(group, _by_channel(_forces(beam, group, "sensors", speed), group)) for group in layout.groups("sensors")]
+    return np.vstack([group.patch.charge_per_reaction * force.T for group, force in forces])
+
+
+def _forces(beam: RotatingBeam, group: PatchGroup, side: Side, speed: float) -> Array:
+    return patch_forces(beam, group.patch, group.inlays(side, beam.length), speed)
+
+
+def _by_channel(forces: Array, group: PatchGroup) -> Array:
+    return forces.sum(axis=1, keepdims=True) if group.ganged else forces
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -127,19 +136,22 @@ def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
     nowhere else, f (4,) being its stress resultants and C the section's classical stiffness: ∫ f_iᵀ C⁻¹ f_j dz over the span
     that two patches share. (That of a section's end effects, a share of some per cent at the ends of a patch, is left out.)
     """
-    sides = layout.actuator_inlays(beam.length), layout.sensor_inlays(beam.length)
-    edges = [edge for side in sides for inlay in side for edge in (inlay.start, inlay.start + inlay.length)]
+    groups = [(side, group, group.inlays(side, beam.length)) for side in SIDES for group in layout.groups(side)]
+    edges = [edge for _, _, inlays in groups for inlay in inlays for edge in (inlay.start, inlay.start + inlay.length)]
     stations = Stations.between(beam.breakpoints(edges), LOCAL_STATIONS)
-    strains = []
-    for side in sides:
-        sections, work = work_on_section(beam, layout.patch, side[0])
+    strains, signals = [], []
+    for side, group, inlays in groups:
+        sections, work = work_on_section(beam, group.patch, inlays[0])
         strain = sections.at(stations.z, np.einsum("vg,vgk->vk", work, sections.solid.saint_venant)[:, CLASSICAL])
-        strains += [strain * inlay.covers(stations.z)[:, None] for inlay in side]
+        strains += [strain * inlay.covers(stations.z)[:, None] for inlay in inlays]
+        shown = 1.0 if side == "actuators" else group.patch.charge_per_reaction
+        signals.append(shown * (np.ones((len(inlays), 1)) if group.ganged else np.eye(len(inlays))))
     sections = beam.exact.sections
     stiffness = sections.at(stations.z, sections.solid.classical_stiffness)
     each = np.stack(strains, axis=-1)  # (S, 4, patches): C⁻¹f
     whole = np.einsum("s,ski,skl,slj->ij", stations.weight, each, stiffness, each, optimize=True)
-    m = len(sides[0])
-    gang = np.ones((m, 1)) if layout.ganged else np.eye(m)
+    by_channel = block_diag(*signals)
+    whole = by_channel.T @ whole @ by_channel
+    m = layout.channels("actuators")
     smooth = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
-    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang, smooth)
+    return PatchResponse(whole[:m, :m], whole[m:, :m], smooth)

@@ -90,7 +90,7 @@ class Planform:
         ends = self.length * np.array([low, high])
         rate = self.pretwist / self.length if self.twists is None else float(np.diff(self.angle(ends))[0] / np.diff(ends)[0])
         first, last = (1.0, 1.0 / self.taper) if self.chords is None and not several else self.scale(ends).tolist()
-        return Piece(*ends.tolist(), rate, _between(first, last, SIZES_OF_PIECE if several else SIZES))
+        return Piece(float(ends[0]), float(ends[1]), rate, _between(first, last, SIZES_OF_PIECE if several else SIZES))
 
 
 def _between(first: float, last: float, count: int) -> tuple[float, ...]:

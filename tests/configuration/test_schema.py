@@ -20,7 +20,7 @@ from train.cli.app import app
 KNOWN = {
     "$schema", "$defs", "$ref", "title", "description", "default", "type", "enum", "anyOf", "properties", "additionalProperties",
     "items", "prefixItems", "minItems", "maxItems", "minProperties", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum",
-    "pattern",
+    "pattern", "allOf", "required", "const",
 }  # fmt: skip
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None), "number": (int, float), "integer": int}
 
@@ -32,7 +32,13 @@ def holds(value, schema, root):
         return holds(value, root["$defs"][schema["$ref"].rpartition("/")[2]], root)
     if "anyOf" in schema and not any(holds(value, each, root) for each in schema["anyOf"]):
         return False
+    if not all(holds(value, each, root) for each in schema.get("allOf", ())):
+        return False
     if "enum" in schema and value not in schema["enum"]:
+        return False
+    if "const" in schema and value != schema["const"]:
+        return False
+    if isinstance(value, dict) and not set(schema.get("required", ())) <= set(value):
         return False
     kind = schema.get("type")
     if kind == "integer" and isinstance(value, float) and value.is_integer():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection, RotatingBeam
-from beamenv.structure.section import central_solution, element_sums, elements
+from beamenv.structure.section import central_solution, element_sums, elements, lines
 from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.solid_sections import SolidSections
 from beamenv.structure.walls.inlay import Strip
@@ -95,7 +95,8 @@ def test_thick_box_has_the_bending_stiffness_of_finite_elements(angle):
 def refined(section, layup, pieces):
     """Stiffness of a section each of whose walls is cut into 2 ``pieces`` + 1."""
     hosts = {wall: Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls}
-    cuts = [Strip(wall, share * section.wall_width(wall)) for wall in section.walls for share in np.arange(1, pieces + 1) / (pieces + 1)]
+    shares = np.arange(1, pieces + 1) / (pieces + 1)
+    cuts = [Strip(wall, share * section.wall_width(wall)) for wall in section.walls for share in shares]
     elements = mesh(section.chains, np.ones(1), cuts)
     laminates = list(dict.fromkeys(hosts.values()))
     which = np.array([[laminates.index(hosts[edge.wall]) for edge in elements.edges]])
@@ -119,9 +120,10 @@ def test_higher_order_through_the_wall_changes_the_stiffness_of_the_thick_box_li
     """Fifth instead of third: less than 0.3 % of the root of the product of the diagonals, at 60°, where walls warp most."""
     layup = LAYUPS[kind](60)
     third = THICK_BOX.properties(layup).stiffness
-    for module in (elements, element_sums, central_solution):
+    for module in (elements, element_sums, lines):
         monkeypatch.setattr(module, "ACROSS", 5)
-    monkeypatch.setattr(central_solution, "PER_LINE", 18)
+    for module in (lines, central_solution):
+        monkeypatch.setattr(module, "PER_LINE", 18)
     fifth = THICK_BOX.properties(layup).stiffness
     assert np.abs(share_of_diagonals(third - fifth, fifth)).max() < 3e-3
 

@@ -258,7 +258,7 @@ class _Elements:
         lines = np.array(self._lines, dtype=np.intp)
         lost = sorted(lines[element, at] for element, at, _ in joined)  # these lines are joints instead
         lines = lines - np.searchsorted(lost, lines)
-        joints = []
+        joints: list[Joint] = []
         for element, at, seat in joined:
             lines[element, at] = count - len(lost) + len(joints)
             host = self._first_of[seat.chain, seat.piece]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +73,7 @@ class SolidSections(Sealed):
             return parts[0]
         order = np.argsort(np.concatenate(places))
         by_section = ("shapes", "pretwist", "stiffness", "energy", "inertia", "shape_mass", "stress_moments", "saint_venant")
-        whole = {name: np.concatenate([getattr(part, name) for part in parts])[order] for name in by_section}
+        whole: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts])[order] for name in by_section}
         return cls(mesh=mesh, **whole)
 
     @classmethod
