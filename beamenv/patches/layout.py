@@ -48,7 +48,7 @@ class PatchesOrGroups(Items):
         return {"anyOf": [Patches().json(), {"type": "array", "items": {"type": "object"}}]}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> JsonSchema:
-        groups = Items.__get_pydantic_json_schema__(self, schema, handler)
+        groups = {**Items.__get_pydantic_json_schema__(self, schema, handler), "minItems": 1}
         return {"anyOf": [Patches().json(), groups, groups["items"]]}
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from beamenv.configuration import Instance, checked
 from beamenv.configuration.read_only import Sealed
@@ -139,19 +138,28 @@ def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
     groups = [(side, group, group.inlays(side, beam.length)) for side in SIDES for group in layout.groups(side)]
     edges = [edge for _, _, inlays in groups for inlay in inlays for edge in (inlay.start, inlay.start + inlay.length)]
     stations = Stations.between(beam.breakpoints(edges), LOCAL_STATIONS)
-    strains, signals = [], []
+    strains, shares = [], []
     for side, group, inlays in groups:
         sections, work = work_on_section(beam, group.patch, inlays[0])
         strain = sections.at(stations.z, np.einsum("vg,vgk->vk", work, sections.solid.saint_venant)[:, CLASSICAL])
         strains += [strain * inlay.covers(stations.z)[:, None] for inlay in inlays]
-        shown = 1.0 if side == "actuators" else group.patch.charge_per_reaction
-        signals.append(shown * (np.ones((len(inlays), 1)) if group.ganged else np.eye(len(inlays))))
+        share = 1.0 if side == "actuators" else group.patch.charge_per_reaction
+        shares.append(share * _by_channel(np.eye(len(inlays)), group))
     sections = beam.exact.sections
     stiffness = sections.at(stations.z, sections.solid.classical_stiffness)
     each = np.stack(strains, axis=-1)  # (S, 4, patches): C⁻¹f
     whole = np.einsum("s,ski,skl,slj->ij", stations.weight, each, stiffness, each, optimize=True)
-    by_channel = block_diag(*signals)
+    by_channel = _side_by_side(shares)
     whole = by_channel.T @ whole @ by_channel
     m = layout.channels("actuators")
     smooth = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
     return PatchResponse(whole[:m, :m], whole[m:, :m], smooth)
+
+
+def _side_by_side(blocks: Sequence[Array]) -> Array:
+    """A matrix with blocks on its diagonal."""
+    rows, columns = (np.cumsum([0, *(block.shape[axis] for block in blocks)]) for axis in (0, 1))
+    whole = np.zeros((rows[-1], columns[-1]))
+    for block, row, column in zip(blocks, rows[:-1], columns[:-1], strict=True):
+        whole[row : row + len(block), column : column + block.shape[1]] = block
+    return whole
