@@ -1,5 +1,6 @@
 """Doors of the export: controllers drawn and written."""
 
+import shutil
 from functools import cache
 from pathlib import Path
 
@@ -22,8 +23,10 @@ def law():
 
 
 def written(**given):
+    before = set(Path.cwd().iterdir())
     found = export(**given)
-    Path(given["path"]).unlink()
+    for each in set(Path.cwd().iterdir()) - before:
+        shutil.rmtree(each) if each.is_dir() else each.unlink()
     return found
 
 

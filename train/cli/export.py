@@ -44,7 +44,7 @@ def export(
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write a controller for your hardware: from currents of the sensors to voltages, with its scales, limits and clock."""
+    """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
     with one_sentence():
         from beamenv.configuration import Choice, Refused, checked
         from beamenv.task import resolve_task

@@ -1,4 +1,4 @@
-"""Controllers written for other machines: ``export``, from the sensors' currents to the voltages, as C, ONNX or MATLAB files."""
+"""Controllers written for other machines: ``export``, from what the sensors show to the voltages, as C, ONNX or MATLAB files."""
 
 from train.export.exported import PRECISIONS, Exported, exported
 from train.export.writing import FORMATS, export

@@ -106,7 +106,7 @@ def _parts(exported: Exported, body: Body) -> dict[str, str]:
     members = [*(f"{real} {name}[{size}];" for name, size in held.items()), *work]
     return {
         "title": _in_a_comment(f"{exported.controller}: from sensors to voltages, in C99."),
-        "facts": "\n".join(_in_a_comment(f" * {name + ':':<12} {fact}") for name, fact in exported.facts.items()),
+        "facts": "\n".join(_in_a_comment(f" * {name + ':':<13} {fact}") for name, fact in exported.facts.items()),
         "name": exported.name,
         "guard": exported.name.upper(),
         "stack": str(0 if body.where else (8 if real == "double" else 4) * sum(body.signals.values())),

@@ -20,7 +20,7 @@ from train.export.exported import Exported
 
 Array = NDArray[np.floating[Any]]
 Step = Callable[[Any], Array]
-"""Voltages (m,), V, from a row (p,) of what is measured: the sensors' currents, A, and what else the controller reads."""
+"""Voltages (m,), V, from a row (p,) of what is measured: what the sensors show, and what else the controller reads."""
 
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O2")
 

@@ -39,7 +39,7 @@ REASONS: Mapping[type[Any], str] = {
 
 
 def diagram_of(controller: Any, plant: Plant) -> Diagram:
-    """The controller from the currents of the plant's sensors, A, to its voltages, V.
+    """The controller from what the plant's sensors show, A in general, to its voltages, V.
 
     Raises ``ValueError`` of one sentence for what cannot be drawn, and for a law of other instruments than the plant's.
     """

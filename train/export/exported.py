@@ -39,16 +39,28 @@ class Exported:
     @property
     def facts(self) -> dict[str, str]:
         """What stands in every file, in its order."""
-        volts, full = self.plant.voltage_limits, self.plant.sensor_full_scale
         return {
             "controller": self.controller,
-            "blade": f"design plant with the fingerprint {fingerprint(self.plant)}",
+            "design plant": f"fingerprint {fingerprint(self.plant)}",
             "interval": f"{self.plant.control_interval!r} s",
-            "sensors": f"{len(full)} currents in A, clipped to full scale: {_numbers(full)}",
-            "voltages": f"{volts.shape[1]} in V, clipped to the drive's limits: {_numbers(volts[0])} to {_numbers(volts[1])}",
+            **self._measured,
+            **self._driven,
             "precision": self.precision,
             "written by": f"beamenv {beamenv.__version__}",
         }
+
+    @property
+    def _measured(self) -> dict[str, str]:
+        """What each measurement is."""
+        each = zip(self.plant.sensors, self.plant.sensor_full_scale, strict=True)
+        shown = {f"sensors[{k}]": f"{of.name}, {of.unit}, clipped to ±{full:.9g}" for k, (of, full) in enumerate(each)}
+        return {**shown, **{further.label: further.unit for further in self.diagram.inputs[1:]}}
+
+    @property
+    def _driven(self) -> dict[str, str]:
+        """What each voltage is."""
+        limits = self.plant.voltage_limits.T
+        return {f"volts[{k}]": f"V, clipped to {low:.9g} … {high:.9g}" for k, (low, high) in enumerate(limits)}
 
     def check_range(self) -> None:
         """``ValueError`` for a number that its precision cannot hold."""
@@ -63,7 +75,7 @@ class Exported:
 
 
 def exported(controller: Any, plant: Plant, *, precision: str = "double", name: str | None = None) -> Exported:
-    """The controller as a diagram from currents in A to voltages in V; ``ValueError`` for one that cannot be exported, and why."""
+    """The controller as a diagram from what sensors show to voltages in V; ``ValueError`` says why one cannot be exported."""
     precision = checked("precision", precision, Choice(PRECISIONS))
     title = name_of(controller)
     return Exported(
@@ -89,8 +101,3 @@ def _checked_name(name: Any) -> str:
             "name", name, f"a letter, then letters, digits and underscores, {LONGEST} at most, and no word of C or Python"
         )
     return str(name)
-
-
-def _numbers(values: Any) -> str:
-    """One number if all are equal."""
-    return ", ".join(f"{each:.9g}" for each in (values[:1] if np.ptp(values) == 0.0 else values))

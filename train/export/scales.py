@@ -12,7 +12,7 @@ from train.export.diagram import Diagram
 
 
 class Scales(NamedTuple):
-    """Full scale (p,) of sensors, A, what an action of 1 stands for (m,), V, and the limits (2, m) over it."""
+    """Full scale (p,) of the sensors, what an action of 1 stands for (m,), V, and the limits (2, m) over it."""
 
     full_scale: Array
     drive: Array
@@ -37,13 +37,13 @@ class Drawn:
 
 
 def sensors_of(plant: Plant) -> tuple[Input, Block]:
-    """The currents in A, and what the data acquisition makes of them: over full scale, and clipped there."""
-    sensors = Input(len(plant.C), "A", label="sensors")
-    # divided, not multiplied: a current of full scale is then exactly 1, by which clipped readings are known
+    """What the sensors show, and what the data acquisition makes of it: over full scale, and clipped there."""
+    sensors = Input(len(plant.C), ", ".join(each.unit for each in plant.sensors), label="sensors")
+    # divided, not multiplied: a reading of full scale is then exactly 1, by which clipped readings are known
     return sensors, clip(pair("divide", sensors, plant.sensor_full_scale), (-1.0, 1.0), label="readings")
 
 
 def behind_instruments(sensors: Input, drawn: Drawn, plant: Plant) -> Diagram:
-    """From currents in A to voltages in V within the drive's limits."""
+    """From what is measured to voltages in V within the drive's limits."""
     volts = clip(drawn.action * drive_limit(plant), plant.voltage_limits, label="volts")
     return Diagram((sensors, *drawn.further), volts, drawn.following)

@@ -26,7 +26,7 @@ def export(
     precision: str = "double",
     name: str | None = None,
 ) -> Exported:
-    """Write a controller to ``path``: from the sensors' currents, A, to voltages, V, as in an environment around ``plant``.
+    """Write a controller to ``path``: from what sensors show, A in general, to voltages, V, as in an environment around ``plant``.
 
     ``format`` is "c", a self-contained C99 file, or "onnx" or "mat"; None: what the file's name ends in. ``precision`` is "double"
     or "single", and ``name`` what functions and types are called; None: the controller's own. ``plant`` is that of the design,
