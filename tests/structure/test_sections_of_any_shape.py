@@ -131,7 +131,7 @@ def test_solid_strip_has_the_stiffness_of_the_textbooks(width, depth, within):
 
 @pytest.mark.parametrize("angles", [[30.0] * 4, [45.0, -45.0, -45.0, 45.0], [0.0, 90.0, 90.0, 0.0]])
 def test_laminated_strip_has_the_stiffness_of_a_plate_strip(angles):
-    """Classical lamination theory with free edges: compliances a_zz, d_zz, d_sz over the width, where that is 50 times the thickness.
+    """Classical lamination theory with free edges: compliances a_zz, d_zz, d_sz over the width, 50 times the thickness.
 
     Along the span and in bending within 0.2 %; in torsion less what the edges lose, some 0.6 thicknesses √(G_sz/G_nz) of the width.
     """
@@ -217,8 +217,8 @@ def test_the_clamp_holds_back_the_warping_of_an_i(length):
 
 
 def test_a_wide_strip_vibrates_as_a_cantilever_plate():
-    """300 × 30 × 2 mm, flap: Kirchhoff's plate by a Ritz method of its own, 18.41, 115.35 and 323.2 Hz, within 0.15 %; the clamp holds
-    its contraction back there, and Euler and Bernoulli's beam is 0.7 % lower.
+    """300 × 30 × 2 mm, flap: Kirchhoff's plate by a Ritz method of its own, 18.41, 115.35 and 323.2 Hz, within 0.15 %; the clamp
+    holds its contraction back there, and Euler and Bernoulli's beam is 0.7 % lower.
     """
     modes = RotatingBeam(StripSection(0.03, 0.002), ALUMINIUM, length=0.3).modes(count=8)
     flap = [f for f, family in zip(modes.natural_frequencies, modes.families, strict=True) if family == "flap"]
