@@ -92,8 +92,9 @@ def h_infinity_norm(plant: Plant | SampledPlant, controller: LinearController) -
 
 
 def _noise_to_cost(plant: Plant | SampledPlant, controller: LinearController) -> tuple[Array, Array, Array, Array]:
-    held = sampled(plant)
-    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, linear(controller))
+    law = linear(controller)
+    held = sampled(plant, law)
+    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, law)
     deviation, weight = square_root(covariance), square_root(held.cost)
     return transition, noise_input @ deviation, weight.T @ state_map, weight.T @ noise_map @ deviation
 

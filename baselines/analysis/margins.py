@@ -14,9 +14,9 @@ from baselines.analysis.frequency_response import frequency_response, highest, r
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController, linear
-from baselines.design.loop import closed_loop, spectral_radius
+from baselines.design.loop import closed_loop, sampled, spectral_radius
 from beamenv.configuration import Choice, checked
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant
 
 Complex = NDArray[np.complex128]
 
@@ -49,7 +49,9 @@ def stability_margins(plant: Plant, controller: LinearController, at: Literal["i
     unstable to begin with, for another place or for a law that is not linear.
     """
     checked("at", at, Choice(("input", "output")))
-    held, controller = sample(checked_plant(plant)), linear(controller)
+    checked_plant(plant)
+    controller = linear(controller)
+    held = sampled(plant, controller)
     loop = closed_loop(held, controller)[0]
     if spectral_radius(loop) >= 1.0:
         raise ValueError(f"{controller.name} is unstable on this plant, so it has no stability margins.")
@@ -72,7 +74,7 @@ def _sensitivity(plant: Plant, law: LinearController, at: str) -> Callable[[Arra
     A signal w added where the loop is broken, to the voltages that the plant gets or to the measurements that the law gets, is S w
     once it has gone round.
     """
-    held = sample(plant)
+    held = sampled(plant, law)
     (n, m), s = held.B.shape, len(law.transition)
     C = held.C if law.observes == "observation" else np.eye(n)
     A = closed_loop(held, law)[0]

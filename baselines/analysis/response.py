@@ -6,17 +6,20 @@ import numpy as np
 
 from baselines.design.controller import Array
 from baselines.design.linear import LinearController, linear
-from baselines.design.loop import closed_loop
+from baselines.design.loop import closed_loop, sampled
 from beamenv.plant.plant import SampledPlant
 
 
 def linear_response(held: SampledPlant, controller: LinearController, loads: Array) -> tuple[Array, Array]:
-    """States (K + 1, n) and voltages (K, m) in V from rest, under line loads (K, 2) in N/m, each held over its interval. Exact.
+    """States (K + 1, n) and voltages (K, m) in V from rest, under line loads (K, k) in N/m, each held over its interval. Exact.
+
+    Where readings show voltages, what they show are the last states.
 
     X = [x; ξ] is blade and memory, u = clip(T C x + M ξ) and X⁺ = [A x; F ξ + G C x] + [B; H] u + [E d; 0]. Readings are neither
     noisy nor clipped. Raises ValueError for a law that is not linear.
     """
     law = linear(controller)
+    held = sampled(held, law)
     n, m = held.B.shape
     gain = closed_loop(held, law)[2][n : n + m]
     measured = held.C if law.observes == "observation" else np.eye(n)

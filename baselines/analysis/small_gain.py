@@ -11,9 +11,9 @@ from baselines.analysis.frequency_response import Complex, frequency_response, r
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController, linear
-from baselines.design.loop import closed_loop, spectral_radius
+from baselines.design.loop import closed_loop, sampled, spectral_radius
 from beamenv.configuration import Refused
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 
 
 def small_gain(plant: Plant, controller: LinearController, others: Sequence[Plant]) -> float:
@@ -25,8 +25,9 @@ def small_gain(plant: Plant, controller: LinearController, others: Sequence[Plan
     Stein, IEEE Trans. Automatic Control 26, 1981). Infinite where the loop on ``plant`` or one of the ``others`` by itself is
     unstable. Raises ValueError for a law that is not linear, and for others that are no plants with as many voltages and sensors.
     """
-    held, law = sample(checked_plant(plant)), linear(controller)
-    those = [sample(each) for each in _checked(others, plant)]
+    checked_plant(plant)
+    law = linear(controller)
+    held, those = sampled(plant, law), [sampled(each, law) for each in _checked(others, plant)]
     loop = closed_loop(held, law)[0]
     if max(spectral_radius(each) for each in (loop, held.A, *(other.A for other in those))) >= 1.0:
         return float("inf")

@@ -19,8 +19,9 @@ def stationary_cost(plant: Plant | SampledPlant, controller: LinearController) -
     With X = [x; ξ] and noise n = [d; v], X⁺ = Φ X + Γ n and z = [x; u; d] = Z_x X + Z_n n, so Σ = ΦΣΦᵀ + ΓNΓᵀ and the mean
     is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable. Raises ValueError for a law that is not linear.
     """
-    held = sampled(plant)
-    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, linear(controller))
+    law = linear(controller)
+    held = sampled(plant, law)
+    transition, noise_input, state_map, noise_map, covariance = closed_loop(held, law)
     spread = accumulated(transition, noise_input @ covariance @ noise_input.T)
     if spread is None:
         return float("inf")
@@ -34,7 +35,8 @@ def closed_loop_poles(plant: Plant | SampledPlant, controller: LinearController)
     Poles of the sampled loop at z = 0 have no continuous equivalent and are left out. Raises ValueError for a law that is not
     linear.
     """
-    held = sampled(plant)
-    poles = np.linalg.eigvals(closed_loop(held, linear(controller))[0])
+    law = linear(controller)
+    held = sampled(plant, law)
+    poles = np.linalg.eigvals(closed_loop(held, law)[0])
     poles = np.log(poles[np.abs(poles) > 1e-12].astype(complex)) / held.interval
     return np.asarray(poles[np.argsort(-poles.real)])

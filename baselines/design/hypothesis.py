@@ -14,11 +14,12 @@ from scipy.linalg import block_diag, solve_discrete_lyapunov
 
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
-from baselines.design.load_model import Load, LoadModel, checked_loads, with_load
+from baselines.design.load_model import Load, LoadModel, checked_loads, model_of, with_load
+from baselines.design.loop import sampled
 from baselines.design.matrix import one_or_each
 from beamenv.configuration import Count, Flag, Number, Refused, checked
 from beamenv.configuration.read_only import ReadOnly, sealed
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.tables import STRONGEST
 
@@ -86,18 +87,19 @@ class Hypothesis(ReadOnly):
             self.plant,
             B=sealed(self.plant.B * g),
             C=sealed(s[:, None] * self.plant.C),
+            D=sealed(s[:, None] * self.plant.D * g),
             input_weight=sealed(R * np.outer(g, g) + np.diag(np.diag(R) * (1.0 - g**2))),
         )
 
     @property
     def foreseen(self) -> LoadModel | None:
         """All the loads in one; None without any."""
-        models = [load.model(self.plant.control_interval) for load in self.loads]
+        models = [model_of(load, self.plant) for load in self.loads]
         return reduce(add, models) if models else None
 
     def sampled(self, biased: bool) -> SampledPlant:
         """What a filter believes in: the faulty plant with states [x; ξ; b] of loads and, if ``biased``, of p sensors' biases."""
-        held, load = sample(self.faulty_plant), self.foreseen
+        held, load = sampled(self.faulty_plant), self.foreseen
         held = held if load is None else with_load(held, load)
         return _with_bias(held, self._bias) if biased else held
 
@@ -105,8 +107,10 @@ class Hypothesis(ReadOnly):
         """Of [x; ξ; b] before the first reading: deflected and at rest, loads and biases as they are at any time."""
         bent, load = np.zeros_like(self.plant.disturbance_input.T), self.foreseen
         if self.deflection > 0.0:
-            bent = self.deflection * static_deflection(self.plant, np.eye(2))
+            bent = self.deflection * static_deflection(self.plant, np.diag(self.plant.load_scale))
         parts = [bent.T @ bent]
+        if felt := int(self.faulty_plant.D.any(axis=1).sum()):
+            parts.append(np.zeros((felt, felt)))  # no voltage is on before the start
         if load is not None:
             parts.append(solve_discrete_lyapunov(load.transition, load.noise))
         if biased:

@@ -11,7 +11,7 @@ from scipy.linalg import block_diag
 
 from baselines.design.riccati import Array
 from beamenv.configuration import Number, Refused
-from beamenv.plant.plant import SampledPlant
+from beamenv.plant.plant import Plant, SampledPlant
 
 MAGNITUDE = Number(ge=1e-6, le=1e6, unit="N/m")
 """Root mean square of a load: far beyond what a blade stands, and far from where squares leave the numbers."""
@@ -27,7 +27,7 @@ class LoadModel:
     transition: Array
     """(q, q): its eigenvalues must lie within the unit circle, for no voltage can stop a load."""
     output: Array
-    """(2, q), N/m per unit of ξ: lag, flap."""
+    """(k, q), N/m per unit of ξ: lag, flap, or whatever disturbances the plant has."""
     noise: Array
     """(q, q): covariance of w in one interval."""
 
@@ -43,9 +43,22 @@ class LoadModel:
 class Load(Protocol):
     """What the load is, apart from the clock it is sampled by."""
 
-    def model(self, interval: float) -> LoadModel:
-        """The load from one control interval (s) to the next."""
+    def model(self, interval: float, disturbances: int = 2) -> LoadModel:
+        """The load from one control interval (s) to the next, of so many disturbances; those of a blade are two line loads."""
         ...
+
+
+def model_of(load: Load, plant: Plant) -> LoadModel:
+    """A load as a plant meets it: where load cases are made of other disturbances than two line loads, of as many, and scaled as
+    those of scenarios are (``Plant.load_scale``). ``ValueError`` for a model of another number of them.
+    """
+    scale, loads = plant.load_scale, plant.loads
+    model = load.model(plant.control_interval) if loads == 2 else load.model(plant.control_interval, loads)
+    if len(model.output) != loads:
+        raise Refused("load", load, f"one whose model has {loads} outputs, as many as the plant has disturbances that are loads")
+    if loads == len(scale) and np.all(scale == 1.0):
+        return model
+    return replace(model, output=np.eye(len(scale), loads) @ (scale[:loads, None] * model.output))
 
 
 def checked_loads(name: str, load: Any) -> tuple[Load, ...]:

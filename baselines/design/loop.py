@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from baselines.design.controller import Array
+from baselines.design.feedthrough import with_feedthrough
 from baselines.design.instruments import checked_plant
 from beamenv.plant.plant import Plant, SampledPlant, sample
 
@@ -14,9 +15,14 @@ if TYPE_CHECKING:
     from baselines.design.linear import LinearController
 
 
-def sampled(plant: Plant | SampledPlant) -> SampledPlant:
-    """The plant as it is, or sampled; ``ValueError`` for what is neither."""
-    return plant if isinstance(plant, SampledPlant) else sample(checked_plant(plant))
+def sampled(plant: Plant | SampledPlant, law: LinearController | None = None) -> SampledPlant:
+    """The plant as it is, or sampled; ``ValueError`` for what is neither.
+
+    What readings show of the voltages before is part of its state (``with_feedthrough``), but for a ``law`` that observes the state
+    and reads no sensor.
+    """
+    held = plant if isinstance(plant, SampledPlant) else sample(checked_plant(plant))
+    return held if law is not None and law.observes == "state" else with_feedthrough(held)
 
 
 def spectral_radius(transition: Array) -> float:
@@ -27,7 +33,8 @@ def spectral_radius(transition: Array) -> float:
 def closed_loop(held: SampledPlant, law: LinearController) -> tuple[Array, Array, Array, Array, Array]:
     """Φ, Γ, Z_x, Z_n of X⁺ = Φ X + Γ n, z = Z_x X + Z_n n and the covariance N of n = [d; v]; u = T C x + M ξ + T v.
 
-    Raises ValueError for a law that has other measurements or voltages than the plant.
+    ``held`` is as ``sampled`` gives it for the law. Raises ValueError for a law that has other measurements or voltages than the
+    plant.
     """
     (n, m), s, k = held.B.shape, len(law.transition), held.disturbance_input.shape[1]
     C, V = (held.C, held.sensor_noise) if law.observes == "observation" else (np.eye(n), np.zeros((n, n)))

@@ -6,10 +6,9 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from baselines.design.load_model import DURATION, MAGNITUDE, LoadModel, with_load
+from baselines.design.load_model import DURATION, MAGNITUDE, LoadModel
 from baselines.design.objects import optional_instance
 from beamenv.configuration import configuration
-from beamenv.plant.plant import SampledPlant
 
 
 @configuration("persistent_load")
@@ -26,17 +25,13 @@ class PersistentLoad:
     duration: Annotated[float, DURATION] = 0.25
     """s, correlation time."""
 
-    def model(self, interval: float) -> LoadModel:
-        """Two states, the loads themselves in N/m, over a control interval in s."""
+    def model(self, interval: float, disturbances: int = 2) -> LoadModel:
+        """A state for each of the ``disturbances``, the loads themselves in N/m, over a control interval in s."""
         decay, forgotten = np.exp(-interval / self.duration), -np.expm1(-2.0 * interval / self.duration)
-        return LoadModel(decay * np.eye(2), np.eye(2), forgotten * self.magnitude**2 * np.eye(2))
+        each = np.eye(disturbances)
+        return LoadModel(decay * each, each, forgotten * self.magnitude**2 * each)
 
 
 def checked_persistent_load(load: Any) -> PersistentLoad | None:
     """The lasting load or None; ``ValueError`` for anything else."""
     return optional_instance("persistent_load", load, PersistentLoad, "a PersistentLoad, such as PersistentLoad()")
-
-
-def with_persistent_load(held: SampledPlant, load: PersistentLoad) -> SampledPlant:
-    """The plant with state [x; d] where d (2,) is the load that lasts, and with disturbances [white load; what changes d]."""
-    return with_load(held, load.model(held.interval))

@@ -11,7 +11,7 @@ from baselines.design.loop import closed_loop, sampled, spectral_radius
 from baselines.design.out_of_reach import undamped_out_of_reach
 from baselines.design.riccati import RESIDUAL, Solution, Unsolved
 from beamenv.configuration import Flag, checked
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 
 if TYPE_CHECKING:
     from baselines.design.linear import LinearController
@@ -37,7 +37,7 @@ def verified(
     """
     if not checked("verify", verify, Flag()):
         return law
-    held = sampled(plant)
+    held = sampled(plant, law)
     for missed in (each.residual for each in solutions if not each.residual <= RESIDUAL):
         raise _broken(law, held, f"a Riccati equation left with {missed:.1e} of its terms, more than {RESIDUAL:g}", instead)
     if not (radius := spectral_radius(closed_loop(held, law)[0])) < DECAYS:
@@ -53,7 +53,7 @@ def solvable(plant: Plant) -> Iterator[None]:
     try:
         yield
     except Unsolved as error:
-        mode = undamped_out_of_reach(sample(plant))
+        mode = undamped_out_of_reach(sampled(plant))
         cause = str(error) if mode is None else f"plant has {mode}"
         raise ValueError(f"{cause}: no law is the optimum then, allowed are plants in which every such mode is damped.") from None
 

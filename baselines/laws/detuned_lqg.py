@@ -9,12 +9,13 @@ from baselines.design.delay import MOST_LATE, with_delay
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
 from baselines.design.load_model import Load, checked_loads
+from baselines.design.loop import sampled
 from baselines.design.objects import instance
 from baselines.design.riccati import Solution
 from baselines.design.verification import verified
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.configuration import Count, Flag, Number, Text, checked, configuration
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 
 
 @configuration("detuning")
@@ -47,7 +48,7 @@ def detuned_lqg(plant: Plant, detuning: Detuning, *loads: Load, name: str = "det
     """
     held, regulated, filtered = detuned_design(plant, detuning, *loads)
     law = compensator(plant, checked("name", name, Text()), held, regulated.gain, filtered.gain)
-    return verified(law, with_delay(sample(plant), detuning.delay), regulated, filtered, instead="another detuning")
+    return verified(law, with_delay(sampled(plant), detuning.delay), regulated, filtered, instead="another detuning")
 
 
 def detuned_design(plant: Plant, detuning: Detuning, *loads: Load) -> tuple[SampledPlant, Solution, Solution]:

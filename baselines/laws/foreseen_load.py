@@ -7,7 +7,7 @@ from math import sqrt
 from baselines.design.load_model import Load
 from baselines.design.persistent_load import PersistentLoad
 from baselines.laws.rotor_lqg import RotorHarmonics
-from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.scenarios.scenario import Scenario
 from beamenv.scenarios.tables import Pair
 
@@ -22,20 +22,23 @@ STEADY = 2.0
 """s: time in which a harmonic of the rotor, steady within an episode, is taken to forget its phase."""
 
 
-def foreseen_loads(scenario: Scenario, speed: float) -> tuple[Load, ...]:
+def foreseen_loads(scenario: Scenario, speed: float, disturbances: int = 2) -> tuple[Load, ...]:
     """What lasts, turbulence and each of the rotor's harmonics at a speed in rad/s, none of those that the scenario has not.
 
     A step of magnitude M in any direction in a share of the episodes is √(share · mean of M² / 2) in lag and in flap, root mean
-    square; a harmonic whose amplitude is drawn between half and one and a half of a, with any phase, is a √(13/48).
+    square; a harmonic whose amplitude is drawn between half and one and a half of a, with any phase, is a √(13/48). Where load
+    cases are made of other ``disturbances`` than two, their number is in the place of the 2; of none, nothing is foreseen.
     """
     loads: list[Load] = []
-    if lasting := sqrt(scenario.step * mean_square(scenario.magnitude) / 2.0):
+    if not disturbances:
+        return ()
+    if lasting := sqrt(scenario.step * mean_square(scenario.magnitude) / disturbances):
         loads.append(PersistentLoad(min(lasting, LARGEST), LASTING))
     if scenario.rotor.turbulence:
         loads.append(PersistentLoad(scenario.rotor.turbulence, scenario.rotor.turbulence_time))
     if speed:
         amplitudes = enumerate(scenario.rotor.harmonics, 1)
-        loads += [RotorHarmonics(speed, (order,), a * sqrt(13.0 / 48.0), STEADY) for order, a in amplitudes if a]
+        loads += [RotorHarmonics(speed, (order,), a * sqrt(13.0 / (24.0 * disturbances)), STEADY) for order, a in amplitudes if a]
     return tuple(loads)
 
 

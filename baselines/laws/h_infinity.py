@@ -13,13 +13,13 @@ from baselines.analysis.frequency_response import h_infinity_norm, square_root
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
-from baselines.design.loop import spectral_radius
+from baselines.design.loop import sampled, spectral_radius
 from baselines.design.riccati import RESIDUAL, SampledEquation, Solution, doubled, improved
 from baselines.design.verification import DECAYS, verified
 from baselines.design.weights import weighted
 from baselines.laws.lqg import known_sensor_noise, observer, sampled_lqg
 from beamenv.configuration import Number, checked
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant
 
 _BISECTION = 1e-5
 """Relative width of the bracket at which γ counts as found."""
@@ -119,7 +119,7 @@ class _SaddlePoint:
 
 
 def _game(plant: Plant, attenuation: float) -> _Game:
-    held = sample(plant)
+    held = sampled(plant)
     n, m = held.B.shape
     unit = attenuation / np.sqrt(np.diag(held.input_weight))
     load, reading = square_root(held.process_noise), square_root(known_sensor_noise(plant) / held.interval)

@@ -54,7 +54,7 @@ def searched_detuning(prior: Prior) -> tuple[Detuning, dict[Detuning, float]]:
 
 
 def _loads(prior: Prior) -> tuple[Any, ...]:
-    return foreseen_loads(prior.scenario, prior.blade.config.speed)
+    return foreseen_loads(prior.scenario, prior.blade.config.speed, prior.blade.truth.loads)
 
 
 def _law(prior: Prior, detuning: Detuning) -> LinearController:

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from baselines.design.delay import checked_delay, with_delay
 from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController
-from baselines.design.load_model import Load, with_load
+from baselines.design.load_model import Load, model_of, with_load
+from baselines.design.loop import sampled
 from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
 from baselines.design.rate_penalty import with_rate_penalty
 from baselines.design.riccati import Array, Solution, kalman_filter, regulator, sampled_kalman_filter, sampled_regulator
@@ -20,7 +21,7 @@ from baselines.design.verification import solvable, verified
 from baselines.design.weights import weighted
 from beamenv.configuration import Choice, Number, checked
 from beamenv.plant.hold import hold
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 
 _CONVERTER_STEP = 2.0**-15
 """Of full scale: a 16-bit converter's."""
@@ -44,10 +45,11 @@ def lqg(
 
         x̂̇ = (A − BK − LC) x̂ + L y + B (clip(u) − u),        u = −K x̂,
 
-    whose last term, zero unless the drive saturates, keeps it from winding up. It is integrated exactly from sample to sample with
-    the newest reading held over the interval that it ends, so that y_k acts on u_k. (With y_k held over the interval that it
-    begins, as is more usual, the loop through the blade's upper modes, up to 1.4 rad a sample, is unstable.) It still needs a
-    filter slower than the sampling: with sensors of next to no noise, or loads that reach fast modes, it is unstable too.
+    whose last term, zero unless the drive saturates, keeps it from winding up (B less LD where sensors feel the voltages). It is
+    integrated exactly from sample to sample with the newest reading held over the interval that it ends, so that y_k acts on u_k.
+    (With y_k held over the interval that it begins, as is more usual, the loop through the blade's upper modes, up to 1.4 rad a
+    sample, is unstable.) It still needs a filter slower than the sampling: with sensors of next to no noise, or loads that reach
+    fast modes, it is unstable too.
 
     ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
     ``Q`` (n, n) and ``R`` (m, m) are weights of your own in ∫(xᵀQx + uᵀRu)dt, in the plant's coordinates, in place of the plant's:
@@ -78,9 +80,9 @@ def compensator(plant: Plant, name: str, held: SampledPlant, K: Array, L: Array)
 
 
 def sampled_with_loads(plant: Plant, *loads: Load | None) -> SampledPlant:
-    """The sampled plant, with the states of whatever ``loads`` are given."""
-    models = [load.model(plant.control_interval) for load in loads if load is not None]
-    return with_load(sample(plant), reduce(add, models)) if models else sample(plant)
+    """The sampled plant, with what readings show of voltages as states, and with those of whatever ``loads`` are given."""
+    models = [model_of(load, plant) for load in loads if load is not None]
+    return with_load(sampled(plant), reduce(add, models)) if models else sampled(plant)
 
 
 def sampled_design(
@@ -115,7 +117,8 @@ def _continuous(plant: Plant, verify: bool) -> LinearController:
         regulated = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
         filtered = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
     K, L = regulated.gain, filtered.gain
-    F, inputs = hold(plant.A - plant.B @ K - L @ plant.C, np.hstack([L, plant.B]), plant.control_interval)
+    B = plant.B - L @ plant.D  # a reading and the voltage that it shows belong to one interval
+    F, inputs = hold(plant.A - B @ K - L @ plant.C, np.hstack([L, B]), plant.control_interval)
     G, H = inputs[:, :p], inputs[:, p:]
     onward = F + H @ K
     law = observer(plant, "LQG (thesis)", onward, onward @ G, H, -K, -K @ G)

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 from baselines.design.controller import Array
 from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController, static_law
-from baselines.design.persistent_load import PersistentLoad, checked_persistent_load, with_persistent_load
+from baselines.design.load_model import model_of, with_load
+from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
 from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
 from baselines.design.verification import solvable, verified
 from baselines.design.weights import weighted
@@ -44,7 +45,7 @@ def lqr(
 
 
 def _with_load(plant: Plant, held: SampledPlant, load: PersistentLoad, verify: bool) -> LinearController:
-    both = with_persistent_load(held, load)
+    both = with_load(held, model_of(load, plant))
     n, k = held.disturbance_input.shape
     decay, change = both.A[n:, n:], both.process_noise[k:, k:]
     hidden = held.process_noise + np.diag(np.where(np.diag(held.process_noise) > 0.0, 0.0, _SEEN_AT_ONCE * np.diag(change)))

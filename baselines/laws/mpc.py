@@ -13,6 +13,7 @@ from baselines.design.controller import Array
 from baselines.design.delay import checked_delay, with_delay
 from baselines.design.instruments import Instruments
 from baselines.design.law import Law
+from baselines.design.loop import sampled
 from baselines.design.matrix import keep_matrices, rows
 from baselines.design.objects import instance
 from baselines.design.persistent_load import PersistentLoad, checked_persistent_load
@@ -21,7 +22,7 @@ from baselines.design.verification import verified
 from baselines.design.weights import weighted
 from baselines.laws.lqg import compensator, sampled_design
 from beamenv.configuration import Count, Numbers, Refused, checked
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 
 LONGEST = 1000
 """Control intervals of a horizon that is given: half a second at 0.5 ms, an episode as it is by default."""
@@ -145,7 +146,7 @@ def predictive(
     blocks = doubling_blocks(plant) if blocks is None else blocks
     held, regulated, filtered = design
     (P, K), L = regulated, filtered.gain
-    verified(compensator(plant, name, held, K, L), with_delay(sample(plant), delay), regulated, filtered, verify=verify)
+    verified(compensator(plant, name, held, K, L), with_delay(sampled(plant), delay), regulated, filtered, verify=verify)
     deviation, moves = _deviation(held, P, K, blocks), len(blocks)
     by_state, by_move = np.split(deviation, [len(held.A)], axis=1)
     lowest, highest = (np.tile(limit, moves) for limit in plant.voltage_limits)

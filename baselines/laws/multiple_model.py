@@ -18,6 +18,7 @@ from baselines.design.filter_bank import Filter, FilterBank
 from baselines.design.hypothesis import Hypothesis, with_voltages_before
 from baselines.design.instruments import Instruments
 from baselines.design.linear import LinearController
+from baselines.design.loop import sampled
 from baselines.design.matrix import real_matrix
 from baselines.design.rate_penalty import with_rate_penalty
 from baselines.design.riccati import Solution
@@ -26,7 +27,7 @@ from baselines.design.weighing import MultipleModel
 from baselines.laws.lqg import compensator, known_sensor_noise, optimal_filter, optimal_regulator
 from baselines.laws.reference_lqg import RATE_WEIGHT
 from beamenv.configuration import Count, Flag, Number, Refused, checked
-from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.plant import Plant, SampledPlant
 
 FLOOR = 1e-6
 """Least weight of a hypothesis: one that has been ruled out can be right later."""
@@ -149,7 +150,7 @@ def _part(
     hypothesis: Hypothesis, of: SampledPlant, held: SampledPlant, regulated: Solution, filtered: Solution, depth: int, verify: bool
 ) -> _Parts:
     """Of one, sampled without biases (``of``) and as its filter believes (``held``)."""
-    truth, delay = sample(hypothesis.faulty_plant), hypothesis.delay
+    truth, delay = sampled(hypothesis.faulty_plant), hypothesis.delay
     state_gain, voltage_gain = late(of, regulated.gain, delay, depth)
     state_gain = np.pad(state_gain, ((0, 0), (0, len(held.A) - len(of.A))))
     K, L = np.hstack([state_gain, voltage_gain]), np.vstack([filtered.gain, np.zeros((voltage_gain.shape[1], len(held.C)))])

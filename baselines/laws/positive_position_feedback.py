@@ -10,6 +10,7 @@ from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController
+from baselines.design.loop import sampled
 from baselines.design.matrix import one_or_each
 from baselines.design.verification import verified
 from baselines.laws.gain_search import least_cost_gains
@@ -17,7 +18,7 @@ from baselines.laws.lqg import observer
 from baselines.laws.velocity_feedback import pairing
 from beamenv.configuration import Count, Number, checked
 from beamenv.plant.hold import hold
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant
 
 NAME = "positive position feedback"
 
@@ -71,7 +72,7 @@ def positive_position_feedback(
         return _law(plant, pairs, filters, np.broadcast_to(np.asarray(gains, dtype=np.float64), count))
 
     if gain is None:
-        held = sample(plant)
+        held = sampled(plant)
         gains = least_cost_gains(lambda each: stationary_cost(held, law(each)), _GAINS, count, NAME, xatol=np.inf, maxiter=400)
     else:
         gains = one_or_each("gain", gain, count, "mode")

@@ -30,7 +30,7 @@ def reduced(plant: Plant | SampledPlant, law: LinearController, order: int, *, v
 
 def truncations(plant: Plant | SampledPlant, law: LinearController) -> Callable[[int], LinearController]:
     """The law of each order, from one balancing; it may be unstable."""
-    basis, dual = balanced(sampled(plant), law)
+    basis, dual = balanced(sampled(plant, law), law)
 
     def of(order: int) -> LinearController:
         onto, back = basis[:, :order], dual[:order]

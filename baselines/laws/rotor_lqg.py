@@ -42,8 +42,8 @@ class RotorHarmonics:
         if len(set(self.orders)) < len(self.orders):
             raise Refused("orders", self.orders, "orders that differ from each other")
 
-    def model(self, interval: float) -> LoadModel:
-        """Four states for each order, an in-phase and a quadrature part (N/m) in lag and in flap, over an interval in s.
+    def model(self, interval: float, disturbances: int = 2) -> LoadModel:
+        """For each order an in-phase and a quadrature part (N/m) in lag and in flap, or in each disturbance, over an interval in s.
 
         Raises ValueError for a harmonic that the sampling cannot tell from a slower one.
         """
@@ -52,13 +52,15 @@ class RotorHarmonics:
                 f"order {max(self.orders)} at {self.speed:g} rad/s is not allowed: sampled every {interval:g} s, a load must "
                 f"stay below {np.pi / interval:.6g} rad/s."
             )
-        return reduce(add, (self._oscillator(order * self.speed * interval, interval) for order in self.orders))
+        turns = (order * self.speed * interval for order in self.orders)
+        return reduce(add, (self._oscillator(each, interval, disturbances) for each in turns))
 
-    def _oscillator(self, angle: float, interval: float) -> LoadModel:
+    def _oscillator(self, angle: float, interval: float, disturbances: int) -> LoadModel:
         decay, forgotten = np.exp(-interval / self.duration), -np.expm1(-2.0 * interval / self.duration)
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        noise = forgotten * self.magnitude**2 * np.eye(4)
-        return LoadModel(decay * block_diag(turn, turn), block_diag(np.eye(1, 2), np.eye(1, 2)), noise)
+        noise = forgotten * self.magnitude**2 * np.eye(2 * disturbances)
+        shown = block_diag(*[np.eye(1, 2)] * disturbances)
+        return LoadModel(decay * block_diag(*[turn] * disturbances), shown, noise)
 
 
 def rotor_lqg(

@@ -104,7 +104,7 @@ class Now:
         n, m, p = self.plan.sizes
         start = self.plan.known.bank.start
         if start is not None:
-            belief = belief + np.pad(start, ((0, 0), (0, belief.shape[1] - n))) * (self.instant == 0)[:, None]
+            belief = belief + np.pad(start, ((0, 0), (0, belief.shape[1] - start.shape[1]))) * (self.instant == 0)[:, None]
         sensing, bias = self.told[:, 2 + m : 2 + m + p], self.told[:, 2 + m + p :]
         expected = _each(self.plan.plants.C[self.plant], belief[:, :n]) * sensing + bias
         news = readings - np.clip(expected, -1.0, 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.design.controller import Array
-from baselines.design.load_model import LoadModel
+from baselines.design.load_model import LoadModel, model_of
 from baselines.design.lyapunov import accumulated
 from baselines.design.time_varying import Stage, filter_gains, regulator_gains
 from baselines.laws.foreseen_load import foreseen_loads, mean_square
@@ -23,8 +23,6 @@ Rows = NDArray[np.int64]
 
 FREE = 1e-9
 """Of the price of an actuator's voltage: what that of one that does nothing, or nothing yet, is taken to cost."""
-
-_NO_LOAD = LoadModel(np.zeros((0, 0)), np.zeros((2, 0)), np.zeros((0, 0)))
 
 
 @dataclass(slots=True, eq=False)
@@ -108,7 +106,7 @@ class Plan:
         q, size = s - n - m * self.slots, len(plant)
         delay, working, sensing = told[:, 1].astype(np.int64), told[:, 2 : 2 + m], told[:, 2 + m : 2 + m + p]
         loads = [self.loads[each] for each in plant]
-        driven = np.zeros((size, n + m + 2, s + m))  # [x, what acts, d] from [x, ξ, voltages to come, u]
+        driven = np.zeros((size, n + m + self.plants.E.shape[2], s + m))  # [x, what acts, d] from [x, ξ, voltages to come, u]
         driven[:, :n, :n] = np.eye(n)
         first = np.where(delay == 0, s, n + q + m * (delay - 1))
         rows, each = np.arange(size)[:, None], np.arange(m)
@@ -141,10 +139,11 @@ class Plan:
 
     def beginning(self, plant: Rows) -> Array:
         """(G, s, s): covariance of the state at t = 0: of static deflections that are released, and of loads that may be on."""
-        n, scenario, release = self.sizes[0], self.known.scenario, self.known.bank.release[plant]
+        bank, scenario, n = self.known.bank, self.known.scenario, self.sizes[0]
+        release, own = bank.release[plant] * bank.plant.load_scale[:, None], bank.release.shape[-1]
         begun = np.zeros((len(plant), self.states, self.states))
-        released = 0.5 * scenario.deflection * mean_square(scenario.magnitude)
-        begun[:, :n, :n] = released * release.swapaxes(-1, -2) @ release
+        released = scenario.deflection * mean_square(scenario.magnitude) / max(bank.plant.loads, 1)
+        begun[:, :own, :own] = released * release.swapaxes(-1, -2) @ release
         for row, each in zip(begun, plant, strict=True):
             load = self.loads[each]
             q = len(load.transition)
@@ -153,5 +152,6 @@ class Plan:
 
 
 def _model(known: Prior | Truth, speed: float) -> LoadModel:
-    loads = foreseen_loads(known.scenario, speed)
-    return reduce(add, (load.model(known.bank.plant.control_interval) for load in loads), _NO_LOAD)
+    plant = known.bank.plant
+    none = LoadModel(np.zeros((0, 0)), np.zeros((plant.disturbance_input.shape[1], 0)), np.zeros((0, 0)))
+    return reduce(add, (model_of(load, plant) for load in foreseen_loads(known.scenario, speed, plant.loads)), none)

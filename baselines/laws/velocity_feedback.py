@@ -9,11 +9,12 @@ from baselines.analysis.stationary import stationary_cost
 from baselines.design.controller import Array
 from baselines.design.instruments import checked_plant
 from baselines.design.linear import LinearController, static_law
+from baselines.design.loop import sampled
 from baselines.design.matrix import one_or_each
 from baselines.design.objects import optional_instance
 from baselines.design.verification import verified
 from baselines.laws.gain_search import least_cost_gains
-from beamenv.plant.plant import Plant, sample
+from beamenv.plant.plant import Plant
 
 _DECADES = np.linspace(-6.0, 1.0, 36)
 """Exponents of the common gains tried, in units of the gain that damps at about the first mode's own rate."""
@@ -65,7 +66,7 @@ def _least_cost_gains(plant: Plant, tuned_on: Plant, pairs: Array) -> Array:
     """(m,): first the best common gain, by decades, then each for itself from there (Nelder and Mead's simplex)."""
     collocated = np.abs(np.diag(pairs @ plant.C @ plant.B)).max()
     unit = float(plant.natural_frequencies[0] / collocated)  # damps at about the first mode's own rate
-    held = sample(tuned_on)
+    held = sampled(tuned_on)
 
     def cost(gains: Array) -> float:
         return stationary_cost(held, _law(plant, "trial", pairs, unit * gains))

@@ -150,7 +150,8 @@ class Blade:
             )
         except OverflowError:
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}") from None
-        if not all(np.isfinite(getattr(plant, each.name)).all() for each in fields(plant)):
+        parts = (getattr(plant, each.name) for each in fields(plant))
+        if not all(np.isfinite(part).all() for part in parts if isinstance(part, np.ndarray)):
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
 

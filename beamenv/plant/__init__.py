@@ -2,5 +2,6 @@
 
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, SampledPlant, sample
+from beamenv.plant.signals import Signal
 
-__all__ = ["Plant", "SampledPlant", "fingerprint", "sample"]
+__all__ = ["Plant", "SampledPlant", "Signal", "fingerprint", "sample"]

@@ -72,7 +72,7 @@ def _behind_amplifiers(plant: Plant, residual: Array, tip_residual: Array, pole:
         len(plant.A),
         dynamics=np.block([[plant.A, plant.B * drive], [np.zeros((m, len(plant.A))), -pole * np.eye(m)]]),
         inputs=np.vstack([np.zeros_like(plant.B), pole * np.diag(1.0 / drive)]),
-        outputs=np.hstack([plant.C, -residual * drive]),
+        outputs=np.hstack([plant.C, (plant.D - residual) * drive]),
         tip=tip_residual * drive,
     )
 
@@ -88,9 +88,9 @@ def _behind_filters(plant: Plant, residual: Array, dynamics: Array, gain: Array)
         plant,
         b,
         dynamics=whole[np.ix_(lying, lying)],
-        inputs=np.vstack([plant.B, entered @ residual])[lying],
+        inputs=np.vstack([plant.B, entered @ (plant.D + residual)])[lying],
         outputs=np.hstack([np.zeros_like(plant.C), shown])[:, lying],
-        tip=np.zeros((2, p * order)),
+        tip=np.zeros((len(plant.tip_displacement), p * order)),
     )
 
 
@@ -109,6 +109,7 @@ def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs:
         A=sealed(dynamics),
         B=sealed(inputs),
         C=sealed(outputs),
+        D=sealed(np.zeros_like(plant.D)),
         disturbance_input=sealed(np.vstack([loads[:at], np.zeros((more, loads.shape[1])), loads[at:]])),
         tip_displacement=widened(plant.tip_displacement, tip),
         strain=widened(plant.strain, np.zeros((len(plant.strain), more))),

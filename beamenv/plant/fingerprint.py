@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from beamenv.configuration import Instance, checked
 from beamenv.plant.plant import Plant
+from beamenv.plant.signals import REFERENCE_LOAD
 
 Array = NDArray[np.float64]
 
@@ -32,9 +33,16 @@ def fingerprint(plant: Plant) -> str:
 
 def _met(plant: Plant) -> Iterator[Array]:
     yield plant.natural_frequencies
-    identity = np.eye(len(plant.A))
+    identity, moved = np.eye(len(plant.A)), []
     for inputs in (plant.B, plant.disturbance_input):
         states = [np.linalg.solve(s * identity - plant.A, inputs) for s in plant.natural_frequencies]
         yield from (outputs @ state for state in states for outputs in (plant.C, plant.tip_displacement))
+        moved += states
     yield from (plant.D, plant.input_weight, plant.process_noise, plant.sensor_noise)
     yield from (plant.voltage_limits, plant.sensor_full_scale, np.array([plant.control_interval]))
+    reference = np.asarray(plant.reference_load)
+    own = not plant.in_energy_coordinates
+    if own or np.any(reference != REFERENCE_LOAD):
+        yield reference
+    if own:  # what it costs to be moved does not follow from how it answers
+        yield from (state.T @ plant.state_weight @ state for state in moved)

@@ -15,23 +15,22 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Plant = TypeVar("Plant", bound=Any)
 
-LOADS = ["load_lag", "load_flap"]
-TIP = ["tip_lag", "tip_flap"]
-
 
 def plant_to_control(plant: Any) -> control.StateSpace:
     """The plant from [voltages, line loads] to [currents, tip displacements]."""
     inputs, outputs = np.hstack([plant.B, plant.disturbance_input]), np.vstack([plant.C, plant.tip_displacement])
     feedthrough = np.zeros((len(outputs), inputs.shape[1]))
     feedthrough[: len(plant.C), : plant.B.shape[1]] = plant.D
-    names = {"inputs": _numbered("voltage", plant.B.shape[1]) + LOADS, "outputs": _numbered("current", len(plant.C)) + TIP}
+    names = {"inputs": _numbered("voltage", plant.B.shape[1]) + _loads(plant), "outputs": _sensors(plant) + _tip(plant)}
     return control.ss(plant.A, inputs, outputs, feedthrough, **names)
 
 
 def sampled_to_control(held: Any) -> control.StateSpace:
     """The sampled plant from [voltages, line loads], held over each interval, to currents."""
     feedthrough = np.hstack([held.D, np.zeros((len(held.C), held.disturbance_input.shape[1]))])
-    names = {"inputs": _numbered("voltage", held.B.shape[1]) + LOADS, "outputs": _numbered("current", len(held.C))}
+    k = held.disturbance_input.shape[1]
+    loads = ["load_lag", "load_flap"] if k == 2 else _numbered("load", k)
+    names = {"inputs": _numbered("voltage", held.B.shape[1]) + loads, "outputs": _numbered("current", len(held.C))}
     return control.ss(held.A, np.hstack([held.B, held.disturbance_input]), held.C, feedthrough, dt=held.interval, **names)
 
 
@@ -44,13 +43,13 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
     magnitudes of the blade's own poles, one of each pair. Raises ``ValueError`` for a sampled system,
     other numbers of inputs or outputs, a feedthrough that is not from voltages to currents, or strain rows of another length.
     """
-    (n, m), p = like.B.shape, len(like.C)
+    (n, m), p, k, q = like.B.shape, len(like.C), like.disturbance_input.shape[1], len(like.tip_displacement)
     if system.dt not in (None, 0):
         raise ValueError(f"system has dt = {system.dt!r}, but must be in continuous time.")
-    if (system.ninputs, system.noutputs) != (m + 2, p + 2):
+    if (system.ninputs, system.noutputs) != (m + k, p + q):
         raise ValueError(
-            f"system has {system.ninputs} inputs and {system.noutputs} outputs, but must have {m + 2}, voltages and two line "
-            f"loads, and {p + 2}, currents and two tip displacements."
+            f"system has {system.ninputs} inputs and {system.noutputs} outputs, but must have {m + k}, voltages and {k} line "
+            f"loads, and {p + q}, currents and {q} tip displacements."
         )
     A, B, C, D = (np.array(part, dtype=np.float64) for part in (system.A, system.B, system.C, system.D))
     if np.any(D[p:]) or np.any(D[:, m:]):
@@ -60,7 +59,7 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
         raise ValueError(f"strain has shape {strain.shape}, but must have rows of {len(A)} numbers, one for each state of system.")
     electronic = changes.pop("electronic_states", like.electronic_states if len(A) == n else 0)
     blade = len(A) - electronic
-    own = {} if len(A) == n else {"state_weight": 0.5 * np.diag(np.arange(len(A)) < blade)}
+    own = {} if len(A) == n else {"state_weight": 0.5 * np.diag(np.arange(len(A)) < blade), "energy": None}
     parts = {"A": A, "B": B[:, :m], "C": C[:p], "D": D[:p, :m], "disturbance_input": B[:, m:], "tip_displacement": C[p:]}
     frequencies = np.sort(np.abs(np.linalg.eigvals(A[:blade, :blade])))[::2]
     found = {"strain": strain, "natural_frequencies": frequencies, "electronic_states": electronic}
@@ -92,6 +91,19 @@ def sampled_from_control(system: control.StateSpace, like: Plant, **changes: Any
         )
     parts = {"A": A, "B": B[:, :m], "C": C, "D": D[:, :m], "disturbance_input": B[:, m:], "cost": cost}
     return replace(like, **{**parts, **changes})
+
+
+def _loads(plant: Any) -> list[str]:
+    return ["load_" + each.name.replace(" ", "_") for each in plant.disturbances]
+
+
+def _sensors(plant: Any) -> list[str]:
+    return [each.name.replace("current ", "current").replace(" ", "_") for each in plant.sensors]
+
+
+def _tip(plant: Any) -> list[str]:
+    count = len(plant.tip_displacement)
+    return ["tip_lag", "tip_flap"] if count == 2 else _numbered("tip", count)
 
 
 def _numbered(name: str, count: int) -> list[str]:

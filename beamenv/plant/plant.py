@@ -1,28 +1,33 @@
 """The plant: matrices that cannot be changed, in continuous time and exactly sampled.
 
-State ``x = [ω η; η̇]`` in energy coordinates: η are the coordinates of mass-normalised modes, so that
+The state of a blade is ``x = [ω η; η̇]`` in energy coordinates: η are the coordinates of mass-normalised modes, so that
 ½ xᵀx is the vibration energy in joules. States of filters and amplifiers may follow (``beamenv.plant.electronics``), which have
-no energy. The dynamics are
+no energy. A model of another origin has coordinates of its own, and its ``energy`` is a matrix. The dynamics are
 
     ẋ = A x + B u + E d,        y = C x + D u + v
 
-with u the actuator voltages (V), d the uniform line loads in lag and flap (N/m) and y the sensed currents (A).
+with u the actuator voltages (V), d the disturbances, of a blade the uniform line loads in lag and flap (N/m), and y what the
+sensors show, of a blade the currents (A).
+
+**When a sensor is read.** At t_k the reading is taken first, then the voltage u_k is put on: where D ≠ 0 the reading shows the
+voltages that were held over the interval before, y_k = C x_k + D u_{k−1} + v_k, and none at the first instant.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Count, Instance, Number, checked
-from beamenv.configuration.arrays import shaped_array
+from beamenv.configuration import Count, Instance, Number, Texts, checked
 from beamenv.configuration.read_only import ReadOnly, sealed
 from beamenv.plant.hold import hold_all_with_cost, hold_with_cost
+from beamenv.plant.parts import check_parts, checked_energy, checked_reference, half_squares
 from beamenv.plant.poles import poles_of_sampled
+from beamenv.plant.signals import REFERENCE_LOAD, Signal, checked_signals, currents, usual_disturbances
 
 if TYPE_CHECKING:
     import control
@@ -32,11 +37,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Plant(ReadOnly):
-    """Reduced-order blade with patches: n = 2r states, m voltages, p sensors, d = 2 line loads.
+    """Reduced-order blade with patches, or a model of another origin: n states, m voltages, p sensors, k disturbances.
 
     ``ValueError`` of one sentence for a part that is no array of real numbers with as many dimensions.
 
-    The cost it is judged by is J = ∫ (xᵀ Q x + uᵀ R u) dt (thesis Eqs. 5.7–5.9, corrected).
+    The cost it is judged by is J = ∫ (xᵀ Q x + uᵀ R u) dt (thesis Eqs. 5.7–5.9, corrected). Units are those of a blade: where the
+    sensors or disturbances are others, read theirs for A and N/m.
     """
 
     A: Array
@@ -46,21 +52,21 @@ class Plant(ReadOnly):
     C: Array
     """(p, n), A per √J."""
     D: Array
-    """(p, m), A/V; zero for current sensing."""
+    """(p, m), A/V; zero for current sensing. See above for which voltages a reading shows."""
     disturbance_input: Array
-    """E (n, 2), √J/s per N/m of uniform line load: lag, flap."""
+    """E (n, k), √J/s per N/m of uniform line load: lag, flap."""
     tip_displacement: Array
-    """(2, n), m per √J: lag, flap at z = L."""
+    """(q, n), m per √J: lag, flap at z = L; of a model that does not tell, none."""
     strain: Array
-    """(k, n), spanwise strain per √J at points of the outer face."""
+    """(s, n), spanwise strain per √J at points of the outer face; none where it is not known, and nothing then fails by it."""
     natural_frequencies: Array
     """(r,), rad/s, of the retained undamped modes without gyroscopic coupling, ascending."""
     state_weight: Array
-    """Q (n, n): ½ I, the vibration energy in joules; zero for the electronics."""
+    """Q (n, n), symmetric, not negative. Of a blade ½ I, the vibration energy in joules; zero for the electronics."""
     input_weight: Array
     """R (m, m), J/V²: ρ Fᵀ K⁻¹ F, the energy the actuators can store."""
     process_noise: Array
-    """W (2, 2), (N/m)² s: intensity of the white line loads."""
+    """W (k, k), (N/m)² s: intensity of the white line loads."""
     sensor_noise: Array
     """V (p, p), A² s: intensity of the sensor noise."""
     voltage_limits: Array
@@ -71,12 +77,34 @@ class Plant(ReadOnly):
     """s: sensors are sampled, voltages and loads are held over this interval."""
     electronic_states: int = 0
     """How many of the n states, the last, are those of filters and amplifiers."""
+    energy: Array | None = None
+    """H (n, n), symmetric, not negative: xᵀHx is the energy in joules; zero says that it is not known. Left out, it is ½ the
+    squares of all but the ``electronic_states``."""
+    reference_load: Array | None = None
+    """(k,) of each disturbance, in its unit: what the actuators can about hold, by which the loads of scenarios are scaled. The
+    last may be 0: no load case has part in these, which are noise alone. None: 30 N/m of a line load, 1 of anything else."""
+    disturbances: tuple[Signal, ...] = ()
+    """(k,) of them; left out, they are the line loads in lag and flap, N/m, if there are two."""
+    sensors: tuple[Signal, ...] = ()
+    """(p,) of them; left out, they are currents, A."""
+    assumed: tuple[str, ...] = ()
+    """In words, what nobody said of a model and was taken to be so."""
 
     def __post_init__(self) -> None:
-        _check_parts(self)
+        check_parts(self)
         _check_clock(self, "control_interval")
-        n, electronic = len(self.A), self.electronic_states
-        object.__setattr__(self, "electronic_states", checked("plant.electronic_states", electronic, Count(0, n)))
+        (n, k), p = self.disturbance_input.shape, len(self.C)
+        electronic = checked("plant.electronic_states", self.electronic_states, Count(0, n))
+        kept = {
+            "electronic_states": electronic,
+            "reference_load": checked_reference(self.reference_load, self.disturbances, k),
+            "disturbances": checked_signals("plant.disturbances", self.disturbances, k, usual_disturbances),
+            "sensors": checked_signals("plant.sensors", self.sensors, p, currents),
+            "assumed": checked("plant.assumed", self.assumed, Texts()),
+            "energy": checked_energy(self.energy, n, electronic),
+        }
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
         ReadOnly.__post_init__(self)
 
     def __repr__(self) -> str:
@@ -84,8 +112,28 @@ class Plant(ReadOnly):
 
     @property
     def blade_states(self) -> int:
-        """How many of the n states, the first, are the blade's: ½ the sum of their squares is the energy."""
+        """How many of the n states, the first, are the blade's own; in energy coordinates ½ their squares are the energy."""
         return len(self.A) - self.electronic_states
+
+    @property
+    def energy_known(self) -> bool:
+        """Whether any energy is known: what is not known counts as none."""
+        return bool(np.any(self.energy))
+
+    @property
+    def in_energy_coordinates(self) -> bool:
+        """Whether ½ the sum of the squares of all states but the electronic ones is the energy."""
+        return np.array_equal(np.asarray(self.energy), half_squares(len(self.A), self.electronic_states))
+
+    @property
+    def load_scale(self) -> Array:
+        """(k,): what stands for 1 N/m of a scenario, which is made for a blade that can about hold 30 N/m."""
+        return np.asarray(self.reference_load) / REFERENCE_LOAD
+
+    @property
+    def loads(self) -> int:
+        """How many of the disturbances, the first, load cases are made of; the others are noise alone."""
+        return int(np.count_nonzero(self.load_scale))
 
     @property
     def sizes(self) -> str:
@@ -112,7 +160,8 @@ class Plant(ReadOnly):
 class SampledPlant(ReadOnly):
     """A plant whose voltages and loads are held over ``interval``: exact, with the exactly integrated cost.
 
-    x⁺ = A x + B u + E d, y = C x + D u + v, and over one interval ∫(xᵀQx + uᵀRu)dt = zᵀ cost z with z = [x; u; d].
+    x⁺ = A x + B u + E d, y = C x + D u₋ + v with u₋ the voltages of the interval before, and over one interval
+    ∫(xᵀQx + uᵀRu)dt = zᵀ cost z with z = [x; u; d].
     White load and sensor noise are band-limited at the sampling rate: held loads of covariance W/Δt, samples of covariance V/Δt.
     """
 
@@ -122,16 +171,16 @@ class SampledPlant(ReadOnly):
     D: Array
     disturbance_input: Array
     cost: Array
-    """(n+m+2, n+m+2), J s."""
+    """(n+m+k, n+m+k), J s."""
     process_noise: Array
-    """(2, 2), (N/m)²: covariance of the held white load."""
+    """(k, k), (N/m)²: covariance of the held white load."""
     sensor_noise: Array
     """(p, p), A²: covariance of one sample's noise."""
     interval: float
     """s."""
 
     def __post_init__(self) -> None:
-        _check_parts(self)
+        check_parts(self)
         _check_clock(self, "interval")
         ReadOnly.__post_init__(self)
 
@@ -169,20 +218,6 @@ class SampledPlant(ReadOnly):
         from beamenv.plant.interchange import sampled_from_control
 
         return sampled_from_control(system, like, **changes)
-
-
-_ROWS = ("natural_frequencies", "sensor_full_scale")
-_ONES = ("control_interval", "interval", "electronic_states")
-
-
-def _check_parts(plant: Any) -> None:
-    """Each part as an array; ``ValueError`` for one that is none of real numbers, or of another number of dimensions."""
-    for name in (each.name for each in fields(plant) if each.name not in _ONES):
-        given = getattr(plant, name)
-        wanted = 1 if name in _ROWS else 2
-        there = shaped_array(f"plant.{name}", given, (None,) * wanted, "a row" if wanted == 1 else "rows and columns")
-        if there is not given:
-            object.__setattr__(plant, name, there)
 
 
 def _check_clock(plant: Any, name: str) -> None:

@@ -15,14 +15,12 @@ from beamenv.configuration import Count, Refused, checked
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import PatchLayout, PatchResponse, actuation, local_response, sensing
 from beamenv.plant.plant import Plant
+from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.structure import RotatingBeam
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.steady_deformation import AT_CLAMP, INTERVALS, STILL, SteadyDeformation, deformed, face_strain
 
 Array = NDArray[np.float64]
-
-REFERENCE_LOAD = 30.0
-"""N/m of uniform line load: with it LQG saturates now and then, and damps what follows within half an episode."""
 
 FULL_SCALE_MARGIN = 2.0
 """Sensor full scale over the undriven blade's largest current after a sudden reference load: resonance exceeds a step."""
@@ -194,8 +192,9 @@ def reduced_plant(
     sensor_full_scale: float | None,
     voltage_limits: tuple[float, float],
     control_interval: float,
+    reference_load: float = REFERENCE_LOAD,
 ) -> Plant:
-    """The plant of one blade; arguments as in ``BladeConfig``.
+    """The plant of one blade; arguments as in ``BladeConfig``, and ``reference_load`` in N/m as in ``Plant``.
 
     The damping ratio may be one of each mode (r,).
     """
@@ -210,7 +209,7 @@ def reduced_plant(
         effort_weight=effort_weight,
     )
     if sensor_full_scale is None:
-        sensor_full_scale = largest_current(blade, control_interval)
+        sensor_full_scale = largest_current(blade, control_interval, reference_load)
     full_scale = np.full(len(blade.output), sensor_full_scale)
     return Plant(
         A=blade.dynamics,
@@ -228,6 +227,7 @@ def reduced_plant(
         voltage_limits=np.repeat(np.asarray(voltage_limits, dtype=float)[:, None], forces.shape[1], axis=1),
         sensor_full_scale=full_scale,
         control_interval=control_interval,
+        reference_load=np.full(2, reference_load),
     )
 
 
@@ -267,12 +267,12 @@ def regularised(stored_energy: Array) -> Array:
     return 0.5 * (stored_energy + stored_energy.swapaxes(-1, -2)) + share[..., None, None] * np.eye(size)
 
 
-def largest_current(blade: ReducedBlades, interval: float) -> float:
+def largest_current(blade: ReducedBlades, interval: float, reference_load: float = REFERENCE_LOAD) -> float:
     """Sensor full scale (A): margin times the largest current in five periods after a sudden reference load in lag or in flap."""
     steps = int(np.ceil(5 * 2.0 * np.pi / blade.natural_frequencies[0] / interval))
     every = -(-steps // MOST_SAMPLES)
     transition = expm(blade.dynamics * (every * interval))
-    displaced = -np.linalg.solve(blade.dynamics, REFERENCE_LOAD * blade.disturbance_input)
+    displaced = -np.linalg.solve(blade.dynamics, reference_load * blade.disturbance_input)
     offset, largest = -displaced, 0.0
     for _ in range(-(-steps // every)):
         offset = transition @ offset

@@ -11,7 +11,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.shape import body, magnification, patch, quadrilaterals
 from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
 from beamenv.plant.plant import Plant
-from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.scenarios.load_cases import static_deflection
 
 Array = NDArray[np.float64]

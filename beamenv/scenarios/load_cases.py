@@ -35,9 +35,9 @@ class LoadCases:
     case: Integers
     """(N,) positions in ``CASES``."""
     amplitude: Array
-    """(N, 2), N/m: lag, flap."""
+    """(N, k), N/m: lag, flap."""
     deflection: Array
-    """(N, 2), N/m: the load the blade is released from, zero but for the case "deflection"."""
+    """(N, k), N/m: the load the blade is released from, zero but for the case "deflection"."""
     onset: Integers
     """(N,) first control interval in which the load acts."""
     end: Integers
@@ -47,9 +47,9 @@ class LoadCases:
     phase: Array
     """(N,) rad."""
     cosine: Array
-    """(N, H, 2), N/m: lag, flap."""
+    """(N, H, k), N/m: lag, flap."""
     sine: Array
-    """(N, H, 2), N/m: lag, flap."""
+    """(N, H, k), N/m: lag, flap."""
     revolution: Array
     """(N,) rad per control interval: the rotor's."""
     oscillating: Integers = field(init=False, repr=False)
@@ -73,7 +73,7 @@ class LoadCases:
         return gain
 
     def at(self, step: int | Integers) -> Array:
-        """Line loads (…, N, 2) in N/m in interval ``step``, an integer or an array that broadcasts against (N,)."""
+        """Line loads (…, N, k) in N/m in interval ``step``, an integer or an array that broadcasts against (N,)."""
         load = self.amplitude * self.gain(step)[..., None]
         return load + self.of_rotor(step) if self.has_harmonics else load
 
@@ -83,7 +83,7 @@ class LoadCases:
         return self.cosine.shape[1] > 0
 
     def of_rotor(self, step: int | Integers) -> Array:
-        """The rotor's harmonics (…, N, 2) in N/m in interval ``step``."""
+        """The rotor's harmonics (…, N, k) in N/m in interval ``step``."""
         orders = np.arange(1, self.cosine.shape[1] + 1)
         angle = orders * (self.revolution * step)[..., None]
         products = (np.einsum("...nh,nhk->...nk", f(angle), part) for f, part in ((np.cos, self.cosine), (np.sin, self.sine)))
@@ -113,6 +113,6 @@ class LoadCases:
 
 
 def static_deflection(plant: Plant, line_load: ArrayLike) -> Array:
-    """State (…, n) at rest under constant uniform line loads (…, 2) in N/m: x = −A⁻¹ E d."""
+    """State (…, n) at rest under constant disturbances (…, k), of a blade uniform line loads in N/m: x = −A⁻¹ E d."""
     compliance = -np.linalg.solve(plant.A, plant.disturbance_input)
     return np.asarray(line_load, dtype=np.float64) @ compliance.T

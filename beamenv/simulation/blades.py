@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.plant.plant import Plant, drive_limit, normalised
-from beamenv.plant.reduction import REFERENCE_LOAD
 from beamenv.scenarios.drawing import load_cases
-from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, Numbers, draw
 from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
@@ -19,6 +17,7 @@ from beamenv.simulation.memory import Arrangement, Instant
 from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment, Passage
 from beamenv.simulation.plants.bank import Bank
+from beamenv.simulation.reward import reward_scale as reward_scale
 from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
 from beamenv.simulation.signals.electronics import Electronics
 from beamenv.simulation.signals.faults import fault_draws
@@ -30,16 +29,6 @@ Rows = NDArray[np.int64]
 
 _FULL, _MINUS_FULL = np.array(1.0), np.array(-1.0)
 """NumPy is quicker with these than with Python numbers, which tells with a blade alone."""
-
-
-def reward_scale(plant: Plant) -> float:
-    """Cost of one control interval, J s, that is a reward of −1: xᵀQx Δt in the static deflection under 30 N/m in flap.
-
-    It depends on the plant alone, so the return of an episode is −J over a constant whatever the scenario and the controller.
-    Without control a default episode comes to about −1 a step, 6.7 µJ s for the default blade.
-    """
-    state = static_deflection(plant, (0.0, REFERENCE_LOAD))
-    return float(state @ plant.state_weight @ state) * plant.control_interval
 
 
 def _alike(values: Array) -> Array:
@@ -69,6 +58,7 @@ class Blades:
         self._normalised = normalised(self.plant)
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
+        self._strained = self.bank.strain.shape[-2] > 0
         self._safe_energy = safe_energy(self.bank.strain, self.bank.standing)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
@@ -87,8 +77,8 @@ class Blades:
 
     def _lay_out(self) -> None:
         """Column by column where blades of a group have one plant, blade by blade for a plant each: as BLAS likes it."""
-        n, m = self.plant.B.shape
-        size, width, b = n + m + 2, self.bank.operators.fused.shape[-1], self.plant.blade_states
+        (n, m), k = self.plant.B.shape, self.plant.disturbance_input.shape[1]
+        size, width, b = n + m + k, self.bank.operators.fused.shape[-1], self.plant.blade_states
         widths = max(size, width), max(size, width), m, b
         if len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups):
             arrays = [self._lie.columns_first(width)[1] for width in widths]
@@ -97,7 +87,7 @@ class Blades:
         *memories, self._weighted, self._squares = arrays
         self._halves = np.full(b, 0.5)
         """Weights of the squares of the blade's states, which are kept from one instant to the next, in the energy."""
-        self._now, self._then = (Instant.of(each, n, m, b, width) for each in memories)
+        self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in memories)
 
     def __getstate__(self) -> tuple[Any, ...]:
         moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.state_dict()
@@ -114,9 +104,13 @@ class Blades:
 
     @property
     def state(self) -> Array:
-        """(…, n) true states in energy coordinates: ½ xᵀx of the blade's own is the vibration energy in joules."""
-        turned = np.atleast_2d(self.moving)
-        state = row_product(turned, self.bank.axes[0] if len(self.bank) == 1 else self.bank.axes[self.plants.index])
+        """(…, n) true states in energy coordinates: ½ xᵀx of the blade's own is the vibration energy in joules; of a plant that has
+        coordinates of its own, in these.
+        """
+        turned, place = np.atleast_2d(self.moving), 0 if len(self.bank) == 1 else self.plants.index
+        state = row_product(turned, self.bank.axes[place])
+        if self.bank.own is not None:
+            state = row_product(state, self.bank.own[1][place].swapaxes(-1, -2))
         return np.asarray(state if self._shape else state[0])
 
     @property
@@ -150,8 +144,8 @@ class Blades:
 
     @property
     def coming_loads(self) -> Array:
-        """(…, 2) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
-        loads = np.zeros((*self._shape, 2))
+        """(…, k) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
+        loads = np.zeros((*self._shape, self.plant.disturbance_input.shape[1]))
         self.disturbances.loads(loads)
         return self._by_blade(loads)
 
@@ -194,23 +188,26 @@ class Blades:
             rows = np.arange(self.count or 1)
             kind = SharedDisturbances if isinstance(generators, np.random.Generator) else SeededDisturbances
             turbulence = Turbulence.of(self.plant, scenario)
-            self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence)
+            loads = self.plant.disturbance_input.shape[1]
+            self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence, loads)
         assert self._disturbances is not None
-        numbers = draw(
-            scenario, generators, rows, self.plants.group, self._disturbances.columns, self._fault_draws, self.plants.draws
-        )
+        widths = self._disturbances.columns, self._fault_draws, self.plants.draws, self.plant.loads
+        numbers = draw(scenario, generators, rows, self.plants.group, *widths)
         self._begin_plants_and_faults(rows, numbers)
         index = self.plants.index[rows]
         lowest = self._lowest_frequency[self.plants.group[rows]]
-        interval, speeds = self.plant.control_interval, self.bank.speeds[index]
-        cases = load_cases(scenario, interval, lowest, numbers.load, numbers.turns, speeds)
+        speeds = self.bank.speeds[index]
+        cases = load_cases(scenario, self.plant, lowest, numbers.load, numbers.turns, speeds)
         begins: Any = numbers.noise if isinstance(generators, np.random.Generator) else generators
         noise = self._disturbances.begin(rows, cases, begins)
         state = row_product(cases.deflection, self.bank.release[index])
         if self.bank.start is not None:
             state += self.bank.start[self.plants.group[rows]]
         if initial_state is not None:
-            state[...] = row_product(np.broadcast_to(initial_state, state.shape), self.bank.axes[index].swapaxes(-1, -2))
+            given = np.broadcast_to(initial_state, state.shape)
+            if self.bank.own is not None:
+                given = row_product(given, self.bank.own[0][index].swapaxes(-1, -2))
+            state[...] = row_product(given, self.bank.axes[index].swapaxes(-1, -2))
         at = self._lie.rows_of(rows)
         self._now.joined[at] = 0.0
         self._now.state[at] = state
@@ -273,7 +270,7 @@ class Blades:
         return Motion(
             self._observed(reading, noise),
             increment * self._reward_per_cost,
-            self._failed(energy),
+            self._failed(energy if self._strained else energy + increment),  # where no strain is known, only what is no number
             held * self._drive,
             self._by_blade(tip),
             energy,

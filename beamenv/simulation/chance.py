@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.scenarios.drawing import DRAWS as LOAD_DRAWS
-from beamenv.scenarios.drawing import draw_uniforms
+from beamenv.scenarios.drawing import draw_uniforms, draws
 from beamenv.scenarios.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -25,19 +24,22 @@ class Numbers(NamedTuple):
     course: Array
     """(k, w) uniform: on what course a blade changes within the episode."""
     load: Array
-    """(k, ``LOAD_DRAWS``) uniform: load case."""
+    """(k, l) uniform: load case."""
     turns: Array
     """(k, 3 H) uniform: the rotor's harmonics."""
     noise: Array
     """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
 
 
-def draw(scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: int, course: int) -> Numbers:
+def draw(
+    scenario: Scenario, generators: Generators, rows: Rows, group: Rows, columns: int, faults: int, course: int, loads: int
+) -> Numbers:
     """The numbers of the episodes of ``rows``: one generator for all serves one group of blades after the other.
 
-    ``group`` (N,) is each blade's, ``columns`` is c and ``faults`` f, 0 where nothing is drawn for plants and faults, ``course`` w.
+    ``group`` (N,) is each blade's, ``columns`` is c and ``faults`` f, 0 where nothing is drawn for plants and faults, ``course`` w;
+    load cases are made of ``loads`` disturbances.
     """
-    widths = faults, course, LOAD_DRAWS, 3 * len(scenario.rotor.harmonics)
+    widths = faults, course, draws(loads), 3 * len(scenario.rotor.harmonics)
     if not isinstance(generators, np.random.Generator):
         own = [generators[row] for row in rows]
         faulty, way, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)

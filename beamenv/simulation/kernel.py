@@ -18,8 +18,9 @@ class Operators:
     """What one step needs, fused into one product; arrays of NumPy or of torch.
 
     One plant for all blades, for each block of them, or for each: the arrays then have their leading axes. With
-    z = [state, voltages, loads] (row vectors, size s = n + m + 2) ``z @ fused`` is
-    [next state (n) | its noise-free sensor output (p) | its tip displacement (2) | z @ cost, columns from ``crossing`` on].
+    z = [state, voltages, disturbances] (row vectors, size s = n + m + k) ``z @ fused`` is
+    [next state (n) | the sensors' output then (p), free of noise, the voltages still on | tip displacement (q) | z @ cost, columns
+    from ``crossing`` on].
     What need not be multiplied is left out: outputs that are states, and the states of amplifiers, v⁺ = u + decay (v − u).
 
     The increment of J is zᵀ cost z. In axes of the state in which the cost of its first b numbers is diagonal
@@ -38,6 +39,8 @@ class Operators:
     """Column of the product in which the outputs begin: among the next states where filters show them."""
     tips: int
     """Column in which the tip displacement begins."""
+    displaced: int
+    """q"""
     costs: int
     """Column in which those of the cost begin."""
     crossing: int
@@ -60,8 +63,9 @@ class Operators:
 
     @classmethod
     def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
-        n, p = len(plant.A), len(plant.C)
-        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, reads=n, tips=n + p, costs=n + p + 2, crossing=0)
+        n, p, q = len(plant.A), len(plant.C), len(plant.tip_displacement)
+        places = {"reads": n, "tips": n + p, "displaced": q, "costs": n + p + q}
+        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, crossing=0, **places)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
@@ -75,7 +79,10 @@ class Operators:
 
 def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
     step = np.hstack([held.A, held.B, held.disturbance_input])
-    fused = np.hstack([step.T, (plant.C @ step).T, (plant.tip_displacement @ step).T, held.cost])
+    n, m = plant.B.shape
+    read = plant.C @ step
+    read[:, n : n + m] += plant.D  # the reading comes before the next voltage
+    fused = np.hstack([step.T, read.T, (plant.tip_displacement @ step).T, held.cost])
     return np.ascontiguousarray(fused)
 
 
@@ -84,8 +91,8 @@ def advance(
 ) -> tuple[Any, Any, Any, Any]:
     """One control interval, exactly.
 
-    ``joined`` (..., n + m + 2) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
-    noise-free sensor output there (..., p) in A, the tip displacement there (..., 2) in m (lag, flap), and the
+    ``joined`` (..., n + m + k) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
+    noise-free sensor output there (..., p) in A, the tip displacement there (..., q) in m (lag, flap), and the
     increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., w) may be given to hold the product, and the first
     three arrays are then views of it. ``squares`` (..., b) are those of the first b states, where they are known. ``multiply``
     stands in for ``row_product``.
@@ -97,7 +104,7 @@ def advance(
     if diagonal:
         increment = increment + weighted(joined[..., :diagonal] ** 2 if squares is None else squares, operators.weights)
     state = product[..., : operators.states] if not operators.lagging else _with_amplifiers(operators, joined, product, out)
-    return state, product[..., read : read + operators.outputs], product[..., tip : tip + 2], increment
+    return state, product[..., read : read + operators.outputs], product[..., tip : tip + operators.displaced], increment
 
 
 def _with_amplifiers(operators: Operators, joined: Any, product: Any, out: Any) -> Any:

@@ -96,9 +96,9 @@ class Instant(NamedTuple):
     """(…, w): begins with the state."""
 
     @classmethod
-    def of(cls, memory: Array, states: int, voltages: int, own: int, width: int) -> Instant:
-        """Views of a memory (…, at least s and w): of so many states, voltages, states of the blade's own, and columns w."""
-        driven, size = states + voltages, states + voltages + 2
+    def of(cls, memory: Array, states: int, voltages: int, loads: int, own: int, width: int) -> Instant:
+        """Views of a memory (…, at least s and w): of so many states, voltages, loads, states of the blade's own, and columns w."""
+        driven, size = states + voltages, states + voltages + loads
         return cls(
             joined=memory[..., :size],
             state=memory[..., :states],

@@ -22,7 +22,7 @@ class Motion(NamedTuple):
     volts: Array
     """(…, m), V, asked for, after saturation: what the patches get unless delay, hysteresis or failure are between."""
     tip_displacement: Array
-    """(…, 2), m: lag, flap, at the end of the interval."""
+    """(…, q), m: lag, flap, at the end of the interval; none where the plant does not tell."""
     energy: Array
     """(…,), J: vibration energy at the end of the interval."""
     effort: Array

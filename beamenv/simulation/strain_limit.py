@@ -31,5 +31,7 @@ def strained_too_much(strain: Array, standing: Array, state: Array) -> NDArray[n
     """(N,) which of the states (N, n) strain their blades, with rows (N, k, n) beside strains (N, k) without vibration, beyond the
     limit, or are no longer finite.
     """
+    if not strain.shape[1]:  # where no strain is known
+        return np.asarray(~np.isfinite(state).all(axis=-1))
     largest = np.abs(standing + np.einsum("nki,ni->nk", strain, state)).max(axis=-1)
     return np.asarray(~(largest <= FAILURE_STRAIN))

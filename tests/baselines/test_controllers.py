@@ -22,7 +22,8 @@ from baselines import (
     velocity_feedback,
 )
 from baselines.design.controller import Controller
-from baselines.design.persistent_load import PersistentLoad, with_persistent_load
+from baselines.design.load_model import with_load
+from baselines.design.persistent_load import PersistentLoad
 from baselines.design.riccati import sampled_kalman_filter, sampled_regulator
 from beamenv.plant.plant import sample
 
@@ -181,7 +182,7 @@ def test_true_states_reveal_the_load_that_lasts(small_plant):
 
 def test_a_persistent_load_adds_its_own_states_and_keeps_the_cost(small_plant):
     held = sample(small_plant())
-    augmented = with_persistent_load(held, PersistentLoad(magnitude=12.0, duration=0.3))
+    augmented = with_load(held, PersistentLoad(magnitude=12.0, duration=0.3).model(held.interval))
     random = np.random.default_rng(0)
     x, u, lasting, white = random.normal(size=6), random.normal(size=2), random.normal(size=2), random.normal(size=2)
     z, z_augmented = np.concatenate([x, u, lasting + white]), np.concatenate([x, lasting, u, white, np.zeros(2)])

@@ -260,12 +260,10 @@ DOORS = [
         "Plant",
         lambda **given: Plant(**given),
         {
-            each.name: MATRIX
-            if each.name not in ("control_interval", "electronic_states")
-            else NUMBER
-            if each.name == "control_interval"
-            else COUNT
-            for each in dataclasses.fields(Plant)
+            **{each.name: MATRIX for each in dataclasses.fields(Plant)},
+            "control_interval": NUMBER,
+            "electronic_states": COUNT,
+            **dict.fromkeys(("disturbances", "sensors", "assumed"), ANYTHING),
         },
         lambda: plant_fields(Plant, small.plant()),
         lambda made: made,

@@ -9,7 +9,8 @@ from beamenv.blade.build import Blade, build_beam, build_plant, displacement_ope
 from beamenv.blade.presets import blade_config
 from beamenv.patches import actuation, sensing
 from beamenv.plant.plant import sample
-from beamenv.plant.reduction import REFERENCE_LOAD, truncate
+from beamenv.plant.reduction import truncate
+from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.newmark import NewmarkScheme, newmark
 

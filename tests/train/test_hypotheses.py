@@ -92,7 +92,8 @@ def test_the_deflection_is_the_root_mean_square_of_those_that_episodes_start_fro
     prior = prior_of("nominal")
     (held,) = hypotheses_of(prior)
     uniforms = np.random.default_rng(1).random((40000, 7))
-    cases = load_cases(prior.scenario, 5e-4, np.full(40000, 180.0), uniforms, np.zeros((40000, 0)), np.full(40000, 200.0))
+    speeds, none = np.full(40000, 200.0), np.zeros((40000, 0))
+    cases = load_cases(prior.scenario, prior.blade.truth, np.full(40000, 180.0), uniforms, none, speeds)
     np.testing.assert_allclose(np.sqrt(np.mean(cases.deflection**2, axis=0)), held.deflection, rtol=0.03)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import ReadOnly, read_only, sealed
+from beamenv.plant.energy import energy_coordinates, in_energy_coordinates
 from beamenv.plant.plant import Plant, normalised
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
@@ -29,19 +30,21 @@ class Bank(ReadOnly):
     """
 
     plant: Plant
-    """The one all others depart from; the first blade's."""
+    """The one all others depart from, in energy coordinates; the first blade's."""
     operators: Operators
     """``fused`` (K, …), or of one plant."""
     axes: Array
-    """T (K, n, n), orthogonal: states are T x, with x as the plant has it."""
+    """T (K, n, n), orthogonal: states are T x, with x as the plant has it, in energy coordinates."""
     readout: Array
     """(K, n, p): state to noise-free readings, in full scales."""
+    feedthrough: Array
+    """(K, p, m): normalised voltages of the interval before to readings, in full scales."""
     tip: Array
-    """(K, n, 2), m per √J."""
+    """(K, n, q), m per √J."""
     strain: Array
-    """(K, k, n) per √J."""
+    """(K, s, n) per √J."""
     release: Array
-    """(K, 2, n): static deflection per N/m of line load, lag and flap."""
+    """(K, k, n): static deflection per N/m of line load, lag and flap."""
     speeds: Array
     """(K,), rad/s."""
     effort_weight: Array
@@ -65,6 +68,8 @@ class Bank(ReadOnly):
     """(K, n, n): back."""
     others: tuple[Plant, ...] = ()
     """What ``plant`` is to the first group, for each further one."""
+    own: tuple[Array, Array] | None = None
+    """(K, n, n) twice: what makes energy coordinates of a plant's own, and back, for columns; None where these are its own."""
 
     def __post_init__(self) -> None:
         ReadOnly.__post_init__(self)
@@ -86,7 +91,8 @@ class Bank(ReadOnly):
     def is_like(self, other: Bank) -> bool:
         """Whether another blade's bank has equally many plants, of as many states, behind the same electronics."""
         sizes = [
-            (len(bank), bank.runs, bank.walk, bank.operators.fused.shape, bank.plant.control_interval) for bank in (self, other)
+            (len(bank), bank.runs, bank.walk, bank.operators.fused.shape, bank.plant.control_interval, bank.own is None)
+            for bank in (self, other)
         ]
         return sizes[0] == sizes[1] and all(
             np.array_equal(getattr(self.plant, name), getattr(other.plant, name)) for name in _ELECTRONICS
@@ -100,7 +106,11 @@ class Bank(ReadOnly):
 
     @classmethod
     def gather(cls, plant: Plant, plants: Sequence[Plant], speeds: Array, to_design: Array | None) -> Bank:
-        """The bank of several plants, in their own coordinates."""
+        """The bank of several plants; ``to_design`` (K, n, d) is from their energy coordinates."""
+        own = [energy_coordinates(each) for each in plants]
+        there = [each for each in own if each is not None]
+        turned = (np.stack([each.there for each in there]), np.stack([each.back for each in there])) if there else None
+        plant, plants = in_energy_coordinates(plant), [in_energy_coordinates(each) for each in plants]
         units = [normalised(each) for each in plants]
         operators = Operators.from_plants(units)
         return cls(
@@ -108,14 +118,16 @@ class Bank(ReadOnly):
             operators=replace(operators, fused=sealed(operators.fused), weights=sealed(operators.weights)),
             axes=sealed(np.tile(np.eye(len(plant.A)), (len(plants), 1, 1))),
             readout=sealed(np.stack([unit.C.T for unit in units])),
+            feedthrough=sealed(np.stack([unit.D for unit in units])),
             tip=sealed(np.stack([each.tip_displacement.T for each in plants])),
             strain=sealed(np.stack([each.strain for each in plants])),
-            release=sealed(np.stack([static_deflection(each, np.eye(2)) for each in plants])),
+            release=sealed(np.stack([static_deflection(each, np.eye(each.disturbance_input.shape[1])) for each in plants])),
             speeds=speeds,
             effort_weight=sealed(np.stack([unit.input_weight * unit.control_interval for unit in units])),
             to_design=to_design,
             standing=sealed(np.zeros((len(plants), len(plant.strain)))),
             steady=sealed(np.zeros((len(plants), 4))),
+            own=turned,
         )
 
     def in_cost_axes(self) -> Bank:
@@ -156,10 +168,16 @@ class Bank(ReadOnly):
             to_common=_one_after_the_other([bank.to_common for bank in banks]),
             from_common=_one_after_the_other([bank.from_common for bank in banks]),
             start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
+            own=None if first.own is None else _both_after_each_other([bank.own for bank in banks]),
             runs=first.runs,
             walk=first.walk,
             **whole,
         )
+
+
+def _both_after_each_other(pairs: Sequence[tuple[Array, Array] | None]) -> tuple[Array, Array]:
+    forth, back = zip(*(pair for pair in pairs if pair is not None), strict=True)
+    return np.concatenate(forth), np.concatenate(back)
 
 
 def _one_after_the_other(parts: Sequence[Array | None]) -> Array | None:
@@ -168,6 +186,6 @@ def _one_after_the_other(parts: Sequence[Array | None]) -> Array | None:
     return np.concatenate(there) if len(there) == len(parts) else None
 
 
-BY_PLANT = ("axes", "readout", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")
+BY_PLANT = ("axes", "readout", "feedthrough", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")
 """Its arrays that have a row for each plant, the operators' aside."""
-_ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale")
+_ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale", "reference_load")

@@ -41,6 +41,8 @@ def without_cost(plant: Plant) -> int:
 def output_states(plant: Plant) -> int | None:
     """The first of neighbouring states that the outputs are, one each; None where outputs are others."""
     (p, n), b = plant.C.shape, plant.blade_states
+    if plant.D.any():
+        return None
     return next((k for k in range(b, n - p + 1) if np.array_equal(plant.C, np.eye(p, n, k))), None)
 
 
@@ -67,18 +69,18 @@ def in_axes(operators: Operators, axes: Array, following: Array, plant: Plant) -
 
     ``plant``, with normalised voltages and currents, says which states are what.
     """
-    n, p, b = operators.states, operators.outputs, plant.blade_states
+    n, p, q, b = operators.states, operators.outputs, operators.displaced, plant.blade_states
     reads, decay = output_states(plant), amplifier_decay(plant)
     lagging = 0 if decay is None else plant.B.shape[1]
     fused, size, crossing = operators.fused, operators.fused.shape[-2], b + without_cost(plant)
     whole = np.broadcast_to(np.eye(size), (*fused.shape[:-2], size, size)).copy()
     whole[..., :n, :n] = axes
     moved = whole @ fused
-    cost = moved[..., n + p + 2 :] @ whole.swapaxes(-1, -2)
+    cost = moved[..., n + p + q :] @ whole.swapaxes(-1, -2)
     crossed = cost[..., crossing:].copy()
     crossed[..., :b, :] *= 2.0
     state = moved[..., :n] @ following.swapaxes(-1, -2)
-    parts = [state[..., : n - lagging], crossed, moved[..., n + p : n + p + 2], moved[..., n : n + (p if reads is None else 0)]]
+    parts = [state[..., : n - lagging], crossed, moved[..., n + p : n + p + q], moved[..., n : n + (p if reads is None else 0)]]
     costs = n - lagging
     tips = costs + crossed.shape[-1]
     return Operators(
@@ -86,8 +88,9 @@ def in_axes(operators: Operators, axes: Array, following: Array, plant: Plant) -
         weights=sealed(np.diagonal(cost[..., :b, :b], axis1=-2, axis2=-1).copy()),
         states=n,
         outputs=p,
-        reads=tips + 2 if reads is None else reads,
+        reads=tips + q if reads is None else reads,
         tips=tips,
+        displaced=q,
         costs=costs,
         crossing=crossing,
         lagging=lagging,

@@ -17,7 +17,8 @@ class SampledBank:
     """K plants x⁺ = A x + B u + E d, y = C x, zᵀ cost z J s an interval with z = [x; u; d], as ``SampledPlant`` has one.
 
     States are in the axes in which they move (``Bank.axes``), of the following plant where plants follow one another; voltages and
-    readings are normalised, loads in N/m.
+    readings are normalised, loads in N/m. Where sensors feel voltages, what readings show of those before are further states of
+    each plant, one for each sensor, behind its own.
     """
 
     A: Array
@@ -25,11 +26,11 @@ class SampledBank:
     B: Array
     """(K, n, m)."""
     E: Array
-    """(K, n, 2)."""
+    """(K, n, k)."""
     C: Array
     """(K, p, n)."""
     cost: Array
-    """(K, n + m + 2, n + m + 2), J s, symmetric."""
+    """(K, n + m + k, n + m + k), J s, symmetric."""
 
 
 def sampled_bank(bank: Bank) -> SampledBank:
@@ -47,4 +48,19 @@ def sampled_bank(bank: Bank) -> SampledBank:
     diagonal = np.arange(weights.shape[1])
     half[:, diagonal, diagonal] += weights
     cost = 0.5 * (half + half.swapaxes(-1, -2))
-    return SampledBank(moved[..., :n], moved[..., n : size - 2], moved[..., size - 2 :], bank.readout.swapaxes(-1, -2), cost)
+    driven = n + bank.plant.B.shape[1]
+    plants = SampledBank(moved[..., :n], moved[..., n:driven], moved[..., driven:], bank.readout.swapaxes(-1, -2), cost)
+    return _with_feedthrough(plants, bank.feedthrough) if bank.feedthrough.any() else plants
+
+
+def _with_feedthrough(plants: SampledBank, felt: Array) -> SampledBank:
+    """With states D u (K, p) of the interval before, D = ``felt`` (K, p, m)."""
+    (K, p, _), n, size = felt.shape, plants.A.shape[1], plants.cost.shape[1]
+    own = np.concatenate([np.arange(n), np.arange(n + p, p + size)])
+    cost = np.zeros((K, p + size, p + size))
+    cost[:, own[:, None], own] = plants.cost
+    A = np.zeros((K, n + p, n + p))
+    A[:, :n, :n] = plants.A
+    E = np.concatenate([plants.E, np.zeros((K, p, plants.E.shape[2]))], axis=1)
+    C = np.concatenate([plants.C, np.tile(np.eye(p), (K, 1, 1))], axis=2)
+    return SampledBank(A, np.concatenate([plants.B, felt], axis=1), E, C, cost)

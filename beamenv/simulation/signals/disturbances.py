@@ -1,9 +1,9 @@
 """Disturbances: for a batch of blades, the line loads and the sensor noise of one sampling instant after another.
 
-At instant k each blade has one row [load case + white load (2), N/m, held over [t_k, t_k + Δt] | sensor noise (p) of the
-reading at t_k]. The white parts are normals times a factor of their covariance, factorised once. Where a scenario asks for
-them, two more normals drive the turbulence, and p standard normals tell which readings are lost:
-[loads (2) | sensor noise (p) | lost (p) | turbulence (2)].
+At instant j each blade has one row [load case + white load (k), N/m, held over [t_j, t_j + Δt] | sensor noise (p) of the
+reading at t_j], with k = 2, the line loads, unless the plant has others. The white parts are normals times a factor of their
+covariance, factorised once. Where a scenario asks for them, k more normals drive the turbulence, and p standard normals tell which
+readings are lost: [loads (k) | sensor noise (p) | lost (p) | turbulence (k)].
 
 There are two ways to draw them. ``SharedDisturbances`` has one generator for the whole batch: fast. ``SeededDisturbances``
 has a generator for each blade, so that a blade meets the same episode whatever else is in its batch. Neither keeps a
@@ -36,17 +36,18 @@ BLOCK = 64
 def noise_factor(plant: Plant, scenario: Scenario) -> Array:
     """F (c, c): standard normals (…, c) @ F are [white loads, N/m | sensor noise, in the plant's unit | lost | turbulence].
 
-    The columns of lost readings (p standard normals) and of turbulence (2, N/m) are there where the scenario has any.
+    The columns of lost readings (p standard normals) and of turbulence (k, N/m) are there where the scenario has any.
     """
-    p = len(plant.C)
-    lost, gusts = (p if scenario.acquisition.dropout else 0), (2 if scenario.rotor.turbulence else 0)
-    factor = np.zeros((2 + p + lost + gusts,) * 2)
+    p, k = len(plant.C), plant.disturbance_input.shape[1]
+    read = k + p
+    lost, gusts = (p if scenario.acquisition.dropout else 0), (k if scenario.rotor.turbulence else 0)
+    factor = np.zeros((read + lost + gusts,) * 2)
     if scenario.white_load:
-        factor[:2, :2] = _square_root(plant.process_noise / plant.control_interval)
+        factor[:k, :k] = _square_root(plant.process_noise / plant.control_interval)
     if scenario.sensor_noise:
-        factor[2 : 2 + p, 2 : 2 + p] = _square_root(plant.sensor_noise / plant.control_interval)
-    factor[2 + p : 2 + p + lost, 2 + p : 2 + p + lost] = np.eye(lost)
-    factor[2 + p + lost :, 2 + p + lost :] = scenario.rotor.turbulence * np.eye(gusts)
+        factor[k:read, k:read] = _square_root(plant.sensor_noise / plant.control_interval)
+    factor[read : read + lost, read : read + lost] = np.eye(lost)
+    factor[read + lost :, read + lost :] = scenario.rotor.turbulence * np.diag(plant.load_scale[:gusts])
     return factor
 
 
@@ -64,7 +65,7 @@ class Turbulence:
         return cls(math.exp(-plant.control_interval / rotor.turbulence_time)) if rotor.turbulence else None
 
     def following(self, gusts: Array, normals: Array) -> Array:
-        """The loads (…, 2) of the next instant, from this one's and normals of the right size."""
+        """The loads (…, k) of the next instant, from this one's and normals of the right size."""
         return self.decay * gusts + math.sqrt(1.0 - self.decay**2) * normals
 
 
@@ -80,9 +81,9 @@ class SharedDisturbances:
     Normals are drawn as (blocks, column, blade), group after group where the batch has groups.
     """
 
-    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None) -> None:
-        shape, self._lie = lie.shape, lie
-        self._turbulence, self._gusts = turbulence, np.zeros((*shape, 2))
+    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None, loads: int = 2) -> None:
+        shape, self._lie, self._loads = lie.shape, lie, loads
+        self._turbulence, self._gusts = turbulence, np.zeros((*shape, loads))
         self._factor = factor if np.any(factor - np.diag(np.diagonal(factor))) else np.diagonal(factor).copy()
         self._normals, self._rows = lie.columns_first(len(factor))
         self._drawn = [(self._rows, self._rows)]
@@ -90,23 +91,23 @@ class SharedDisturbances:
         if lie.runs:
             self._normals = np.zeros((math.prod(shape), len(factor)))
             self._drawn = [(_drawn_by_column(run, self._normals), run.of(self._rows)) for run in lie.runs]
-        _, self._amplitude = lie.columns_first(2)
+        _, self._amplitude = lie.columns_first(loads)
         self._steps = np.zeros(math.prod(shape), dtype=np.int64)
         self._cases: LoadCases | None = None
 
     def __getstate__(self) -> tuple[Any, ...]:
         carried = self._rows.copy(), self._amplitude.copy(), self._steps, self._cases, self._gusts
-        return self._factor, self._lie, self._turbulence, *carried
+        return self._factor, self._lie, self._turbulence, self._loads, *carried
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
-        factor, lie, turbulence, rows, amplitude, steps, cases, gusts = state
-        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, lie, turbulence)  # type: ignore[misc]
+        factor, lie, turbulence, loads, rows, amplitude, steps, cases, gusts = state
+        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, lie, turbulence, loads)  # type: ignore[misc]
         self._rows[...], self._amplitude[...] = rows, amplitude
         self._steps, self._cases, self._gusts = steps, cases, gusts
 
     def begin(self, rows: Rows, cases: LoadCases, normals: Array) -> Array:
-        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2).
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − k).
 
         ``normals`` (len(rows), c) are standard normals for this instant.
         """
@@ -117,8 +118,8 @@ class SharedDisturbances:
         disturbance = normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
         self._rows[at] = disturbance
         if self._turbulence is not None:
-            self._gusts[at] = disturbance[:, -2:]
-        return disturbance[:, 2:]
+            self._gusts[at] = disturbance[:, len(self._factor) - self._loads :]
+        return disturbance[:, self._loads :]
 
     @property
     def columns(self) -> int:
@@ -126,17 +127,17 @@ class SharedDisturbances:
         return len(self._factor)
 
     def loads(self, out: Array) -> None:
-        """Write the line loads of this instant to ``out`` (…, 2)."""
+        """Write the line loads of this instant to ``out`` (…, k)."""
         assert self._cases is not None
         np.multiply(self._amplitude, self._cases.gain(self._steps).reshape(*out.shape[:-1], 1), out=out)
-        np.add(out, self._rows[..., :2], out=out)
+        np.add(out, self._rows[..., : self._loads], out=out)
         if self._cases.has_harmonics:
             out += self._cases.of_rotor(self._steps).reshape(out.shape)
         if self._turbulence is not None:
             out += self._gusts
 
     def next(self, generator: Generator, resting: Rows | None = None) -> Array:
-        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − 2). ``resting`` makes no difference here."""
+        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − k). ``resting`` makes no difference here."""
         self._steps += 1
         generator.standard_normal(out=self._normals)
         for normals, rows in self._drawn:
@@ -145,8 +146,8 @@ class SharedDisturbances:
             else:
                 rows[...] = normals @ self._factor
         if self._turbulence is not None:
-            self._gusts = self._turbulence.following(self._gusts, self._rows[..., -2:])
-        return self._rows[..., 2:]
+            self._gusts = self._turbulence.following(self._gusts, self._rows[..., len(self._factor) - self._loads :])
+        return self._rows[..., self._loads :]
 
     def state_dict(self) -> dict[str, Any]:
         """Copies of what moves; the generator is the caller's."""
@@ -172,9 +173,9 @@ class SeededDisturbances:
     drawn again whenever its own episode has used up its block.
     """
 
-    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None) -> None:
-        count = math.prod(lie.shape)
-        self._turbulence, self._gusts = turbulence, np.zeros((count, 2))
+    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None, loads: int = 2) -> None:
+        count, self._width = math.prod(lie.shape), loads
+        self._turbulence, self._gusts = turbulence, np.zeros((count, loads))
         self._factor, self._shape = factor, lie.shape
         self._ring = np.zeros((BLOCK, count, len(factor)))
         self._see_ring()
@@ -191,7 +192,7 @@ class SeededDisturbances:
 
     def _see_ring(self) -> None:
         seen = self._ring.reshape(BLOCK, *self._shape, len(self._factor))
-        self._loads, self._noise = list(seen[..., :2]), list(seen[..., 2:])
+        self._loads, self._noise = list(seen[..., : self._width]), list(seen[..., self._width :])
 
     def _see_due(self) -> None:
         self._due = {start: np.flatnonzero(self._begun == start) for start in np.unique(self._begun).tolist()}
@@ -204,20 +205,20 @@ class SeededDisturbances:
         self._see_ring()
 
     def begin(self, rows: Rows, cases: LoadCases, generators: Sequence[Generator]) -> Array:
-        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − 2)."""
+        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − k)."""
         self._cases = merged(self._cases, rows, cases)
         self._begun[rows] = self._at
         self._see_due()
         self._drawn[rows] = 0
         self._draw(rows, generators)
-        return self._ring[self._at, rows, 2:]
+        return self._ring[self._at, rows, self._width :]
 
     def loads(self, out: Array) -> None:
-        """Write the line loads of this instant to ``out`` (…, 2)."""
+        """Write the line loads of this instant to ``out`` (…, k)."""
         out[...] = self._loads[self._at]
 
     def next(self, generators: Sequence[Generator], resting: Rows | None = None) -> Array:
-        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − 2).
+        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − k).
 
         Nothing is drawn for blades that are ``resting``: their episode is over, their generator waits for the next.
         """
@@ -255,7 +256,7 @@ class SeededDisturbances:
             generators[row].standard_normal(out=tape)
         disturbance = (normals @ self._factor).swapaxes(0, 1)
         cases = self._cases if len(rows) == len(self._cases) else self._cases.rows(rows)
-        disturbance[..., :2] += cases.at(self._drawn[rows] + np.arange(BLOCK)[:, None])
+        disturbance[..., : self._width] += cases.at(self._drawn[rows] + np.arange(BLOCK)[:, None])
         if self._turbulence is not None:
             self._add_turbulence(disturbance, rows)
         self._ring[(self._at + np.arange(BLOCK)[:, None]) % BLOCK, rows] = disturbance
@@ -264,11 +265,11 @@ class SeededDisturbances:
     def _add_turbulence(self, disturbance: Array, rows: Rows) -> None:
         """Put the turbulence of a block onto its loads; an episode's first one is drawn from the steady state."""
         assert self._turbulence is not None
-        begins, gusts = (self._drawn[rows] == 0)[:, None], self._gusts[rows]
+        begins, gusts, first = (self._drawn[rows] == 0)[:, None], self._gusts[rows], len(self._factor) - self._width
         for k, instant in enumerate(disturbance):
-            following = self._turbulence.following(gusts, instant[:, -2:])
-            gusts = np.where(begins, instant[:, -2:], following) if k == 0 else following
-            instant[:, :2] += gusts
+            following = self._turbulence.following(gusts, instant[:, first:])
+            gusts = np.where(begins, instant[:, first:], following) if k == 0 else following
+            instant[:, : self._width] += gusts
         self._gusts[rows] = gusts
 
 

@@ -49,9 +49,9 @@ class Windows:
         self._blades = Blades(task.bank, task.scenario, episodes)
         self._operators = task.bank.operators.convert(self._float)
         self._moving = task.bank.runs or task.bank.walk is not None  # blades come to other plants within an episode
-        self._sensors, self._energetic = len(task.plant.C), task.plant.blade_states
+        self._sensors, self._energetic = len(task.plant.C), task.bank.plant.blade_states
         self._phase: NDArray[np.int64] = np.arange(episodes) % self.count
-        self._loads = np.zeros((*self._blades.shape, 2))
+        self._loads = np.zeros((*self._blades.shape, task.plant.disturbance_input.shape[1]))
         self._limits = self._float(normalised(task.plant).voltage_limits)
         self._memory: Memory | None = None
         self._signals: SignalMemory | None = None
@@ -108,12 +108,12 @@ class Windows:
             self._convert_faults(self._blades.electronics)
 
     def _disturbances(self) -> Iterator[tuple[Tensor, Tensor]]:
-        """Line loads (B, 2) and what disturbs the readings (B, c), step by step through this window."""
+        """Line loads (B, k) and what disturbs the readings (B, c), step by step through this window."""
         batch, disturbances = len(self._phase), self._blades.disturbances
         assert isinstance(disturbances, SharedDisturbances)  # one generator serves the batch
         for _ in range(self.length):
             disturbances.loads(self._loads)
-            loads = self._float(self._loads.reshape(batch, 2))
+            loads = self._float(self._loads.reshape(batch, -1))
             yield loads, self._float(disturbances.next(self._generator).reshape(batch, -1))
 
     def unroll(self, actor: Acting) -> tuple[Tensor, Tensor]:

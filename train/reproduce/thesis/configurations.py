@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig
 from beamenv.blade.presets import CHANDRA_CHOPRA
 from beamenv.patches import PatchLayout
-from beamenv.plant.reduction import REFERENCE_LOAD
+from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.structure import RotatingBeam
 
 WORLD = "thesis"
