@@ -7,7 +7,6 @@ import io
 import os
 import re
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,17 +135,20 @@ def _numbers(cells: list[list[str]], names: list[str], columns: list[int]) -> Ar
     for line, row in enumerate(cells, start=2):
         if len(row) != len(names):
             raise ValueError(f"line {line} has {len(row)} cells, but must have {len(names)}, as many as there are names.")
-        for k, column in enumerate(columns):
-            try:
-                values[line - 2, k] = float(row[column])
-            except ValueError:
-                what = f"holds {shown(row[column])}" if row[column] else "is empty"
-                raise ValueError(f"column {names[column]!r} {what} on line {line}, but must be a number in every row.") from None
+        values[line - 2] = [_number(row[column], names[column], line) for column in columns]
     wrong = np.argwhere(~np.isfinite(values))
     if len(wrong):
         row, k = wrong[0]
         raise ValueError(f"column {names[columns[k]]!r} is {values[row, k]} on line {row + 2}, but must be finite in every row.")
     return values
+
+
+def _number(cell: str, name: str, line: int) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        what = f"holds {shown(cell)}" if cell else "is empty"
+        raise ValueError(f"column {name!r} {what} on line {line}, but must be a number in every row.") from None
 
 
 def _rate(times: Array, interval: float | None) -> float:

@@ -1,4 +1,4 @@
-"""What an identification found: the model, how well it does, how well it is known, and the plant that controllers are built from."""
+"""What an identification found: the model, how well it does, how well it is known, and the plant for controllers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from baselines.identification.order import Choice
 from baselines.identification.realisation import Stabilisation
 from baselines.identification.state_space import StateSpace, continuous
 from baselines.identification.white_noise import WhiteNoise
-from beamenv.configuration import Count, Natural, checked
+from beamenv.configuration import Count, checked
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ class Identified:
 
     def ensemble(self, count: int, seed: int = 0) -> list[StateSpace]:
         """So many models drawn from the spread of the parameters, each with the loads of the model itself."""
-        count, seed = checked("count", count, Count()), checked("seed", seed, Natural())
+        count, seed = checked("count", count, Count()), checked("seed", seed, Count(0))
         models = drawn(self.scaled, self.parameters, count, seed)
         return [continuous(self._in_units(each), self.noise.load_input, self.collocated) for each in models]
 
@@ -93,9 +93,7 @@ class Identified:
             ],
             "modes": [
                 dict(zip(("frequency", "frequency_spread", "damping_ratio", "damping_spread"), map(float, row), strict=True))
-                for row in zip(
-                    modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True
-                )
+                for row in zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
             ],
             "spread": "one standard deviation, from the curvature of the likelihood (Cramér and Rao)",
             "readings": [

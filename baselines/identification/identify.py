@@ -14,7 +14,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
-
 from baselines.identification.files import read_measurement
 from baselines.identification.fit import fit_of
 from baselines.identification.identified import Identified
@@ -104,6 +103,8 @@ def _check_collocated(collocated: float | None, measurement: Measurement) -> Non
     checked("collocated", collocated, Number(gt=0.0))
     m, p = measurement.voltages.shape[1], measurement.readings.shape[1]
     if m != p:
-        raise ValueError(f"collocated = {collocated!r} needs a sensor for each actuator, but there are {p} sensors and {m} actuators.")
+        raise ValueError(
+            f"collocated = {collocated!r} needs a sensor for each actuator, but there are {p} sensors and {m} actuators."
+        )
     if set(measurement.reading_units) - {"A", ""}:
         raise Refused("collocated", collocated, f"None with sensors in {', '.join(sorted(set(measurement.reading_units)))}, not A")

@@ -1,4 +1,4 @@
-"""The model that is identified: modes that voltages and innovations drive,
+"""The model that is identified: modes that voltages and innovations drive.
 
     x⁺ = A x + B u + K e,        y = C x + e,        cov e = Λ,
 
@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from beamenv.configuration.read_only import ReadOnly
 
@@ -93,6 +92,8 @@ class InnovationModel(ReadOnly):
 
 def _response(A: Array, B: Array, C: Array, inputs: Array) -> Array:
     """C x (N, p) of x⁺ = A x + B u from zero, mode by mode."""
+    from scipy.signal import lfilter  # a second of imports, which nothing else of the baselines needs
+
     eigenvalues, vectors = np.linalg.eig(A)
     driven = inputs @ np.linalg.solve(vectors, B.astype(complex)).T
     states = np.stack([lfilter([0.0, 1.0], [1.0, -each], column) for each, column in zip(eigenvalues, driven.T, strict=True)])

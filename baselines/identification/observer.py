@@ -36,7 +36,7 @@ class Observer(ReadOnly):
     """(p, p) of what it leaves."""
 
     def markov(self, count: int) -> Array:
-        """(count, p, m + p): C A^k [B K], k = 0, 1, …"""
+        """(count, p, m + p): C Aᵏ [B K] from k = 0 on."""
         q, whole = len(self.of_voltages), np.concatenate([self.of_voltages, self.of_readings], axis=2)
         found = np.zeros((count, *whole.shape[1:]))
         found[: min(q, count)] = whole[:count]

@@ -159,7 +159,7 @@ def _wald(found: Refined, states: list[int]) -> float:
 
 
 def without(found: Refined, poles: list[int]) -> Refined:
-    """The model without some of its poles, its others moved to make good for them as far as the curvature tells, if that is stable."""
+    """The model without some of its poles, the others moved to make good for them as far as the curvature tells."""
     states = [state for pole in poles for state in _states(found.model)[pole]]
     where, values = _driving(found.model, states)
     inverse = np.linalg.pinv(found.parameters[np.ix_(where, where)], rcond=1e-8, hermitian=True)

@@ -1,8 +1,9 @@
-"""The model in continuous time, as a plant is given: exactly what, sampled with held voltages and loads, is the model identified."""
+"""The model in continuous time: what, sampled with held voltages and loads, is exactly the model identified."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,8 +54,8 @@ def _blocks(s: NDArray[np.complex128], r: int) -> Array:
     return whole
 
 
-def _scales(B: Array, C: Array, r: int, ratio: float) -> Array:
+def _scales(B: NDArray[Any], C: Array, r: int, ratio: float) -> Array:
     """(n,): by which each pole's states are to be multiplied for |c| = ratio |b|."""
     sizes = [np.linalg.norm(np.hstack([C[:, k], C[:, k + 1]])) / np.linalg.norm(B[k : k + 2]) for k in range(0, 2 * r, 2)]
     alone = [np.linalg.norm(C[:, k]) / np.linalg.norm(B[k]) for k in range(2 * r, len(B))]
-    return np.sqrt(np.concatenate([np.repeat(sizes, 2), alone]) / ratio)
+    return np.asarray(np.sqrt(np.concatenate([np.repeat(sizes, 2), alone]) / ratio))
