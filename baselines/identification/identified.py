@@ -38,7 +38,7 @@ class Identified:
     choice: Choice
     """Which orders were tried."""
     balanced: dict[int, float]
-    """log det Λ of the rows held back, of the balanced models that the search began among."""
+    """Loss on the rows held back, as ``Tried`` has it, of the balanced model of each order, among which the search began."""
     stabilisation: Stabilisation
     fit: Fit
     collocated: float | None = None
@@ -72,6 +72,29 @@ class Identified:
         """In continuous time."""
         return continuous(self.model, self.noise.load_input, self.collocated)
 
+    def arrays(self, model: StateSpace | None = None, **about: Any) -> dict[str, Any]:
+        """The arguments of ``Plant.from_state_space`` for the model, or one of the ``ensemble``; ``about`` says more, or otherwise.
+
+        Loads are the disturbances, of unit variance in each interval; voltages may go as far as they did in the measurement.
+        """
+        model = self.state_space if model is None else model
+        measurement, loads = self.measurement, self.noise.load_input.shape[1]
+        known = {
+            "A": model.A,
+            "B": model.B,
+            "C": model.C,
+            "interval": measurement.interval,
+            "energy": model.energy,
+            "disturbance_input": model.load_input,
+            "disturbance_names": [f"load {k}" for k in range(1, loads + 1)],
+            "process_noise": np.ones(loads),
+            "sensor_noise": self.sensor_noise,
+            "sensor_names": list(measurement.reading_names),
+            "sensor_units": list(measurement.reading_units),
+            "actuator_limits": np.abs(measurement.voltages).max(axis=0) * np.array([[-1.0], [1.0]]),
+        }
+        return {name: value for name, value in {**known, **about}.items() if value is not None}
+
     def ensemble(self, count: int, seed: int = 0) -> list[StateSpace]:
         """So many models drawn from the spread of the parameters, each with the loads of the model itself."""
         count, seed = checked("count", count, Count()), checked("seed", seed, Count(0))
@@ -89,7 +112,7 @@ class Identified:
             "order": self.model.order,
             "order_reason": self.choice.reason,
             "orders_tried": [
-                {"order": each.order, "excess": each.excess, "missed": each.missed, "kept": each.kept} for each in self.choice.tried
+                {"order": each.order, "loss": each.loss, "missed": each.missed, "kept": each.kept} for each in self.choice.tried
             ],
             "modes": [
                 dict(zip(("frequency", "frequency_spread", "damping_ratio", "damping_spread"), map(float, row), strict=True))

@@ -21,8 +21,8 @@ from beamenv.configuration.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
-KNEE = 0.001
-"""Loss in log det Λ per reading, against the best order, below which a balanced model is as good as any to begin with."""
+KNEE = 5e-4
+"""Loss per reading, against the best order, below which a balanced model is as good as any to begin with."""
 DOUBTFUL = 3.0
 """Wald's statistic over the count of its numbers, 1 for a pole that is not there: all below this are taken away together."""
 CERTAIN = 3.0
@@ -40,8 +40,8 @@ class Tried(ReadOnly):
     """An order that was looked at."""
 
     order: int
-    excess: float
-    """Minus log likelihood of a row held back, less that of the first model."""
+    loss: float
+    """Half the log determinant of what one-step errors vary by on the rows held back: what a row loses of its likelihood."""
     missed: float
     """How much worse a row is than with the pole still there, in standard errors; 0 for the first."""
     kept: bool
@@ -71,23 +71,24 @@ Told = Callable[[str, float], None]
 
 
 def first_order(realisation: Realisation, everything: Measurement, learned: int, candidates: range) -> tuple[int, dict[int, float]]:
-    """The least order of a balanced model that is about as good as the best on the rows after ``learned``; log det Λ of each."""
-    found = {order: _log_det(realisation.model(order), everything, learned) for order in candidates}
+    """The least order of a balanced model that is about as good as the best on the rows after ``learned``; the loss of each."""
+    found = {order: held_back_loss(realisation.model(order), everything, learned) for order in candidates}
     good = min(found.values()) + KNEE * everything.readings.shape[1]
     return next(order for order, value in found.items() if value <= good), found
 
 
-def _log_det(model: InnovationModel, everything: Measurement, learned: int) -> float:
+def held_back_loss(model: InnovationModel, everything: Measurement, learned: int) -> float:
+    """As ``Tried.loss``; infinite where the model or its predictor is not stable."""
     if not model.stable:
         return np.inf
     errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
-    return float(np.linalg.slogdet(errors.T @ errors / len(errors))[1])
+    return 0.5 * float(np.linalg.slogdet(errors.T @ errors / len(errors))[1])
 
 
 def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: int, wanted: int | None, told: Told) -> Choice:
     """Poles taken away down to ``wanted`` states; None: for as long as the rows after ``learned`` do not miss them."""
     now, losses = first, _losses(first.model, everything, learned)
-    tried, base, passed = [Tried(first.model.order, 0.0, 0.0, True)], float(losses.mean()), 0
+    tried, passed = [Tried(first.model.order, held_back_loss(first.model, everything, learned), 0.0, True)], 0
     least, together = wanted or 2, first.model.order
     while now.model.order > least and passed < REFUSALS:
         poles = _next(now, least, passed, together)
@@ -98,7 +99,7 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
         left = _losses(after.model, everything, learned)
         missed = _in_standard_errors(left - losses)
         kept = wanted is not None or missed < CERTAIN
-        tried.append(Tried(after.model.order, float(left.mean()) - base, missed, kept))
+        tried.append(Tried(after.model.order, held_back_loss(after.model, everything, learned), missed, kept))
         told(f"{after.model.order} states", 0.0)
         if kept:
             now, losses, passed = after, left, 0

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from train.cli.benchmark import benchmark
+from train.cli.identify import identify
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -36,6 +37,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command()(identify)
 app.command()(place)
 app.command()(train)
 app.command()(benchmark)
