@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from train.cli.benchmark import benchmark
+from train.cli.export import export
 from train.cli.identify import identify
 from train.cli.options import (
     RESUMES,
@@ -39,6 +40,7 @@ app = typer.Typer(
 )
 app.command()(identify)
 app.command()(place)
+app.command()(export)
 app.command()(train)
 app.command()(benchmark)
 app.command()(schema)
