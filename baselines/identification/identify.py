@@ -54,8 +54,8 @@ def identify(
     held_back = checked("held_back", held_back, Number(ge=0.05, le=0.5))
     told = progress or (lambda what, done: None)
     scaled = _scaled(checked("data", measurement, Instance(Measurement)))
-    learning = scaled.held_back(held_back)[0]
-    learned = len(learning)
+    learned = len(scaled) - round(held_back * len(scaled))
+    learning = scaled.first(learned)
     _check_collocated(collocated, measurement)
     told("observer", 0.0)
     realisation = realise(observer(learning), scaled.interval, MOST_STATES)

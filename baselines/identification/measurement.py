@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, Refused, Text, checked
+from beamenv.configuration import Number, Refused, Text, Texts, checked
 from beamenv.configuration.arrays import check_finite, checked_array
 from beamenv.configuration.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
-FEWEST_ROWS = 200
-"""Below this nothing can be held out and judged."""
+FEWEST_ROWS = 100
+"""Below this there is nothing to be learned."""
 
 ALIKE = 1e-6
 """Smallest share of the voltages' variance, over its largest, in any direction: below it they have not moved on their own."""
@@ -69,27 +69,23 @@ class Measurement(ReadOnly):
         """How long it lasts, s."""
         return len(self) * self.interval
 
-    def rows(self, first: int, last: int) -> Measurement:
-        """Those from ``first`` up to ``last``, which is not among them."""
-        return replace(self, voltages=self.voltages[first:last], readings=self.readings[first:last])
-
-    def held_back(self, share: float) -> tuple[Measurement, Measurement]:
-        """The first rows, to learn from, and the last ``share`` of them, to judge by."""
-        first = len(self) - round(share * len(self))
-        return self.rows(0, first), self.rows(first, len(self))
+    def first(self, rows: int) -> Measurement:
+        """Its first rows alone."""
+        return replace(self, voltages=self.voltages[:rows], readings=self.readings[:rows])
 
 
 def _names(path: str, given: Sequence[str], letter: str, count: int) -> tuple[str, ...]:
-    if isinstance(given, str) or len(given) not in (0, count):
+    names = checked(path, given, Texts())
+    if len(names) not in (0, count):
         raise Refused(path, given, f"{count} names, one for each column")
-    names = tuple(checked(path, each, Text(line=True)) for each in given)
-    return names or tuple(f"{letter}{k}" for k in range(1, count + 1))
+    return tuple(checked(path, each, Text(line=True)) for each in names) or tuple(f"{letter}{k}" for k in range(1, count + 1))
 
 
 def _units(given: Sequence[str], count: int) -> tuple[str, ...]:
-    if isinstance(given, str) or len(given) not in (0, count):
+    units = checked("reading_units", given, Texts())
+    if len(units) not in (0, count):
         raise Refused("reading_units", given, f"{count} units, one for each column")
-    return tuple(checked("reading_units", each, Text()) for each in given) or ("",) * count
+    return units or ("",) * count
 
 
 def _check_moving(columns: Array, names: Sequence[str]) -> None:

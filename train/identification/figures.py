@@ -86,7 +86,7 @@ def spectrum_panel(found: Identified) -> Panel:
 
 
 def _noise_power(found: Identified, hertz: Array) -> Array:
-    """tr Φ (F,) of the readings left alone, a row's variance being the mean over the circle."""
+    """Tr Φ (F,) of the readings left alone, a row's variance being the mean over the circle."""
     model = found.scaled
     z = np.exp(2j * np.pi * hertz * model.interval)[:, None, None]
     shaped = np.eye(len(model.C)) + model.C @ np.linalg.solve(z * np.eye(model.order) - model.A, model.K[None])
@@ -120,8 +120,7 @@ def whiteness_panel(found: Identified) -> Panel:
     fit, names = found.fit, found.measurement.reading_names
     lags = np.arange(1.0, len(fit.autocorrelation))
     curves = [
-        Curve(lags, fit.autocorrelation[1:, k], name, LINES[k % len(LINES)], Look(colour(k)))
-        for k, name in enumerate(names[:MOST])
+        Curve(lags, fit.autocorrelation[1:, k], name, LINES[k % len(LINES)], Look(colour(k))) for k, name in enumerate(names[:MOST])
     ]
     band = Look(NEUTRAL, width=0.8)
     curves += [Curve(lags[[0, -1]], np.full(2, side * fit.band), "95 %", "dashed", band, side > 0.0) for side in (1.0, -1.0)]
