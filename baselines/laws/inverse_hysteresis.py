@@ -54,6 +54,11 @@ class InverseHysteresis(Law):
         """Numbers in a blade's memory: the law's, and each play of each actuator."""
         return self.law.order + PLAYS * len(self._drive)
 
+    @property
+    def operator(self) -> Hysteresis:
+        """That of the actuators, of voltages over the larger drive limit."""
+        return self._hysteresis
+
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
         """Ask, invert, remember what acts."""
         law, m = self.law, len(self._drive)

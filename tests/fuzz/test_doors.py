@@ -19,6 +19,7 @@ from tests.fuzz import (
     command_doors,
     env_doors,
     episode_doors,
+    export_doors,
     file_doors,
     informed_law_doors,
     judging_doors,
@@ -35,7 +36,7 @@ from train.cli.app import app
 
 OF_LAWS = (law_doors, informed_law_doors, judging_doors, placement_doors)
 OF_BLADES = (blade_doors, env_doors, episode_doors, wrapper_doors, file_doors, archive_doors, model_doors)
-DOORS = [door for room in (*OF_BLADES, *OF_LAWS, train_doors, command_doors) for door in room.DOORS]
+DOORS = [door for room in (*OF_BLADES, *OF_LAWS, train_doors, export_doors, command_doors) for door in room.DOORS]
 
 OUTCOMES = ("refused", "accepted", "fault")
 

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from train.cli.benchmark import benchmark
+from train.cli.export import export
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -37,6 +38,7 @@ app = typer.Typer(
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
 app.command()(place)
+app.command()(export)
 app.command()(train)
 app.command()(benchmark)
 app.command()(schema)

@@ -1,0 +1,149 @@
+"""C files of controllers do in the loop what the controllers themselves do there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from baselines import LinearController, lqg
+from baselines.design.loop import closed_loop, spectral_radius
+from beamenv.plant.plant import sample
+from beamenv.task import resolve_task
+from tests.train.in_a_loop import STEPS, TOLERANCE, in_a_loop, in_double_precision, python_steps
+from train.controllers.named import discover
+from train.controllers.shipped import shipped
+from train.controllers.sources import Trained
+from train.export import exported
+from train.export.compiled import compiler, running, seconds_a_step
+
+needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
+
+NOT_EXPORTED = {
+    "clairvoyant": "what the truth of the episode is",
+    "informed-mpc": "quadratic program",
+    "lqr": "the blade's true state",
+    "lqr-load": "the blade's true state",
+    "mpc": "quadratic program",
+    "mpc-load": "quadratic program",
+    "run-up-lqg": "worked out on the way",
+}
+"""By name, with what its sentence says."""
+
+BIG = {"multiple-model-general"}  # 35 MB of C
+LAWS = [pytest.param(name, marks=[pytest.mark.slow] if name in BIG else []) for name in discover() if name not in NOT_EXPORTED]
+OTHERS = [  # laws that are otherwise in another scenario
+    ("multiple-model", "delay"),
+    pytest.param("multiple-model", "mid-failure", marks=pytest.mark.slow),
+    pytest.param("multiple-model", "failure", marks=pytest.mark.slow),
+    ("inverse-hysteresis", "hysteresis"),
+]
+QUICK = {"gradient", "residual", "belief", "sac", "optimised-linear"}
+SHIPPED = [
+    pytest.param(each, id=f"{each.agent}, {each.scenario}", marks=[] if each.agent in QUICK and home else [pytest.mark.slow])
+    for each in shipped()
+    for home in [each.scenario in ("generalist", "nominal")]
+    if each.seed == 0
+]
+
+
+def agrees(controller, plant, scenario):
+    """Of both precisions with Python in double precision."""
+    found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
+    reads_speed = len(found["double"].diagram.inputs) > 1
+    with in_double_precision(controller) as own:
+        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed)
+    assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
+    for precision, each in found.items():
+        with running(each) as step:
+            if falls_apart(controller, plant):
+                written = np.array([step(row) for row in measured])
+            else:
+                _, written = in_a_loop(step, scenario, reads_speed)
+        worst = np.abs(written - voltages).max() / np.abs(plant.voltage_limits).max()
+        assert worst < TOLERANCE[precision], precision
+
+
+def falls_apart(controller, plant):
+    """Whether the loop with the full plant is unstable: rounding grows in it, and only what both are shown can be compared."""
+    if not isinstance(controller, LinearController):
+        return False
+    return spectral_radius(closed_loop(sample(resolve_task().design.full_plant), controller)[0]) > 1.0
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("name", LAWS)
+def test_law_in_c_asks_for_the_voltages_of_the_law(name):
+    task = resolve_task(scenario="default")
+    agrees(discover()[name].build_for(task), task.design_plant, "default")
+
+
+@needs_a_compiler
+@pytest.mark.parametrize(("name", "scenario"), OTHERS)
+def test_law_of_a_scenario_in_c_asks_for_the_voltages_of_the_law(name, scenario):
+    task = resolve_task(scenario=scenario)
+    agrees(discover()[name].build_for(task), task.design_plant, scenario)
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("each", SHIPPED)
+def test_agent_that_ships_in_c_asks_for_the_voltages_of_the_agent(each):
+    scenario = "default" if each.scenario == "generalist" else each.scenario
+    task = resolve_task(scenario=scenario)
+    agrees(Trained(each.folder).build(task), task.design_plant, scenario)
+
+
+@pytest.mark.parametrize("name", NOT_EXPORTED)
+def test_law_that_cannot_be_exported_says_why(name):
+    task = resolve_task()
+    with pytest.raises(ValueError, match=f"cannot be exported: .*{NOT_EXPORTED[name]}"):
+        exported(discover()[name].build_for(task), task.design_plant)
+
+
+@pytest.mark.parametrize("unknown", [lambda readings: readings, object(), None])
+def test_what_nobody_can_read_is_refused(unknown):
+    with pytest.raises(ValueError, match="cannot be exported: what it does cannot be read from it"):
+        exported(unknown, resolve_task().design_plant)
+
+
+def test_law_of_another_clock_is_refused():
+    slower = resolve_task(blade={"control_interval": 1e-3}).design_plant
+    with pytest.raises(ValueError, match="plant has another interval than LQG was designed for: 0.001 in place of 0.0005"):
+        exported(lqg(resolve_task().design_plant), slower)
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("precision", TOLERANCE)
+def test_readings_and_voltages_are_clipped_as_the_environment_clips_them(precision):
+    plant = resolve_task().design_plant
+    law = lqg(plant)
+    beyond = np.array([3.0, -2.0, 0.5, -0.25]) * plant.sensor_full_scale
+    within = np.clip(beyond, -plant.sensor_full_scale, plant.sensor_full_scale)
+    with running(exported(law, plant, precision=precision)) as step, running(exported(law, plant, precision=precision)) as other:
+        for _ in range(20):
+            volts = step(beyond)
+            np.testing.assert_array_equal(volts, other(within))
+            assert (volts >= plant.voltage_limits[0]).all() and (volts <= plant.voltage_limits[1]).all()
+    assert np.abs(volts).max() == plant.voltage_limits[1].max()  # so it was the drive that ended it
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_measurement_that_is_no_number_is_answered_with_status_one(bad):
+    plant = resolve_task().design_plant
+    with running(exported(lqg(plant), plant)) as step, pytest.raises(ValueError, match="ended with status 3"):
+        step([0.0, bad, 0.0, 0.0])
+
+
+@needs_a_compiler
+def test_step_is_timed():
+    plant = resolve_task().design_plant
+    rows = 0.1 * plant.sensor_full_scale * np.random.default_rng(0).standard_normal((2000, 4))
+    assert 0.0 < seconds_a_step(exported(lqg(plant), plant), rows, passes=20) < plant.control_interval
+
+
+@needs_a_compiler
+def test_names_that_would_break_a_comment_do_not():
+    plant = resolve_task().design_plant
+    law = replace(lqg(plant), name="*/ int x; /* ??/ $name %s \\")
+    with running(exported(law, plant)) as step:
+        assert step(np.zeros(4)).tolist() == [0.0] * 4

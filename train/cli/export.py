@@ -1,0 +1,99 @@
+"""The command ``beamenv export``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+
+from train.cli.options import (
+    BladeOption,
+    JsonOption,
+    PresetOption,
+    ScenarioOption,
+    SpeedOption,
+    environment_arguments,
+    one_sentence,
+    print_json,
+)
+
+if TYPE_CHECKING:
+    from train.export import Exported
+
+STEPS, PASSES = 2000, 20
+"""Of a measurement: on random readings."""
+
+
+def export(
+    controller: Annotated[
+        str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
+    ],
+    format: Annotated[str, typer.Option("--format", help="c, onnx or mat.")] = "c",
+    output: Annotated[
+        Path | None, typer.Option(help="The file; the controller's name with the format's ending if left out.")
+    ] = None,
+    precision: Annotated[str, typer.Option(help="double or single.")] = "double",
+    name: Annotated[str | None, typer.Option(help="Of functions and types; the controller's if left out.")] = None,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    scenario: ScenarioOption = "default",
+    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
+    measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
+    with one_sentence():
+        from beamenv.configuration import Choice, Refused, checked
+        from beamenv.task import resolve_task
+        from train.controllers.choice import chosen
+        from train.export import FORMATS, export, exported
+        from train.export.exported import identifier
+        from train.shared.files import check_file
+
+        checked("format", format, Choice(tuple(FORMATS)))
+        if measure and format != "c":
+            raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
+        task = resolve_task(**environment_arguments(preset, speed, blade), scenario=scenario)
+        called = identifier(Path(controller).name) if name is None else name
+        path = output or Path(f"{called}.{format}")
+        check_file(path, "output")
+        law = chosen(controller, task, scenario, trained_seed)
+        found = exported(law, task.design_plant, precision=precision, name=called)
+        seconds = _measured(found) if measure else None
+        export(law, task.design_plant, path, format=format, precision=precision, name=called)
+    if as_json:
+        print_json({"file": str(path), "format": format, "name": found.name, **found.facts, "seconds_a_step": seconds})
+    else:
+        _show(found, path, seconds)
+
+
+def _measured(found: Exported) -> float:
+    """Seconds of this processor, a step, on random readings of a tenth of full scale."""
+    import numpy as np
+
+    from train.export.compiled import seconds_a_step
+
+    plant, random = found.plant, np.random.default_rng(0)
+    rows: list[Any] = [0.1 * plant.sensor_full_scale * random.standard_normal((STEPS, len(plant.C)))]
+    rows += [np.full((STEPS, each.size), 1.0) for each in found.diagram.inputs[1:]]
+    with Console(stderr=True).status("compiling and measuring"):
+        return seconds_a_step(found, np.hstack(rows), PASSES)
+
+
+def _show(found: Exported, path: Path, seconds: float | None) -> None:
+    screen, remembered = Console(soft_wrap=True), sum(delay.size for delay in found.diagram.following)
+    screen.print(
+        f"written to {path}: {found.controller}, in {found.precision} precision, with {remembered} numbers to remember",
+        markup=False,
+    )
+    if seconds is not None:
+        interval = found.plant.control_interval
+        screen.print(
+            f"a step takes {1e6 * seconds:.3g} µs on this computer, {100.0 * seconds / interval:.2g} % of the control interval of "
+            f"{1e6 * interval:.4g} µs",
+            markup=False,
+            highlight=False,
+        )

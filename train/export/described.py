@@ -1,0 +1,95 @@
+"""Which controllers can be drawn as block diagrams, and why the others cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from baselines import ClippedLQG, InverseHysteresis, Law, LinearController, MultipleModel, PredictiveController, ScheduledLQG
+from baselines.design.controller import name_of
+from baselines.design.instruments import Instruments, checked_plant
+from baselines.laws.time_varying_lqg import TimeVaryingLQG
+from beamenv.plant.plant import Plant
+from train.controllers.models_policy import ModelsPolicy
+from train.export.agents import AGENTS, weighing_models
+from train.export.blocks import Block
+from train.export.diagram import Diagram
+from train.export.hysteresis import inverse_hysteresis
+from train.export.laws import clipped_lqg, linear_law, scheduled_law
+from train.export.many_models import multiple_model
+from train.export.scales import Drawn, Scales, behind_instruments, sensors_of
+
+LAWS: Mapping[type[Law], Callable[[Any, Block, Scales], Drawn]] = {
+    LinearController: linear_law,
+    ClippedLQG: clipped_lqg,
+    ScheduledLQG: scheduled_law,
+    InverseHysteresis: inverse_hysteresis,
+    MultipleModel: multiple_model,
+}
+
+HIDDEN = {"state": "the blade's true state", "observation and truth": "what the truth of the episode is"}
+"""What no sensor measures."""
+
+REASONS: Mapping[type[Any], str] = {
+    PredictiveController: "it solves a quadratic program at every instant, for which it needs a solver",
+    TimeVaryingLQG: "its gains are those of a run-up that is known beforehand, worked out on the way",
+}
+
+
+def diagram_of(controller: Any, plant: Plant) -> Diagram:
+    """The controller from what the plant's sensors show, A in general, to its voltages, V.
+
+    Raises ``ValueError`` of one sentence for what cannot be drawn, and for a law of other instruments than the plant's.
+    """
+    sensors, readings = sensors_of(checked_plant(plant))
+    if isinstance(controller, Law):
+        _check_instruments(controller, plant)
+    drawn = _drawn(controller, readings, Scales.of(plant))
+    _check_counts(controller, drawn, plant)
+    return behind_instruments(sensors, drawn, plant)
+
+
+def _drawn(controller: Any, readings: Block, scales: Scales) -> Drawn:
+    kind = type(controller)
+    if isinstance(controller, Law) and controller.observes in HIDDEN:
+        raise _cannot(controller, f"it observes {HIDDEN[controller.observes]}, which no sensor measures")
+    if kind in LAWS:
+        return LAWS[kind](controller, readings, scales)
+    if isinstance(controller, ModelsPolicy):
+        return weighing_models(controller, readings, scales)
+    if kind in AGENTS:
+        return AGENTS[kind](controller, readings)
+    for known, reason in REASONS.items():
+        if isinstance(controller, known):
+            raise _cannot(controller, reason)
+    what = "agents that ship or are trained here, and laws of this package"
+    raise _cannot(controller, f"what it does cannot be read from it, as it can from {what}")
+
+
+def _cannot(controller: Any, reason: str) -> ValueError:
+    return ValueError(f"controller = {name_of(controller)} ({type(controller).__name__}) cannot be exported: {reason}.")
+
+
+def _check_instruments(law: Law, plant: Plant) -> None:
+    """``ValueError`` for a law of another clock or other limits, or of as many sensors and voltages as the plant does not have."""
+    own, others = law.instruments, Instruments.of(plant, law.observes)
+    for name, one, other in (
+        ("measurements and voltages", own.counts, others.counts),
+        ("interval", own.interval, others.interval),
+        ("voltage limits", own.voltage_limits, others.voltage_limits),
+    ):
+        if not np.array_equal(one, other):
+            raise ValueError(
+                f"plant has another {name} than {law.name} was designed for: {_shown(other)} in place of {_shown(one)}."
+            )
+
+
+def _shown(value: Any) -> str:
+    return " ".join(str(np.asarray(value).tolist()).split())
+
+
+def _check_counts(controller: Any, drawn: Drawn, plant: Plant) -> None:
+    if drawn.action.size != plant.B.shape[1]:
+        raise ValueError(f"plant has {plant.B.shape[1]} voltages, but {name_of(controller)} gives {drawn.action.size}.")

@@ -1,0 +1,44 @@
+"""A controller written to a file for other machines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from beamenv.configuration import Choice, checked
+from beamenv.configuration.writing import write_whole
+from beamenv.plant.plant import Plant
+from train.export.c_source import c_source
+from train.export.exported import Exported, exported
+from train.shared.files import as_path, check_file
+
+FORMATS: Mapping[str, Callable[[Exported], str | bytes]] = {"c": c_source}
+"""What writes them, by the ends of files' names."""
+
+
+def export(
+    controller: Any,
+    plant: Plant,
+    path: str | Path,
+    *,
+    format: str | None = None,
+    precision: str = "double",
+    name: str | None = None,
+) -> Exported:
+    """Write a controller to ``path``: from what sensors show, A in general, to voltages, V, as in an environment around ``plant``.
+
+    ``format`` is "c", a self-contained C99 file, or "onnx" or "mat"; None: what the file's name ends in. ``precision`` is "double"
+    or "single", and ``name`` what functions and types are called; None: the controller's own. ``plant`` is that of the design,
+    such as ``env.unwrapped.design_plant``: it has the full scale of the sensors, the limits of the drive and the interval.
+
+    Raises ``ValueError`` of one sentence for a controller that cannot be exported, and why: one that needs the true state or a
+    solver, or that is a function of which nobody knows what it does.
+    """
+    path = as_path("path", path)
+    ending = path.suffix.removeprefix(".") if format is None else format
+    ending = checked("format", ending, Choice(tuple(FORMATS)))
+    check_file(path, "path")
+    found = exported(controller, plant, precision=precision, name=name)
+    write_whole(path, FORMATS[ending](found))
+    return found
