@@ -77,8 +77,8 @@ def _print(found: Any, walls: list[dict[str, Any]]) -> None:
     for name in ("", "meaning", "value"):
         table.add_column(name, justify="right" if name == "value" else "left")
     diagonal = np.diag(found.stiffness)
-    for row, meaning, value, unit in zip(ROWS, MEANING, diagonal, UNITS, strict=True):
-        table.add_row(row, meaning, f"{value:.5g} {unit}")
+    for name, meaning, value, unit in zip(ROWS, MEANING, diagonal, UNITS, strict=True):
+        table.add_row(name, meaning, f"{value:.5g} {unit}")
     unit = np.sqrt(np.outer(diagonal, diagonal))
     for one, other in zip(*np.triu_indices(len(ROWS), 1), strict=True):
         if abs(found.stiffness[one, other]) > SEEN * unit[one, other]:
