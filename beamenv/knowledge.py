@@ -95,7 +95,7 @@ class Prior:
         if walk is not None:
             courses = walk.courses(np.stack([each.random(walk.draws) for each in generators]))
             place = walk.places(courses, np.full(len(courses), self.steps // 2))
-        begins = draw_onsets(failures, self.bank.plant.control_interval, uniforms[:, DRAWS:]) if failures.drawn_instants else None
+        begins = draw_onsets(failures, self.bank.plant.scenario_interval, uniforms[:, DRAWS:]) if failures.drawn_instants else None
         return Hypotheses(place, draw_faults(failures, self.scenario.drive.delay, uniforms, m, p), begins)
 
     def generators(self, count: int) -> list[np.random.Generator]:

@@ -88,6 +88,7 @@ class Hypothesis(ReadOnly):
             B=sealed(self.plant.B * g),
             C=sealed(s[:, None] * self.plant.C),
             D=sealed(s[:, None] * self.plant.D * g),
+            cross_weight=sealed(np.asarray(self.plant.cross_weight) * g),
             input_weight=sealed(R * np.outer(g, g) + np.diag(np.diag(R) * (1.0 - g**2))),
         )
 

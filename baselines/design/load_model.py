@@ -50,10 +50,11 @@ class Load(Protocol):
 
 def model_of(load: Load, plant: Plant) -> LoadModel:
     """A load as a plant meets it: where load cases are made of other disturbances than two line loads, of as many, and scaled as
-    those of scenarios are (``Plant.load_scale``). ``ValueError`` for a model of another number of them.
+    those of scenarios are (``Plant.load_scale``, ``Plant.time_scale``). ``ValueError`` for a model of another number of them.
     """
     scale, loads = plant.load_scale, plant.loads
-    model = load.model(plant.control_interval) if loads == 2 else load.model(plant.control_interval, loads)
+    interval = plant.scenario_interval
+    model = load.model(interval) if loads == 2 else load.model(interval, loads)
     if len(model.output) != loads:
         raise Refused("load", load, f"one whose model has {loads} outputs, as many as the plant has disturbances that are loads")
     if loads == len(scale) and np.all(scale == 1.0):

@@ -121,11 +121,16 @@ class ContinuousEquation:
         return np.asarray(solve_continuous_lyapunov(closed.T, -self.left(P)))
 
 
-def regulator(A: Array, B: Array, state_weight: Array, input_weight: Array) -> Solution:
+def regulator(A: Array, B: Array, state_weight: Array, input_weight: Array, cross_weight: Array | None = None) -> Solution:
     """Continuous regulator: P (n, n) and gain K (m, n) of u = −K x (thesis Eqs. 5.10, 5.11).
 
-    PA + AᵀP + Q − PBR⁻¹BᵀP = 0, K = R⁻¹BᵀP. Raises ``Unsolved`` without a stabilising solution.
+    PA + AᵀP + Q − PBR⁻¹BᵀP = 0, K = R⁻¹BᵀP. A weight N (n, m) of 2 xᵀNu is taken out by u = v − R⁻¹Nᵀx first. Raises ``Unsolved``
+    without a stabilising solution.
     """
+    if cross_weight is not None and cross_weight.any():
+        out = solve(input_weight, cross_weight.T, assume_a="pos")
+        without = regulator(A - B @ out, B, symmetric(state_weight - cross_weight @ out), input_weight)
+        return Solution(without.matrix, without.gain + out, without.residual)
     unit = _unit_diagonal(input_weight)  # J/V² is tiny: with each input's own weight as unit the pencil is well scaled
     equation = ContinuousEquation(A, B * unit, state_weight, input_weight * np.outer(unit, unit))
     try:

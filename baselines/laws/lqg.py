@@ -114,7 +114,7 @@ def optimal_filter(plant: Plant, held: SampledPlant) -> Solution:
 def _continuous(plant: Plant, verify: bool) -> LinearController:
     E, p = plant.disturbance_input, len(plant.C)
     with solvable(plant):
-        regulated = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight)
+        regulated = regulator(plant.A, plant.B, plant.state_weight, plant.input_weight, np.asarray(plant.cross_weight))
         filtered = kalman_filter(plant.A, plant.C, E @ plant.process_noise @ E.T, known_sensor_noise(plant))
     K, L = regulated.gain, filtered.gain
     B = plant.B - L @ plant.D  # a reading and the voltage that it shows belong to one interval

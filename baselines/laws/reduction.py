@@ -54,9 +54,9 @@ def balanced(held: SampledPlant, law: LinearController) -> tuple[Array, Array]:
     if spectral_radius(transition) >= 1.0:
         raise ValueError(f"law = {law.name} is unstable on the plant, and cannot be reduced there.")
     n = len(held.A)
-    spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T)[n:, n:]
+    spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T, method="bilinear")[n:, n:]
     cost = state_map.T @ held.cost @ state_map
-    say = solve_discrete_lyapunov(transition.T, 0.5 * (cost + cost.T))[n:, n:]
+    say = solve_discrete_lyapunov(transition.T, 0.5 * (cost + cost.T), method="bilinear")[n:, n:]
     reached, felt = _root(spread), _root(say)
     left, values, right = np.linalg.svd(felt.T @ reached)
     count = int(np.count_nonzero(values > values[0] * np.finfo(float).eps * len(values)))

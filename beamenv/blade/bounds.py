@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Count, Number, Numbers, Refused, checked
-from beamenv.patches.layout import OUTERMOST, PatchLayout
+from beamenv.patches.layout import PatchLayout, Side
 
 Array = NDArray[np.float64]
 
@@ -29,19 +29,19 @@ class Bounds:
     count: int
 
     @classmethod
-    def of(cls, layout: PatchLayout, beam_length: float, count: int, bounds: Sequence[float] | None, name: str) -> Bounds:
-        """Bounds (m) of the root-side edges, 0 … 0.7 L less a patch unless given.
+    def of(cls, layout: PatchLayout, beam_length: float, count: int, bounds: Sequence[float] | None, name: Side) -> Bounds:
+        """Bounds (m) of the root-side edges, 0 … 0.7 L, or where a group says so, less a patch unless given.
 
         Raises ``ValueError`` for bounds outside of that or without room, and for more patches than fit.
         """
-        count = checked(name, count, Count())
-        last = OUTERMOST * beam_length - layout.length
-        low, high = checked_bounds(bounds, last)
-        fitting = int(np.floor((high - low + TOLERANCE) / layout.length)) + 1
+        count, group = checked(name, count, Count()), layout.only(name)
+        last = group.outermost * beam_length - group.length
+        low, high = checked_bounds(bounds, last, group.outermost)
+        fitting = int(np.floor((high - low + TOLERANCE) / group.length)) + 1
         if count > fitting:
-            room = f"patches of {layout.length:g} m with root-side edges from {low:g} to {high:.6g} m"
+            room = f"patches of {group.length:g} m with root-side edges from {low:g} to {high:.6g} m"
             raise Refused(name, count, f"at most {fitting}, for {room}")
-        return cls(name, low, high, layout.length, count)
+        return cls(name, low, high, group.length, count)
 
     @property
     def slack(self) -> float:
@@ -87,10 +87,10 @@ class Bounds:
         return ordered
 
 
-def checked_bounds(bounds: Sequence[float] | None, last: float) -> tuple[float, float]:
+def checked_bounds(bounds: Sequence[float] | None, last: float, outermost: float) -> tuple[float, float]:
     """(low, high) in m; ``ValueError`` for anything but two numbers in order within 0 … ``last``."""
     if last < 0.0:
-        raise ValueError(f"a patch is too long: it must fit within 0 and {OUTERMOST} of the span, by {-last:.6g} m more.")
+        raise ValueError(f"a patch is too long: it must fit within 0 and {outermost} of the span, by {-last:.6g} m more.")
     if bounds is None:
         return 0.0, last
     low, high = checked("bounds", bounds, Numbers(Number(unit="m"), least=2, most=2))

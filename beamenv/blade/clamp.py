@@ -18,7 +18,7 @@ _SOLID = {"blade": "by up to 7 %", "thesis": "by up to 110 %"}
 
 def clamp_note(config: BladeConfig, sides: Sequence[Side] = SIDES) -> str:
     """One sentence on the patches of some sides that begin nearer to the clamp than the section is deep; empty if none does."""
-    depth = config.beam.depth
+    depth = config.beam.root_section.least_extent
     near = [f"{side[:-1]} at {z:.4g} m" for side in sides for z in positions_of(config, side) if z < depth * (1.0 - 1e-9)]
     if not near:
         return ""

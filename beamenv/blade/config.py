@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
-from beamenv.configuration import Choice, Count, Flag, Instance, Number, Positive, Refused, Whole, checked, configuration
+from beamenv.configuration import Choice, Count, Flag, Instance, Number, Positive, Refused, Variant, Whole, checked, configuration
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
@@ -18,7 +18,9 @@ from beamenv.plant.limits import VOLTAGES
 from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
-from beamenv.structure.section.section import THEORY, Metres
+from beamenv.structure.planform import TABLE, Steps
+from beamenv.structure.section.section import THEORY, Metres, Section
+from beamenv.structure.section.shapes import SHAPES, AnySection
 from beamenv.structure.walls.laminate import PLY_ANGLES
 
 MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6})
@@ -93,19 +95,32 @@ class BeamConfig:
     """What the turning blade vibrates about; None: "nonlinear", or the blade at rest in the thesis' model, which has no other."""
     terms: Annotated[int | None, TERMS] = None
     """Trial functions of each field along the span; None: 16, or 10 in the thesis' model."""
+    section: Annotated[AnySection | None, Variant("shape", SHAPES)] = None
+    """A section of any shape, in a file a table with a ``shape`` and its fields; None: the box of width, depth and thickness."""
+    twist_table: Annotated[Steps | None, TABLE] = None
+    """Pretwist along the span in place of ``pretwist_deg``: pairs of the share of the span, from 0 to 1, and degrees."""
+    chord_table: Annotated[Steps | None, TABLE] = None
+    """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
+
+    @property
+    def root_section(self) -> Section:
+        """The section at the root."""
+        return BoxSection(self.width, self.depth, self.thickness) if self.section is None else self.section
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
         if layout is not None:
             checked("layout", layout, Instance(PatchLayout))
         return RotatingBeam(
-            section=BoxSection(self.width, self.depth, self.thickness),
+            section=self.root_section,
             layup=self.layup(),
             length=self.length,
             hub_radius=self.hub_radius,
             pretwist_deg=self.pretwist_deg,
             presetting_deg=self.presetting_deg,
             taper=self.taper,
+            twist_table=self.twist_table,
+            chord_table=self.chord_table,
             model=model,
             shear=self.shear,
             shear_flow=self.shear_flow,

@@ -127,8 +127,8 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
     there = len(model.natural_frequencies)
     if modes is not None and modes > there:
         raise Refused("scenario.plants.modes", modes, f"None or at most the {there} that the plant {source!r} has")
-    patches, length = config.patches, config.beam.length
-    wanted = 1 if patches.ganged else len(patches.actuator_positions(length)), len(patches.sensor_positions(length))
+    patches = config.patches
+    wanted = patches.channels("actuators"), patches.channels("sensors")
     has = model.actuation.shape[1], len(model.charges)
     if has != wanted:
         raise ValueError(

@@ -7,17 +7,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.resources import files
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from beamenv.blade.bounds import Bounds
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Number, Refused, checked, checked_table
-
-Side = Literal["actuators", "sensors"]
-SIDES: tuple[Side, ...] = ("actuators", "sensors")
-Positions = tuple[float, ...]
+from beamenv.patches.group import Positions
+from beamenv.patches.layout import SIDES as SIDES
+from beamenv.patches.layout import Side as Side
 
 THESIS_TABLES: Mapping[str, Side] = {"thesis-table-6.3": "actuators", "thesis-table-6.4": "sensors"}
 
@@ -57,15 +56,15 @@ def resolve(config: BladeConfig, side: Side, given: Any) -> Positions | Drawn:
 
 def positions_of(config: BladeConfig, side: Side) -> Positions:
     """Root-side edges, m, of the patches of one side of a blade."""
-    patches, length = config.patches, config.beam.length
-    return patches.actuator_positions(length) if side == "actuators" else patches.sensor_positions(length)
+    return config.patches.positions(side, config.beam.length)
 
 
 def with_positions(config: BladeConfig, positions: Mapping[Side, int | Positions]) -> BladeConfig:
     """A blade with its patches, or those of one side, at other positions (m), or equally spaced where a number is given."""
     patches = config.patches
-    actuators, sensors = positions.get("actuators", patches.actuators), positions.get("sensors", patches.sensors)
-    return replace(config, patches=replace(patches, actuators=actuators, sensors=sensors))
+    for side, given in positions.items():
+        patches = patches.placed(side, given)
+    return replace(config, patches=patches)
 
 
 def named(config: BladeConfig, side: Side, name: str) -> Positions:

@@ -1,4 +1,4 @@
-"""The shape of a blade in space: any closed section, pretwisted, tapered and displaced along the span, and patches on its walls.
+"""The shape of a blade in space: any section, pretwisted, tapered and displaced along the span, and patches on its walls.
 
 Coordinates are lag, flap and span, in m. Everything that draws a blade draws what stands here.
 """
@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from beamenv.structure import RotatingBeam
 from beamenv.structure.section.section import Section
+from beamenv.structure.walls.chain import Chain
 from beamenv.structure.walls.contour import rotated
+from beamenv.structure.walls.inlay import Inlay
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -46,37 +48,74 @@ class Skin:
 
 
 def body(beam: RotatingBeam, span: Array) -> Skin:
-    """The outer contour of the blade at stations ``span`` (S,), m from the root; its K corners run counter-clockwise."""
-    return Skin(span, outer_contour(beam.section, _size(beam, span)), _angle(beam, span))
+    """The outline of the blade at stations ``span`` (S,), m from the root, or of its first walls; see ``bodies``."""
+    return bodies(beam, span)[0]
 
 
-def patch(beam: RotatingBeam, wall: str, width: float, span: Array, raised: float = 0.0) -> Skin:
-    """The two edges of a strip ``width`` (m) wide in the middle of a wall, ``raised`` (m) above its outer face.
-
-    Raises ``ValueError`` for a wall that is not one straight edge of the section.
+def bodies(beam: RotatingBeam, span: Array) -> tuple[Skin, ...]:
+    """What is seen of the blade at stations ``span`` (S,), m from the root: the outer contour, K corners counter-clockwise; of an
+    open section the outline of each of its chains of walls.
     """
-    beam.section.wall_width(wall)
-    k = beam.section.walls.index(wall)
-    vertices, size = beam.section.vertices, _size(beam, span)
-    start, end = vertices[k], vertices[(k + 1) % len(vertices)]
-    along = (end - start) / np.linalg.norm(end - start)
-    middle = size[:, None] * 0.5 * (start + end) + (0.5 * beam.section.thickness + raised) * np.array([along[1], -along[0]])
-    return Skin(span, np.stack([middle + 0.5 * width * along, middle - 0.5 * width * along], axis=1), _angle(beam, span))
+    size, angle = beam.planform.scale(span), beam.planform.angle(span)
+    return tuple(Skin(span, outline(chain, size), angle) for chain in _seen(beam.section))
 
 
-def outer_contour(section: Section, size: Array) -> Array:
-    """(S, K, 2), m: the mid-line ``size`` (S,) times as large, and half the wall's thickness outside it."""
-    vertices = section.vertices
-    following = np.roll(vertices, -1, axis=0) - vertices
-    normals = np.stack([following[:, 1], -following[:, 0]], axis=-1) / np.linalg.norm(following, axis=-1)[:, None]
-    before = np.roll(normals, 1, axis=0)
+def _seen(section: Section) -> tuple[Chain, ...]:
+    return section.chains[:1] if section.closed else section.chains
+
+
+def patch(beam: RotatingBeam, inlay: Inlay, span: Array, raised: float = 0.0) -> Skin:
+    """The two edges of an inlay's strip, ``raised`` (m) above the wall's face; above all of a curved wall that lies between them.
+
+    Raises ``ValueError`` for a wall that the section has not in one part.
+    """
+    section, size = beam.section, beam.planform.scale(span)
+    section.wall_width(inlay.wall)
+    chain = next(each for each in section.chains if each.part(inlay.wall) is not None)
+    first, last = chain.part(inlay.wall) or (0, 0)
+    line = np.concatenate([chain.starts[first:last], chain.ends[last - 1 : last]])
+    arcs = np.append(0.0, np.cumsum(chain.lengths[first:last]))
+    middle, half = 0.5 * arcs[-1] + inlay.offset, 0.5 * inlay.width / size
+    ends = np.stack([_along(line, arcs, middle + side * half) for side in (1.0, -1.0)], axis=1)
+    across = ends[:, 0] - ends[:, 1]
+    across /= np.linalg.norm(across, axis=-1)[:, None]
+    side = 1.0 if inlay.face == "outer" else -1.0
+    normal = side * np.stack([across[:, 1], -across[:, 0]], axis=-1)
+    between = (np.abs(arcs - middle) < half[:, None])[..., None] * (line - ends[:, 1:])
+    bulge = np.maximum((between * normal[:, None]).sum(axis=-1).max(axis=1), 0.0)
+    height = size * bulge + 0.5 * section.thickness_of(inlay.wall) + raised
+    return Skin(span, size[:, None, None] * ends + (height[:, None] * normal)[:, None], beam.planform.angle(span))
+
+
+def _along(line: Array, arcs: Array, at: Array) -> Array:
+    """(k, 2): places at distances (k,) along a line of points."""
+    return np.stack([np.interp(at, arcs, line[:, axis]) for axis in range(2)], axis=-1)
+
+
+def outline(chain: Chain, size: Array) -> Array:
+    """(S, K, 2), m: the mid-line ``size`` (S,) times as large, and half the wall's thickness outside it; of an open one both faces,
+    there and back.
+    """
+    directions = (chain.ends - chain.starts) / chain.lengths[:, None]
+    normals = np.stack([directions[:, 1], -directions[:, 0]], axis=-1)
+    half = 0.5 * np.array(chain.thickness)
+    if chain.closed:
+        before, thin = np.roll(normals, 1, axis=0), np.roll(half, 1)
+    else:
+        normals, before = np.append(normals, normals[-1:], axis=0), np.append(normals[:1], normals, axis=0)
+        half, thin = np.append(half, half[-1]), np.append(half[0], half)
     mitre = (before + normals) / np.maximum(1.0 + (before * normals).sum(axis=-1), 0.5)[:, None]  # no spike at a sharp edge
-    return np.asarray(size[:, None, None] * vertices + 0.5 * section.thickness * mitre)
+    middle, away = size[:, None, None] * chain.points, (0.5 * (half + thin))[:, None] * mitre
+    return np.asarray(middle + away if chain.closed else np.concatenate([middle + away, (middle - away)[:, ::-1]], axis=1))
 
 
-def edges(section: Section) -> Indices:
-    """The corners of the section that are drawn as edges: the sharp ones; of a round section the outermost in each direction."""
-    vertices = section.vertices
+def edges(section: Section) -> tuple[Indices, ...]:
+    """The corners of each of ``bodies`` that are drawn as edges: the sharp ones; of a round section the outermost each way."""
+    contours = [chain.points if chain.closed else outline(chain, np.ones(1))[0] for chain in _seen(section)]
+    return tuple(map(_edges, contours))
+
+
+def _edges(vertices: Array) -> Indices:
     following = np.roll(vertices, -1, axis=0) - vertices
     heading = np.arctan2(following[:, 1], following[:, 0])
     turn = (heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi
@@ -126,15 +165,6 @@ def _area(a: Array, b: Array, c: Array) -> Array:
     """Twice the area of triangles, positive counter-clockwise."""
     one, other = b - a, c - a
     return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
-
-
-def _size(beam: RotatingBeam, span: Array) -> Array:
-    """(S,): of the section over that at the root."""
-    return 1.0 + (1.0 / beam.taper - 1.0) * span / beam.length
-
-
-def _angle(beam: RotatingBeam, span: Array) -> Array:
-    return np.radians(beam.presetting_deg + beam.pretwist_deg * span / beam.length)
 
 
 def magnification(deflection: float, drawn: float, digits: Sequence[int] = range(1, 10)) -> float:

@@ -14,6 +14,7 @@ The rules, the same for every argument, dictionary and file:
 - What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
 """
 
+from beamenv.configuration.composite import Items, Variant
 from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
@@ -25,6 +26,7 @@ __all__ = [
     "FileName",
     "Flag",
     "Instance",
+    "Items",
     "NameOrFile",
     "Natural",
     "Number",
@@ -39,6 +41,7 @@ __all__ = [
     "Table",
     "Text",
     "Texts",
+    "Variant",
     "Whole",
     "checked",
     "checked_table",

@@ -12,6 +12,7 @@ from pydantic.dataclasses import dataclass
 from pydantic_core import ArgsKwargs, SchemaValidator, ValidationError
 from typing_extensions import dataclass_transform
 
+from beamenv.configuration.composite import Items, Variant
 from beamenv.configuration.kinds import Choice, Kind, Table
 from beamenv.configuration.sentence import Refused, an, sentence, unknown_field
 
@@ -69,12 +70,55 @@ def read(base: T, given: Any, path: str | None = None) -> T:
     for name, value in given.items():
         if name not in values:
             raise unknown_field(path, name, list(values))
-        table = isinstance(value, Mapping) or _choice(cls, name) is None
-        stood = _stood(cls, name, values[name])
-        values[name] = read(stood, value, f"{path}.{name}") if table and is_dataclass(stood) else value
+        values[name] = _read_field(cls, name, values[name], value, f"{path}.{name}")
     instance: T = object.__new__(cls)
     _construct(instance, (), values, path)
     return instance
+
+
+def made(cls: type[T], given: Any, path: str) -> T:
+    """An object of a class from a table of its fields, which may leave out those with a default; ``ValueError`` as ``read``."""
+    if isinstance(given, cls):
+        return given
+    if not isinstance(given, Mapping):
+        raise Refused(path, given, f"a table of fields or {an(cls.__name__)}")
+    known = [each.name for each in fields(cls)]  # type: ignore[arg-type]
+    for name in given:
+        if name not in known:
+            raise unknown_field(path, name, known)
+    values = {name: _read_field(cls, name, None, value, f"{path}.{name}") for name, value in given.items()}
+    instance: T = object.__new__(cls)
+    _construct(instance, (), values, path)
+    return instance
+
+
+def _read_field(cls: Any, name: str, before: Any, value: Any, path: str) -> Any:
+    """What a field is to be, given a value or a table in its place."""
+    kind = next((kind for kind in cls.__pydantic_fields__[name].metadata if isinstance(kind, (Variant, Items))), None)
+    if isinstance(kind, Items):
+        return _items(kind, value, path)
+    if isinstance(kind, Variant):
+        return _variant(kind, before, value, path) if isinstance(value, Mapping) else value
+    table = isinstance(value, Mapping) or _choice(cls, name) is None
+    stood = _stood(cls, name, before)
+    return read(stood, value, path) if table and is_dataclass(stood) else value
+
+
+def _items(kind: Items, value: Any, path: str) -> Any:
+    """A list with objects in place of tables; one table is a list of it."""
+    listed = [value] if isinstance(value, Mapping) else value
+    if not isinstance(listed, (list, tuple)) or not any(isinstance(each, Mapping) for each in listed):
+        return value
+    return [made(kind.of, each, f"{path}[{k}]") for k, each in enumerate(listed)]
+
+
+def _variant(kind: Variant, before: Any, table: Mapping[str, Any], path: str) -> Any:
+    """An object of the class that a table's key names; one that stood there completes it if it is of that class."""
+    name = table.get(kind.key, getattr(before, kind.key, None))
+    if not isinstance(name, str) or name not in kind.classes:
+        raise Refused(f"{path}.{kind.key}", name, f"one of {', '.join(kind.classes)}")
+    cls = kind.classes[name]
+    return read(before, table, path) if isinstance(before, cls) else made(cls, table, path)
 
 
 def _stood(cls: Any, name: str, value: Any) -> Any:

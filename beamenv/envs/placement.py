@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.layouts import SIDES, Drawn, Positions, Side, resolve, with_positions
+from beamenv.blade.layouts import SIDES, Drawn, Side, resolve, with_positions
 from beamenv.configuration import Count, Refused, Table, checked, checked_table
 from beamenv.envs.seeds import checked_seed, checked_seeds
 from beamenv.envs.specification import plain
 from beamenv.envs.within import task_within
+from beamenv.patches.group import Positions
 from beamenv.task import Task, reset_options
 
 Layout = Mapping[Side, Positions | Drawn]

@@ -1,28 +1,73 @@
-"""Where the patches are: actuators in the top wall, sensors in the bottom wall."""
+"""Which patches a blade has: actuators and sensors, each in one group or in several."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal, get_args
 
-import numpy as np
+from pydantic_core import CoreSchema, core_schema
 
 from beamenv.configuration import Choice, Flag, Number, Patches, Refused, checked, configuration
+from beamenv.configuration.composite import Items
+from beamenv.configuration.kinds import JsonSchema
+from beamenv.patches.group import PatchGroup, Positions
 from beamenv.patches.material import PATCH_MATERIALS, PatchMaterial
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay
+
+Side = Literal["actuators", "sensors"]
+SIDES: tuple[Side, ...] = get_args(Side)
 
 ACTUATOR_WALL, SENSOR_WALL = "top", "bottom"
+WALLS: Mapping[Side, str] = {"actuators": ACTUATOR_WALL, "sensors": SENSOR_WALL}
+"""Where patches lie that are given as a number or by positions alone."""
 
 OUTERMOST = 0.7
-"""Patches lie between the root and this share of the span: nearer the tip they act as added mass (thesis §5.5)."""
+"""Those lie between the root and this share of the span: nearer the tip they act as added mass (thesis §5.5)."""
+
+Groups = tuple[PatchGroup, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PatchesOrGroups(Items):
+    """A number of patches, their positions, or groups of patches."""
+
+    @property
+    def allowed(self) -> str:
+        """All three."""
+        return f"{Patches().allowed}, or {Items.allowed.fget(self)}"  # type: ignore[attr-defined]
+
+    def core(self) -> CoreSchema:
+        """An integer, a tuple of floats, or one of groups."""
+        several = core_schema.tuple_variable_schema(core_schema.is_instance_schema(self.of), min_length=1, strict=True)
+        groups = core_schema.no_info_before_validator_function(_as_groups, several)
+        return core_schema.union_schema([groups, Patches().core()], mode="left_to_right")
+
+    def json(self) -> JsonSchema:
+        """Any of them."""
+        return {"anyOf": [Patches().json(), {"type": "array", "items": {"type": "object"}}]}
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> JsonSchema:
+        groups = {**Items.__get_pydantic_json_schema__(self, schema, handler), "minItems": 1}
+        return {"anyOf": [Patches().json(), groups, groups["items"]]}
+
+
+def _as_groups(value: Any) -> Any:
+    return (value,) if isinstance(value, PatchGroup) else tuple(value) if isinstance(value, list) else value
 
 
 @configuration("blade.patches")
 class PatchLayout:
-    """Patches of one kind: root-side edges in m from the root, or a number of patches to be spaced equally over 0 … 0.7 L."""
+    """The patches of a blade: as numbers or positions, of one kind, actuators in the top wall and sensors in the bottom one; or as
+    groups of any kind anywhere.
+    """
 
-    actuators: Annotated[int | tuple[float, ...], Patches()] = 4
-    sensors: Annotated[int | tuple[float, ...], Patches()] = 4
-    material: Annotated[str, Choice(tuple(PATCH_MATERIALS))] = "MFC"
+    actuators: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup)] = 4
+    """Root-side edges in m from the root, or a number of patches to be spaced equally over 0 … 0.7 L, or groups."""
+    sensors: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup)] = 4
+    """Likewise."""
+    material: Annotated[str | PatchMaterial, Choice(PATCH_MATERIALS, PatchMaterial)] = "MFC"
+    """Of patches that are in no group, as is what follows."""
     length: Annotated[float, Number(gt=0.0, unit="m")] = 0.085
     """m along the span: the active area of an M-8557-P1."""
     width: Annotated[float, Number(gt=0.0, unit="m")] = 0.057
@@ -32,48 +77,81 @@ class PatchLayout:
     ganged: Annotated[bool, Flag()] = False
     """One voltage for all actuators (the thesis' first method) instead of one each (its second)."""
 
-    @property
-    def patch(self) -> PatchMaterial:
-        """The sheet the patches are cut from."""
-        return PATCH_MATERIALS[self.material]
+    def groups(self, side: Side) -> Groups:
+        """The groups of one side."""
+        given = self.actuators if side == "actuators" else self.sensors
+        if isinstance(given, tuple) and isinstance(given[0], PatchGroup):
+            return given
+        return (
+            PatchGroup(
+                positions=given,
+                material=self.material,
+                length=self.length,
+                width=self.width,
+                wall=WALLS[side],
+                passive=self.passive,
+                ganged=self.ganged and side == "actuators",
+                outermost=OUTERMOST,
+            ),
+        )
 
-    def actuator_positions(self, beam_length: float) -> tuple[float, ...]:
-        """Root-side edges in m; ``ValueError`` if patches overlap or leave 0 … 0.7 L."""
-        return spaced("actuators", self.actuators, self.length, _span(beam_length))
+    def only(self, side: Side) -> PatchGroup:
+        """The one group of a side; ``ValueError`` where there are several."""
+        groups = self.groups(side)
+        if len(groups) > 1:
+            raise ValueError(f"blade.patches.{side} has {len(groups)} groups, but must have one where patches are to be placed.")
+        return groups[0]
 
-    def sensor_positions(self, beam_length: float) -> tuple[float, ...]:
-        """Root-side edges in m; ``ValueError`` if patches overlap or leave 0 … 0.7 L."""
-        return spaced("sensors", self.sensors, self.length, _span(beam_length))
+    def pair(self) -> tuple[PatchGroup, PatchGroup]:
+        """The one group of actuators and the one of sensors, for placement; ``ValueError`` where they differ in what it takes."""
+        actuators, sensors = (self.only(side) for side in SIDES)
+        for name in ("length", "passive", "outermost"):
+            own, other = getattr(sensors, name), getattr(actuators, name)
+            if own != other:
+                raise Refused(f"blade.patches.sensors.{name}", own, f"the actuators', {other!r}, for patches to be placed")
+        if sensors.ganged or (actuators.wall, actuators.face) == (sensors.wall, sensors.face):
+            raise ValueError(
+                "blade.patches.sensors must not be ganged, and on another wall or face than the actuators, to be placed."
+            )
+        return actuators, sensors
+
+    def positions(self, side: Side, beam_length: float) -> Positions:
+        """Root-side edges in m, group after group; ``ValueError`` if patches of one overlap or leave its span."""
+        length = checked("beam_length", beam_length, Number(gt=0.0, unit="m"))
+        return tuple(position for group in self.groups(side) for position in group.at(side, length))
+
+    def actuator_positions(self, beam_length: float) -> Positions:
+        """Those of the actuators."""
+        return self.positions("actuators", beam_length)
+
+    def sensor_positions(self, beam_length: float) -> Positions:
+        """Those of the sensors."""
+        return self.positions("sensors", beam_length)
+
+    def placed(self, side: Side, patches: int | Sequence[float]) -> PatchLayout:
+        """The layout with the patches of one side elsewhere (m): of several groups as many as those have, in their order."""
+        own: Any = self.actuators if side == "actuators" else self.sensors
+        given: Any = patches
+        if isinstance(own, tuple) and isinstance(own[0], PatchGroup):
+            given = _moved(side, own, patches)
+        return replace(self, actuators=given) if side == "actuators" else replace(self, sensors=given)
 
     def inlays(self, beam_length: float) -> tuple[Inlay, ...]:
-        """The patches as foreign material in the walls; none when they are not passive."""
-        if not self.passive:
-            return ()
-        walls = ((ACTUATOR_WALL, self.actuator_positions(beam_length)), (SENSOR_WALL, self.sensor_positions(beam_length)))
-        return tuple(self.patch.inlay(wall, start, self.length, self.width) for wall, starts in walls for start in starts)
+        """The patches as foreign material in the walls or on them, those that are passive."""
+        groups = [(side, group) for side in SIDES for group in self.groups(side) if group.passive]
+        return tuple(inlay for side, group in groups for inlay in group.inlays(side, beam_length))
+
+    def channels(self, side: Side) -> int:
+        """How many voltages or currents one side has."""
+        return sum(group.channels for group in self.groups(side))
 
 
-def _span(beam_length: float) -> float:
-    span: float = checked("beam_length", beam_length, Number(gt=0.0, unit="m"))
-    return span
-
-
-def spaced(name: str, patches: int | tuple[float, ...], length: float, beam_length: float) -> tuple[float, ...]:
-    """Positions in m, equally spaced where only a number is given, checked against the blade and each other."""
-    last = OUTERMOST * beam_length - length
-    tolerance = 1e-9 * beam_length
-    if last < 0.0:
-        raise Refused("blade.patches.length", length, f"at most {OUTERMOST} of the {beam_length:.6g} m span")
-    apart = f"at least one patch length, {length:.6g} m, apart so that patches do not overlap"
-    if isinstance(patches, int) and (patches - 1) * (length - tolerance) > last:  # before as many numbers are made
-        raise Refused(f"blade.patches.{name}", patches, apart)
-    positions = tuple(np.linspace(0.0, last, patches).tolist()) if isinstance(patches, int) else patches
-    if min(positions) < -tolerance or max(positions) > last + tolerance:
-        allowed = (
-            f"root-side edges between 0 and {last:.6g} m, so that each {length:.6g} m patch lies within 0 and {OUTERMOST} of the "
-            f"{beam_length:.6g} m span"
-        )
-        raise Refused(f"blade.patches.{name}", patches, allowed)
-    if len(positions) > 1 and np.diff(np.sort(positions)).min() < length - tolerance:
-        raise Refused(f"blade.patches.{name}", patches, apart)
-    return tuple(min(max(position, 0.0), last) for position in positions)  # what rounding has moved out of bounds lies on them
+def _moved(side: Side, groups: Groups, patches: int | Sequence[float]) -> Groups:
+    given: Any = patches
+    if len(groups) == 1:
+        return (replace(groups[0], positions=given),)
+    counts = [group.count for group in groups]
+    if isinstance(patches, int) or len(patches) != sum(counts):
+        raise Refused(f"blade.patches.{side}", patches, f"{sum(counts)} positions (m), {counts} of its groups in turn")
+    there = iter(patches)
+    return tuple(replace(group, positions=tuple(next(there) for _ in range(group.count))) for group in groups)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, configuration
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
 from beamenv.structure.walls.materials import Lamina, strain_rotation
 
@@ -42,19 +42,19 @@ class PatchMaterial:
         """Strain along the span of an unloaded sheet."""
         return self.d11 * voltage / self.electrode_spacing
 
-    def stress_in_wall(self) -> Array:
-        """(3,): piezoelectric stress in the wall's (ss, zz, sz) per field, C/m²."""
+    def stress_in_wall(self, angle_deg: float = FIBRE_ANGLE_DEG) -> Array:
+        """(3,): piezoelectric stress in the wall's (ss, zz, sz) per field, C/m², with axis 1 turned from s towards z."""
         along, across = self.piezoelectric_stress()
-        return np.asarray(strain_rotation(np.radians(FIBRE_ANGLE_DEG)).T @ np.array([along, across, 0.0]))
+        return np.asarray(strain_rotation(np.radians(angle_deg)).T @ np.array([along, across, 0.0]))
 
-    def wall_resultants(self, wall_thickness: float, hoop_coupling: Array) -> Array:
+    def wall_resultants(self, wall_thickness: float, hoop_coupling: Array, angle_deg: float = FIBRE_ANGLE_DEG) -> Array:
         """(…, 6) piezoelectric resultants per volt, conjugate to (ε0, ε1, ε3, γ0, γ1, γ2), of a sheet flush with the outer face.
 
         ``hoop_coupling`` (…, 6) is the wall law's: the hoop stress acts on the resultants through it, since N_ss = 0.
         """
         outer = 0.5 * wall_thickness
         moments = power_integrals(np.array([outer - self.thickness, outer]), 3)[:, 0] / self.electrode_spacing
-        hoop, span, shear = self.stress_in_wall()
+        hoop, span, shear = self.stress_in_wall(angle_deg)
         direct = np.concatenate([span * moments[[0, 1, 3]], shear * moments[[0, 1, 2]]])
         return direct - hoop_coupling * (hoop * moments[0])
 
@@ -63,9 +63,20 @@ class PatchMaterial:
         """Charge that Eq. 4.37, ∫ē ε dA, counts per unit of generalised force per volt times displacement: spacing/thickness."""
         return self.electrode_spacing / self.thickness
 
-    def inlay(self, wall: str, start: float, length: float, width: float) -> Inlay:
-        """The sheet as foreign material in a wall: its passive effect."""
-        return Inlay(wall, start, length, width, Ply(self.lamina, FIBRE_ANGLE_DEG), self.thickness)
+    def inlay(
+        self,
+        wall: str,
+        start: float,
+        length: float,
+        width: float,
+        offset: float = 0.0,
+        face: str = "outer",
+        bonded: bool = False,
+        angle_deg: float = FIBRE_ANGLE_DEG,
+    ) -> Inlay:
+        """The sheet as foreign material in a wall, or on it: its passive effect."""
+        ply = Ply(self.lamina, angle_deg)
+        return Inlay(wall, start, length, width, ply, self.thickness, offset, face, bonded)
 
 
 MFC = PatchMaterial(

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from beamenv.configuration import Instance, checked
 from beamenv.configuration.read_only import Sealed
-from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL, PatchLayout
+from beamenv.patches.group import PatchGroup
+from beamenv.patches.layout import SIDES, PatchLayout, Side
 from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
-from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam, check_fit
+from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.inlays import check_fit
 from beamenv.structure.trial_functions import LEAST, Stations
+from beamenv.structure.walls.inlay import Inlay, Strip
 
 Array = NDArray[np.float64]
 
@@ -26,26 +29,25 @@ LOCAL_STATIONS = 4
 """Gauss stations on each piece of a patch: its strains hardly change along it."""
 
 
-def force_per_span(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float, z: Array) -> Array:
+def force_per_span(beam: RotatingBeam, patch: PatchMaterial, strip: Strip, z: Array) -> Array:
     """Generalised force (S, N) per volt and per metre of a patch at stations z (m) that it covers, in the thesis' model.
 
     The condensed piezoelectric resultants times every strain row of the wall (thesis Eq. 4.18, from the energy).
     """
-    walls = beam.walls_at(z, cuts=((wall, width),))
-    under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in walls.points.edges]
-    covered = np.repeat(under, 2)
+    walls = beam.walls_at(z, cuts=(strip,))
+    covered = np.repeat([strip in edge.strips for edge in walls.points.edges], 2)
     resultants = patch.wall_resultants(beam.section.thickness, walls.laws.hoop_coupling[:, covered])
     per_strain = np.einsum("sp,spk,spkg->sg", walls.points.ds[:, covered], resultants, walls.strain_rows()[:, covered])
     strains = generalised_strains(beam.space.evaluate(z))
     return np.asarray(np.einsum("sg,sgn->sn", per_strain, strains))
 
 
-def work_on_section(beam: RotatingBeam, patch: PatchMaterial, wall: str, width: float) -> tuple[SectionsAlong, Array]:
-    """The sections of a blade, and the work (V, STRAINS) per volt and metre that a patch does on the strains of each of them."""
-    sections = beam.exact.cut_for(wall, width)
-    outer = 0.5 * beam.section.thickness
-    hoop, span, shear = (patch.stress_in_wall() / patch.electrode_spacing).tolist()
-    return sections, sections.solid.layer_force(wall, width, outer - patch.thickness, outer, (hoop, span, shear))
+def work_on_section(beam: RotatingBeam, patch: PatchMaterial, inlay: Inlay) -> tuple[SectionsAlong, Array]:
+    """The sections of a blade, and the work (V, STRAINS) per volt and metre of a patch where an inlay is on each one's strains."""
+    sections = beam.exact.cut_for(inlay.strip)
+    low, high = inlay.depths(beam.section.thickness_of(inlay.wall))
+    hoop, span, shear = (patch.stress_in_wall(inlay.ply.angle_deg) / patch.electrode_spacing).tolist()
+    return sections, sections.solid.layer_force(inlay.strip, low, high, (hoop, span, shear))
 
 
 def patch_force(
@@ -55,32 +57,24 @@ def patch_force(
 
     ``ValueError`` for a patch that leaves the blade or does not fit its wall.
     """
-    return patch_forces(beam, patch, wall, (start,), length, width, speed)[:, 0]
+    return patch_forces(beam, patch, [patch.inlay(wall, start, length, width)], speed)[:, 0]
 
 
-def patch_forces(
-    beam: RotatingBeam,
-    patch: PatchMaterial,
-    wall: str,
-    starts: Sequence[float],
-    length: float,
-    width: float,
-    speed: float = 0.0,
-) -> Array:
-    """Generalised force (N, k) per volt of each of k patches on one wall.
+def patch_forces(beam: RotatingBeam, patch: PatchMaterial, inlays: Sequence[Inlay], speed: float = 0.0) -> Array:
+    """Generalised force (N, k) per volt of each of k patches that take the places of inlays of one kind.
 
     ``ValueError`` for a patch that leaves the blade or does not fit its wall.
     """
-    for start in starts:
-        check_fit(beam, patch.inlay(wall, start, length, width))
-    under = [stations_under(beam, start, start + length) for start in starts]
+    for inlay in inlays:
+        check_fit(beam, inlay)
+    under = [stations_under(beam, inlay.start, inlay.start + inlay.length) for inlay in inlays]
     if beam.model == "blade":
-        sections, work = work_on_section(beam, patch, wall, width)
+        sections, work = work_on_section(beam, patch, inlays[0])
         z, weight = (np.concatenate([getattr(stations, name) for stations in under]) for name in ("z", "weight"))
         each = np.repeat(np.eye(len(under)), [len(stations.z) for stations in under], axis=0)
         works = (weight[:, None] * sections.at(z, work))[..., None] * each[:, None]
         return beam.exact.generalised_force(z, beam.at(speed), works)
-    per_span = force_per_span(beam, patch, wall, width, np.concatenate([stations.z for stations in under]))
+    per_span = force_per_span(beam, patch, inlays[0].strip, np.concatenate([stations.z for stations in under]))
     ends = np.cumsum([len(stations.z) for stations in under])
     return np.column_stack([stations.weight @ part for stations, part in zip(under, np.split(per_span, ends[:-1]), strict=True)])
 
@@ -104,17 +98,22 @@ def actuation(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Ar
     vibrates about its steady state at ``speed`` rad/s.
     """
     _check_parts(beam, layout)
-    starts = layout.actuator_positions(beam.length)
-    forces = patch_forces(beam, layout.patch, ACTUATOR_WALL, starts, layout.length, layout.width, speed)
-    return forces.sum(axis=1, keepdims=True) if layout.ganged else forces
+    return np.hstack([_by_channel(_forces(beam, group, "actuators", speed), group) for group in layout.groups("actuators")])
 
 
 def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Array:
     """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
     _check_parts(beam, layout)
-    starts = layout.sensor_positions(beam.length)
-    forces = patch_forces(beam, layout.patch, SENSOR_WALL, starts, layout.length, layout.width, speed)
-    return layout.patch.charge_per_reaction * forces.T
+    forces = [(group, _by_channel(_forces(beam, group, "sensors", speed), group)) for group in layout.groups("sensors")]
+    return np.vstack([group.patch.charge_per_reaction * force.T for group, force in forces])
+
+
+def _forces(beam: RotatingBeam, group: PatchGroup, side: Side, speed: float) -> Array:
+    return patch_forces(beam, group.patch, group.inlays(side, beam.length), speed)
+
+
+def _by_channel(forces: Array, group: PatchGroup) -> Array:
+    return forces.sum(axis=1, keepdims=True) if group.ganged else forces
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,19 +135,31 @@ def local_response(beam: RotatingBeam, layout: PatchLayout) -> PatchResponse:
     nowhere else, f (4,) being its stress resultants and C the section's classical stiffness: ∫ f_iᵀ C⁻¹ f_j dz over the span
     that two patches share. (That of a section's end effects, a share of some per cent at the ends of a patch, is left out.)
     """
-    sides = [(ACTUATOR_WALL, layout.actuator_positions(beam.length)), (SENSOR_WALL, layout.sensor_positions(beam.length))]
-    edges = [edge for _, starts in sides for start in starts for edge in (start, start + layout.length)]
+    groups = [(side, group, group.inlays(side, beam.length)) for side in SIDES for group in layout.groups(side)]
+    edges = [edge for _, _, inlays in groups for inlay in inlays for edge in (inlay.start, inlay.start + inlay.length)]
     stations = Stations.between(beam.breakpoints(edges), LOCAL_STATIONS)
-    strains = []
-    for wall, starts in sides:
-        sections, work = work_on_section(beam, layout.patch, wall, layout.width)
+    strains, shares = [], []
+    for side, group, inlays in groups:
+        sections, work = work_on_section(beam, group.patch, inlays[0])
         strain = sections.at(stations.z, np.einsum("vg,vgk->vk", work, sections.solid.saint_venant)[:, CLASSICAL])
-        strains += [strain * ((stations.z > start) & (stations.z < start + layout.length))[:, None] for start in starts]
+        strains += [strain * inlay.covers(stations.z)[:, None] for inlay in inlays]
+        share = 1.0 if side == "actuators" else group.patch.charge_per_reaction
+        shares.append(share * _by_channel(np.eye(len(inlays)), group))
     sections = beam.exact.sections
     stiffness = sections.at(stations.z, sections.solid.classical_stiffness)
     each = np.stack(strains, axis=-1)  # (S, 4, patches): C⁻¹f
     whole = np.einsum("s,ski,skl,slj->ij", stations.weight, each, stiffness, each, optimize=True)
-    m = len(sides[0][1])
-    gang = np.ones((m, 1)) if layout.ganged else np.eye(m)
+    by_channel = _side_by_side(shares)
+    whole = by_channel.T @ whole @ by_channel
+    m = layout.channels("actuators")
     smooth = sensing(beam, layout) @ np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, layout))
-    return PatchResponse(gang.T @ whole[:m, :m] @ gang, layout.patch.charge_per_reaction * whole[m:, :m] @ gang, smooth)
+    return PatchResponse(whole[:m, :m], whole[m:, :m], smooth)
+
+
+def _side_by_side(blocks: Sequence[Array]) -> Array:
+    """A matrix with blocks on its diagonal."""
+    rows, columns = (np.cumsum([0, *(block.shape[axis] for block in blocks)]) for axis in (0, 1))
+    whole = np.zeros((rows[-1], columns[-1]))
+    for block, row, column in zip(blocks, rows[:-1], columns[:-1], strict=True):
+        whole[row : row + len(block), column : column + block.shape[1]] = block
+    return whole

@@ -55,6 +55,7 @@ def in_energy_coordinates(plant: Plant) -> Plant:
         tip_displacement=sealed(plant.tip_displacement @ back),
         strain=sealed(plant.strain @ back),
         state_weight=sealed(0.5 * (weight + weight.T)),
+        cross_weight=sealed(back.T @ np.asarray(plant.cross_weight)),
         energy=None,
         electronic_states=len(plant.A) - known,
     )

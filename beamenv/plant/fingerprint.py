@@ -45,4 +45,5 @@ def _met(plant: Plant) -> Iterator[Array]:
     if own or np.any(reference != REFERENCE_LOAD):
         yield reference
     if own:  # what it costs to be moved does not follow from how it answers
+        yield from (state.T @ np.asarray(plant.cross_weight) for state in moved)
         yield from (state.T @ plant.state_weight @ state for state in moved)

@@ -12,6 +12,8 @@ import control
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.plant.state_space import plant_of_model
+
 Array = NDArray[np.float64]
 Plant = TypeVar("Plant", bound=Any)
 
@@ -32,6 +34,19 @@ def sampled_to_control(held: Any) -> control.StateSpace:
     loads = ["load_lag", "load_flap"] if k == 2 else _numbered("load", k)
     names = {"inputs": _numbered("voltage", held.B.shape[1]) + loads, "outputs": _numbered("current", len(held.C))}
     return control.ss(held.A, np.hstack([held.B, held.disturbance_input]), held.C, feedthrough, dt=held.interval, **names)
+
+
+def plant_of_system(system: control.StateSpace, about: dict[str, Any]) -> Any:
+    """The plant that ``state_space.plant_of_model`` makes of a system's matrices and clock, and of what is known ``about`` it."""
+    if not isinstance(system, control.StateSpace):
+        try:
+            system = control.ss(system)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"system is no control.StateSpace, nor what control.ss makes one of: {error}") from None
+    if system.dt is True:
+        raise ValueError("system has dt = True, but must say how long a sample is, in s, or be in continuous time.")
+    clock = None if system.dt in (None, 0) else float(system.dt)
+    return plant_of_model(system.A, system.B, system.C, system.D, dt=clock, **about)
 
 
 def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) -> Plant:
@@ -59,7 +74,7 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
         raise ValueError(f"strain has shape {strain.shape}, but must have rows of {len(A)} numbers, one for each state of system.")
     electronic = changes.pop("electronic_states", like.electronic_states if len(A) == n else 0)
     blade = len(A) - electronic
-    own = {} if len(A) == n else {"state_weight": 0.5 * np.diag(np.arange(len(A)) < blade), "energy": None}
+    own = {} if len(A) == n else {"state_weight": 0.5 * np.diag(np.arange(len(A)) < blade), "energy": None, "cross_weight": None}
     parts = {"A": A, "B": B[:, :m], "C": C[:p], "D": D[:p, :m], "disturbance_input": B[:, m:], "tip_displacement": C[p:]}
     frequencies = np.sort(np.abs(np.linalg.eigvals(A[:blade, :blade])))[::2]
     found = {"strain": strain, "natural_frequencies": frequencies, "electronic_states": electronic}

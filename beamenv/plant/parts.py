@@ -17,7 +17,10 @@ Array = NDArray[np.float64]
 _ROWS = ("natural_frequencies", "sensor_full_scale")
 _EMPTY = ("D", "disturbance_input", "tip_displacement", "strain", "process_noise")
 """There may be no disturbance, no point whose displacement is known, and none whose strain is."""
-_OTHERS = ("control_interval", "interval", "electronic_states", "energy", "reference_load", "disturbances", "sensors", "assumed")
+_OTHERS = (
+    *("control_interval", "interval", "electronic_states", "energy", "cross_weight", "reference_load", "time_scale"),
+    *("disturbances", "sensors", "assumed"),
+)
 _ROUNDING = 1e-9
 """Of the largest entry: what an asymmetry or a negative eigenvalue may come to by rounding."""
 
@@ -48,6 +51,13 @@ def checked_energy(given: Any, states: int, electronic: int) -> Array:
         return half_squares(states, electronic)
     energy = checked_array("plant.energy", given, (states, states), "a row and a column for each state")
     return not_negative("plant.energy", energy)
+
+
+def checked_cross(given: Any, shape: tuple[int, ...]) -> Array:
+    """N (n, m), zero for None, or where it was for a plant of another size."""
+    if given is None or (np.shape(given) != shape and not np.any(given)):
+        return np.zeros(shape)
+    return checked_array("plant.cross_weight", given, shape, "a row for each state, a column for each voltage")
 
 
 def _is_half_squares(given: Any) -> bool:

@@ -15,17 +15,18 @@ voltages that were held over the interval before, y_k = C x_k + D u_{k−1} + v_
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Count, Instance, Number, Texts, checked
 from beamenv.configuration.read_only import ReadOnly, sealed
 from beamenv.plant.hold import hold_all_with_cost, hold_with_cost
-from beamenv.plant.parts import check_parts, checked_energy, checked_reference, half_squares
+from beamenv.plant.parts import check_parts, checked_cross, checked_energy, checked_reference, half_squares
 from beamenv.plant.poles import poles_of_sampled
 from beamenv.plant.signals import REFERENCE_LOAD, Signal, checked_signals, currents, usual_disturbances
 
@@ -41,8 +42,8 @@ class Plant(ReadOnly):
 
     ``ValueError`` of one sentence for a part that is no array of real numbers with as many dimensions.
 
-    The cost it is judged by is J = ∫ (xᵀ Q x + uᵀ R u) dt (thesis Eqs. 5.7–5.9, corrected). Units are those of a blade: where the
-    sensors or disturbances are others, read theirs for A and N/m.
+    The cost it is judged by is J = ∫ (xᵀQx + 2xᵀNu + uᵀRu) dt (thesis Eqs. 5.7–5.9, corrected, with N = 0). Units are those of a
+    blade: where the sensors or disturbances are others, read theirs for A and N/m.
     """
 
     A: Array
@@ -87,6 +88,10 @@ class Plant(ReadOnly):
     """(k,) of them; left out, they are the line loads in lag and flap, N/m, if there are two."""
     sensors: tuple[Signal, ...] = ()
     """(p,) of them; left out, they are currents, A."""
+    cross_weight: Array | None = None
+    """N (n, m): 2 xᵀNu is part of the cost too, where it is of outputs that feel the voltages; zero unless said otherwise."""
+    time_scale: float = 1.0
+    """What stands for 1 s of a scenario, whose load cases are made for a blade with a first period of 35 ms."""
     assumed: tuple[str, ...] = ()
     """In words, what nobody said of a model and was taken to be so."""
 
@@ -102,13 +107,16 @@ class Plant(ReadOnly):
             "sensors": checked_signals("plant.sensors", self.sensors, p, currents),
             "assumed": checked("plant.assumed", self.assumed, Texts()),
             "energy": checked_energy(self.energy, n, electronic),
+            "cross_weight": checked_cross(self.cross_weight, self.B.shape),
+            "time_scale": checked("plant.time_scale", self.time_scale, Number(gt=0.0)),
         }
         for name, value in kept.items():
             object.__setattr__(self, name, value)
         ReadOnly.__post_init__(self)
 
     def __repr__(self) -> str:
-        return f"Plant({self.sizes})"
+        said = f"; assumed: {'; '.join(self.assumed)}" if self.assumed else ""
+        return f"Plant({self.sizes}{said})"
 
     @property
     def blade_states(self) -> int:
@@ -126,6 +134,11 @@ class Plant(ReadOnly):
         return np.array_equal(np.asarray(self.energy), half_squares(len(self.A), self.electronic_states))
 
     @property
+    def scenario_interval(self) -> float:
+        """Seconds of a scenario's time that a control interval stands for."""
+        return self.control_interval / self.time_scale
+
+    @property
     def load_scale(self) -> Array:
         """(k,): what stands for 1 N/m of a scenario, which is made for a blade that can about hold 30 N/m."""
         return np.asarray(self.reference_load) / REFERENCE_LOAD
@@ -140,7 +153,8 @@ class Plant(ReadOnly):
         """In one line: how many states, voltages and sensors; first and last frequency; clock and limits."""
         first, last = self.natural_frequencies[[0, -1]]
         low, high = self.voltage_limits[0].min(), self.voltage_limits[1].max()
-        return f"{_counts(self.B, self.C)}; {_range(first, last)}; {1e3 * self.control_interval:.4g} ms; {low:.5g} … {high:.5g} V"
+        clock = f"{1e3 * self.control_interval:.4g} ms"
+        return f"{_counts(self.B, self.C)}; {_range(first, last)}; {clock}; {low:.5g} … {high:.5g} V"
 
     def to_control(self) -> control.StateSpace:
         """The plant from [voltages, line loads] to [currents, tip displacements] as a ``control.StateSpace``."""
@@ -149,11 +163,29 @@ class Plant(ReadOnly):
         return plant_to_control(self)
 
     @classmethod
-    def from_control(cls, system: control.StateSpace, like: Plant, **changes: Any) -> Plant:
-        """A plant with the dynamics of a ``control.StateSpace``, and all else as ``like`` has it; see ``interchange``."""
-        from beamenv.plant.interchange import plant_from_control
+    def from_state_space(cls, A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike | None = None, **about: Any) -> Plant:
+        """The plant of ẋ = A x + B u, y = C x + D u, or with ``dt`` (s) of x⁺ = A x + B u. What may be said ``about`` it, and what
+        is taken to be so where it is not, tells ``beamenv.plant.state_space.plant_of_model``.
+        """
+        from beamenv.plant.state_space import plant_of_model
 
-        return plant_from_control(system, like, **changes)
+        return plant_of_model(A, B, C, D, **about)
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> Plant:
+        """The plant of a model in a file, .npz, .mat or .json, by the names that ``from_state_space`` has for its arguments."""
+        from beamenv.plant.model_files import plant_from_file
+
+        return plant_from_file(path)
+
+    @classmethod
+    def from_control(cls, system: control.StateSpace, like: Plant | None = None, **changes: Any) -> Plant:
+        """The plant of a ``control.StateSpace``: as ``from_state_space`` makes it, ``changes`` being what is known besides; or with
+        ``like``, and all else as that plant has it. See ``interchange``.
+        """
+        from beamenv.plant.interchange import plant_from_control, plant_of_system
+
+        return plant_of_system(system, changes) if like is None else plant_from_control(system, like, **changes)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -261,6 +293,8 @@ def _problem(plant: Plant) -> tuple[Array, Array, Array]:
     (n, m), inputs = plant.B.shape, np.hstack([plant.B, plant.disturbance_input])
     weight = np.zeros((n + inputs.shape[1],) * 2)
     weight[:n, :n], weight[n : n + m, n : n + m] = plant.state_weight, plant.input_weight
+    cross = np.asarray(plant.cross_weight)
+    weight[:n, n : n + m], weight[n : n + m, :n] = cross, cross.T
     return plant.A, inputs, weight
 
 
@@ -291,6 +325,7 @@ def normalised(plant: Plant) -> Plant:
         C=sealed(plant.C / full_scale[:, None]),
         D=sealed(plant.D * drive / full_scale[:, None]),
         input_weight=sealed(plant.input_weight * np.outer(drive, drive)),
+        cross_weight=sealed(np.asarray(plant.cross_weight) * drive),
         sensor_noise=sealed(plant.sensor_noise / np.outer(full_scale, full_scale)),
         voltage_limits=sealed(plant.voltage_limits / drive),
         sensor_full_scale=sealed(np.ones_like(full_scale)),

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from beamenv.configuration import Refused, Text, checked
 
 REFERENCE_LOAD = 30.0
@@ -40,7 +42,11 @@ def currents(count: int) -> tuple[Signal, ...]:
 
 def checked_signals(name: str, given: Any, count: int, usual: Callable[[int], tuple[Signal, ...]]) -> tuple[Signal, ...]:
     """So many signals, the ``usual`` ones where none were given or those of another number; ``ValueError`` for anything else."""
-    if isinstance(given, (list, tuple)) and all(isinstance(each, Signal) for each in given):
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
+    if isinstance(given, (list, tuple)):  # of a file that holds a plant's fields by their names
+        given = [Signal(**each) if isinstance(each, dict) and set(each) == {"name", "unit"} else each for each in given]
+    if isinstance(given, list) and all(isinstance(each, Signal) for each in given):
         if len(given) == count:
             return tuple(given)
         if tuple(given) in ((), usual(len(given))):  # of a plant that this one departs from

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -66,14 +66,15 @@ class Scene:
         self._rest = self.solid.pose(np.zeros((3, len(self.solid.stations))))
         section = blade.beam.section
         self._edges = edges(section)
-        hub = _hub(self._rest.walls[0], min(2.5 * float(np.ptp(section.vertices[:, 1])), HUB_LENGTH * length))
-        self._corners = len(section.vertices)
+        root = np.concatenate([each[0] for each in self._rest.bodies])
+        hub = _hub(_around(root) if len(self._rest.bodies) > 1 else root, min(2.5 * float(np.ptp(root[:, 1])), HUB_LENGTH * length))
         self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
         middle = np.radians(beam.presetting_deg + 0.5 * beam.pretwist_deg)
         side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])  # look at the side that the top wall is turned to
         self._light = side * LIGHT / np.linalg.norm(LIGHT)
-        tip = [self._rest.walls[-1] + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]
-        points = [self._rest.walls, self._rest.sensors + self._drop, *hub, *tip]
+        ends = np.concatenate([each[-1] for each in self._rest.bodies])
+        tip = [ends + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]
+        points = [*self._rest.bodies, self._rest.sensors + self._drop, *hub, *tip]
         self._camera = Camera.facing(
             np.concatenate([each.reshape(-1, 3) for each in points]),
             towards=side * TOWARDS,
@@ -85,11 +86,12 @@ class Scene:
 
     def draw_rest(self, canvas: Canvas) -> None:
         """Where the blade is when nothing moves it."""
-        lines, _ = self._camera.project(self._rest.walls[self.solid.even])
-        for line in lines[:, self._edges].transpose(1, 0, 2):
-            for start in range(0, len(line) - 1, 2):
-                canvas.line(line[start : start + 2], PALE)
-        canvas.line(lines[-1], PALE, closed=True)
+        for body, sharp in zip(self._rest.bodies, self._edges, strict=True):
+            lines, _ = self._camera.project(body[self.solid.even])
+            for line in lines[:, sharp].transpose(1, 0, 2):
+                for start in range(0, len(line) - 1, 2):
+                    canvas.line(line[start : start + 2], PALE)
+            canvas.line(lines[-1], PALE, closed=True)
 
     def draw(self, canvas: Canvas, displacement: Array, volts: Array, outputs: Array) -> None:
         """The blade displaced by lag, flap (m) and twist (rad), (3, stations), with the colours of ``volts`` (a,) and ``outputs``
@@ -99,7 +101,7 @@ class Scene:
         pose = self.solid.pose(displacement)
         self._draw_leaders(canvas, pose)
         self._draw_patches(canvas, pose.sensors[:, ::-1] + self._drop, colours_of(self._output_colours, outputs), outputs)
-        _draw_faces(canvas, self._seen([sides(pose.walls), pose.walls[-1:]], BODY, self._ribs))
+        _draw_faces(canvas, [face for body in pose.bodies for face in self._seen([sides(body), body[-1:]], BODY, body.shape[1])])
         self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts)
         _draw_faces(canvas, self._hub)
         canvas.develop(PLACE)
@@ -121,16 +123,17 @@ class Scene:
                 x, y = corners[k].mean(axis=0).tolist()
                 canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
 
-    def _seen(self, surfaces: Sequence[Array], colours: tuple[Array, Array], ribs: Container[int] = ()) -> list[Face]:
-        """Faces (k, c, 3) of some surfaces, the farthest first, those turned away left out; ``ribs`` are stations with a line
-        across the first surface.
+    def _seen(self, surfaces: Sequence[Array], colours: tuple[Array, Array], corners_around: int = 0) -> list[Face]:
+        """Faces (k, c, 3) of some surfaces, the farthest first, those turned away left out. Of a body with so many corners around
+        there are ribs across the first surface.
         """
         found: list[Face] = []
         for surface in surfaces:
             corners, depth = self._camera.project(surface)
             seen = np.flatnonzero(faces_camera(corners))
             far, shades = depth[seen].mean(axis=-1).tolist(), self._shades(surface[seen], *colours)
-            ribbed = [surface is surfaces[0] and k // self._corners + 1 in ribs for k in seen.tolist()]
+            around = corners_around if surface is surfaces[0] else 0
+            ribbed = [bool(around) and k // around + 1 in self._ribs for k in seen.tolist()]
             found += map(Face, far, corners[seen], shades, ribbed)
         return sorted(found, key=attrgetter("depth"), reverse=True)
 
@@ -146,6 +149,13 @@ def _draw_faces(canvas: Canvas, faces: Sequence[Face]) -> None:
         canvas.polygon(face.corners, face.colour)
         if face.ribbed:
             canvas.line(face.corners[1:3], [round(RIB * part) for part in face.colour])
+
+
+def _around(points: Array) -> Array:
+    """(4, 3): the corners of a rectangle around points of a plane, in the order of a box's."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y = np.array([high[0], high[0], low[0], low[0]]), np.array([low[1], high[1], high[1], low[1]])
+    return np.stack([x, y, np.full(4, points[0, 2])], axis=-1)
 
 
 def _hub(root: Array, length: float) -> list[Array]:

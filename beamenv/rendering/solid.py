@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
-from beamenv.blade.shape import body, magnification, patch, quadrilaterals
-from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
+from beamenv.blade.shape import bodies, magnification, patch, quadrilaterals
+from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import Plant
 from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.scenarios.load_cases import static_deflection
@@ -33,8 +33,8 @@ def reference_deflection(plant: Plant) -> float:
 class Pose:
     """A blade at one instant, in m as drawn; coordinates are lag, flap, span."""
 
-    walls: Array
-    """(stations, K, 3): the section's outer corners."""
+    bodies: tuple[Array, ...]
+    """(stations, K, 3) each: the corners of the outlines."""
     actuators: Array
     """(a, 4, 3): corners, counter-clockwise from outside."""
     sensors: Array
@@ -51,22 +51,22 @@ class BladeSolid:
         beam, patches = blade.beam, blade.config.patches
         self.reference_deflection = reference_deflection(blade.plant)
         self.magnification = magnification(self.reference_deflection, SHOWN_DEFLECTION * beam.length)
-        starts = [patches.actuator_positions(beam.length), patches.sensor_positions(beam.length)]
-        spans = [np.array(start)[:, None] + patches.length * np.array([0.0, 1.0]) for start in starts]
+        inlays = [[each for group in patches.groups(side) for each in group.inlays(side, beam.length)] for side in SIDES]
+        spans = [np.array([[each.start, each.start + each.length] for each in side]) for side in inlays]
         even = np.linspace(0.0, beam.length, STATIONS)
         self.stations = np.unique(np.concatenate([even, *(each.ravel() for each in spans)]))
         self.even = np.searchsorted(self.stations, even)
-        self._body = body(beam, self.stations)
-        walls = (ACTUATOR_WALL, SENSOR_WALL)
+        self._bodies = bodies(beam, self.stations)
         self._actuators, self._sensors = (
-            (patch(beam, wall, patches.width, span.ravel()), np.searchsorted(self.stations, span.ravel()))
-            for wall, span in zip(walls, spans, strict=True)
+            [(patch(beam, each, ends), np.searchsorted(self.stations, ends)) for each, ends in zip(side, span, strict=True)]
+            for side, span in zip(inlays, spans, strict=True)
         )
 
     def pose(self, displacement: Array) -> Pose:
         """The blade displaced by lag, flap (m) and twist (rad) at its stations, (3, stations)."""
         drawn = self.magnification * displacement
         actuators, sensors = (
-            quadrilaterals(skin.displaced(drawn[:, ends]).reshape(-1, 2, 2, 3)) for skin, ends in (self._actuators, self._sensors)
+            np.concatenate([quadrilaterals(skin.displaced(drawn[:, ends])[None]) for skin, ends in side])
+            for side in (self._actuators, self._sensors)
         )
-        return Pose(self._body.displaced(drawn), actuators, sensors)
+        return Pose(tuple(skin.displaced(drawn) for skin in self._bodies), actuators, sensors)

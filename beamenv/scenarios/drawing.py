@@ -97,7 +97,7 @@ def _with_harmonics(
 
 def _load_cases(chosen: Scenario, plant: Plant, lowest_frequency: Any, uniforms: NDArray[np.float64]) -> LoadCases:
     """Load cases (N) made of uniform numbers (N, ``draws``)."""
-    case, interval = _choose(chosen, uniforms[:, 0]), plant.control_interval
+    case, interval = _choose(chosen, uniforms[:, 0]), plant.scenario_interval
     is_pulse, is_release, is_harmonic = (case == CASES.index(name) for name in ("pulse", "deflection", "harmonic"))
     magnitude = np.where(is_harmonic, *(_within(r, uniforms[:, 1]) for r in (chosen.harmonic_magnitude, chosen.magnitude)))
     magnitude[case == CASES.index("none")] = 0.0
@@ -106,7 +106,7 @@ def _load_cases(chosen: Scenario, plant: Plant, lowest_frequency: Any, uniforms:
     onset = whole_intervals(_within(chosen.onset, uniforms[:, 3]), interval)
     lasting = np.maximum(whole_intervals(_within(chosen.duration, uniforms[:, 4]), interval), 1)
     with np.errstate(over="ignore"):  # of what no load case draws
-        ratio = _within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * interval
+        ratio = _within(chosen.frequency_ratio, uniforms[:, 5]) * lowest_frequency * plant.control_interval
     rate = np.minimum(ratio, np.pi)
     return LoadCases(
         case=case,

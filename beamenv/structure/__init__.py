@@ -2,16 +2,23 @@
 
 from beamenv.structure.beam import RotatingBeam
 from beamenv.structure.modes import Modes
+from beamenv.structure.section.airfoil import AirfoilSection
+from beamenv.structure.section.closed_sections import BoxSection, PolygonSection, TubeSection
+from beamenv.structure.section.open_sections import CSection, ISection, StripSection, WallsSection, ZSection
 from beamenv.structure.section.properties import SectionProperties
-from beamenv.structure.section.section import BoxSection, PolygonSection, Section
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.section.section import Section
+from beamenv.structure.section.webs import Web
+from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Laminate, Layup, Ply
 from beamenv.structure.walls.materials import AS4_3501_6, GRAPHITE_EPOXY, Lamina
 
 __all__ = [
     "AS4_3501_6",
     "GRAPHITE_EPOXY",
+    "AirfoilSection",
     "BoxSection",
+    "CSection",
+    "ISection",
     "Inlay",
     "Lamina",
     "Laminate",
@@ -22,4 +29,9 @@ __all__ = [
     "RotatingBeam",
     "Section",
     "SectionProperties",
+    "StripSection",
+    "TubeSection",
+    "WallsSection",
+    "Web",
+    "ZSection",
 ]

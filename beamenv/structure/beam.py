@@ -15,13 +15,16 @@ from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
-from beamenv.structure.geometrically_exact.sections_along import Planform, SectionsAlong
+from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.inlays import SHORTEST, check_inlays
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
+from beamenv.structure.planform import TABLE, Planform, Steps, check_table
 from beamenv.structure.scale import OUT_OF_SCALE, in_scale
-from beamenv.structure.section.section import THEORY, Metres, Section, SpanWalls
+from beamenv.structure.section.section import THEORY, Metres, Section
+from beamenv.structure.section.span_walls import SpanWalls
 from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Layup
 
 Array = NDArray[np.float64]
@@ -36,12 +39,7 @@ the energy; here it is near the least for boxes, isotropic and of 30° plies."""
 CLAMP_PIECE = 5.0
 """Piece of the span beside the clamp that has stations of its own, in reaches."""
 
-SHORTEST = 1e-9
-"""Of the span: what lies closer together is in one place."""
-
 TERMS = Count(1, 30)
-SPEED = Number(ge=0.0, unit="rad/s")
-
 SPEED = Number(ge=0.0, unit="rad/s")
 
 
@@ -69,6 +67,10 @@ class RotatingBeam:
     """Angle of the root section's chord from the plane of rotation."""
     taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
+    twist_table: Annotated[Steps | None, TABLE] = None
+    """Pretwist along the span in place of an even one: pairs of the share of the span, from 0 to 1, and degrees."""
+    chord_table: Annotated[Steps | None, TABLE] = None
+    """Size along the span in place of an even taper: pairs of the share of the span and the size over that of the root."""
     model: Annotated[str, MODEL] = "blade"
     """"blade": as it is; "thesis": as the thesis computes it."""
     shear: Annotated[str, THEORY] = "higher_order"
@@ -83,11 +85,30 @@ class RotatingBeam:
     """Foreign material let into the walls, with its mass and stiffness."""
 
     def __post_init__(self) -> None:
-        self.layup.check_walls(self.section.walls)
-        self.section.check_thickness(min(1.0, 1.0 / self.taper), "section.thickness")
+        self.layup.check_walls(self.section.wall_names)
+        check_table("beam.twist_table", self.twist_table)
+        check_table("beam.chord_table", self.chord_table, least=0.0)
+        self.section.check_thickness(self.narrowest, "section.thickness")
         checked_flow(self.model, self.shear_flow)
+        if self.model == "thesis":
+            self.section.check_one_cell()
+            for name in ("twist_table", "chord_table"):
+                if getattr(self, name) is not None:
+                    raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
         check_inlays(self)
+
+    @property
+    def narrowest(self) -> float:
+        """Size of the section where it is smallest, over that at the root, or 1."""
+        return self.planform.narrowest
+
+    @cached_property
+    def planform(self) -> Planform:
+        """How the section is turned and scaled along the span."""
+        twists = self.twist_table and tuple((share, float(np.radians(angle))) for share, angle in self.twist_table)
+        even = float(np.radians(self.pretwist_deg)), float(np.radians(self.presetting_deg)), self.taper
+        return Planform(self.length, *even, twists, self.chord_table)
 
     @cached_property
     def space(self) -> TrialSpace:
@@ -104,12 +125,12 @@ class RotatingBeam:
     @cached_property
     def exact(self) -> ExactBeam:
         """The geometrically exact beam on solid sections: what the blade's model computes with."""
-        planform = Planform(self.length, np.radians(self.pretwist_deg), np.radians(self.presetting_deg), self.taper)
         beside_clamp = CLAMP_PIECE * self.space.clamp_reach
+        changes = [piece.start for piece in self.planform.pieces]
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints([*self._edges, beside_clamp]), self.stations_per_span),
-            sections=SectionsAlong.build(self.section, self.layup, planform, self.inlays),
+            stations=Stations.graded(self.breakpoints([*self._edges, *changes, beside_clamp]), self.stations_per_span),
+            sections=SectionsAlong.build(self.section, self.layup, self.planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
         )
@@ -131,7 +152,7 @@ class RotatingBeam:
     @property
     def stations_per_span(self) -> int:
         """Gauss stations on a piece as long as the span: for the trial functions, and for pretwist beyond a quarter of a turn."""
-        turned = abs(np.radians(self.pretwist_deg)) - 0.5 * np.pi
+        turned = self.planform.turned - 0.5 * np.pi
         return self.space.terms + EXTRA_STATIONS + max(0, int(np.ceil(turned)))
 
     @property
@@ -162,12 +183,11 @@ class RotatingBeam:
         ends = np.unique(np.clip([0.0, *edges, self.length], 0.0, self.length))
         return ends[np.append(True, np.diff(ends) > SHORTEST * self.length)]
 
-    def walls_at(self, z: Array, cuts: tuple[tuple[str, float], ...] = ()) -> SpanWalls:
-        """The walls at stations z (m), split at (wall, width) ``cuts`` too."""
+    def walls_at(self, z: Array, cuts: tuple[Strip, ...] = ()) -> SpanWalls:
+        """The walls at stations z (m) by the thesis' kinematics, split at the edges of strips too."""
         tip = 1.0 / self.taper
-        return SpanWalls.build(
-            self.section,
-            self.layup,
+        return self.section.walls_at(
+            self.section.hosts(self.layup),
             z=z,
             scale=tip + (1.0 - tip) * (1.0 - z / self.length),
             angle=np.radians(self.presetting_deg + self.pretwist_deg * z / self.length),
@@ -265,32 +285,3 @@ class RotatingBeam:
         stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])
-
-
-def check_inlays(beam: RotatingBeam) -> None:
-    """``ValueError`` for inlays that do not fit their wall or overlap."""
-    for inlay in beam.inlays:
-        check_fit(beam, inlay)
-    for wall in {inlay.wall for inlay in beam.inlays}:
-        ordered = sorted((inlay for inlay in beam.inlays if inlay.wall == wall), key=lambda inlay: inlay.start)
-        for first, second in zip(ordered[:-1], ordered[1:], strict=True):
-            if second.start < first.start + first.length - 1e-9 * beam.length:
-                raise ValueError(
-                    f"inlays at {first.start!r} and {second.start!r} m on the {wall} wall must be {first.length!r} m apart."
-                )
-
-
-def check_fit(beam: RotatingBeam, inlay: Inlay) -> None:
-    """``ValueError`` for an inlay that leaves the blade, is as thick as its wall or wider than it at the narrow end."""
-    end = inlay.start + inlay.length
-    if not (inlay.start >= 0.0 and end <= beam.length * (1.0 + 1e-12)):
-        raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {beam.length!r} m.")
-    if not inlay.length > SHORTEST * beam.length:
-        raise ValueError(f"inlay length = {inlay.length!r} m must be above {SHORTEST * beam.length:.3g} m.")
-    narrowest = beam.section.wall_width(inlay.wall) * min(1.0, 1.0 / beam.taper)
-    if not 0.0 < inlay.width <= narrowest * (1.0 + 1e-12):
-        raise ValueError(f"inlay width = {inlay.width!r} m must be positive and at most the {inlay.wall} wall's {narrowest:.6g} m.")
-    if not 0.0 < inlay.thickness < beam.section.thickness:
-        raise ValueError(
-            f"inlay thickness = {inlay.thickness!r} m must be positive and below the wall's {beam.section.thickness!r} m."
-        )

@@ -25,7 +25,7 @@ def test_the_drawn_tip_moves_by_the_magnified_tip_displacement():
     plant, solid = Blade(config).truth, BladeSolid(Blade(config))
     state = static_deflection(plant, [3.0, 30.0])
     operator = displacement_operator(config, solid.stations)
-    rest, bent = (solid.pose(operator @ each).walls.mean(axis=1) for each in (0.0 * state, state))
+    rest, bent = (solid.pose(operator @ each).bodies[0].mean(axis=1) for each in (0.0 * state, state))
     np.testing.assert_allclose((bent - rest)[-1, :2], solid.magnification * plant.tip_displacement @ state, rtol=1e-9)
     np.testing.assert_allclose((bent - rest)[0], 0.0, atol=1e-12)
 
@@ -48,14 +48,14 @@ def test_a_twist_turns_the_section_about_its_axis_by_the_magnified_angle():
     solid = BladeSolid(Blade(blade_config(overrides={"beam": {"pretwist_deg": 0.0}})))
     twist = np.zeros((3, len(solid.stations)))
     twist[2, -1] = 0.3 / solid.magnification
-    corner, turned = (solid.pose(each).walls[-1, 1, :2] for each in (0.0 * twist, twist))
+    corner, turned = (solid.pose(each).bodies[0][-1, 1, :2] for each in (0.0 * twist, twist))
     np.testing.assert_allclose(turned, [[np.cos(0.3), -np.sin(0.3)], [np.sin(0.3), np.cos(0.3)]] @ corner, rtol=1e-12)
 
 
 def test_the_solid_has_the_blade_s_pretwist_taper_and_outer_dimensions():
     config = blade_config(overrides={"beam": {"taper": 2.0}})
     beam, solid = config.beam, BladeSolid(Blade(config))
-    walls = solid.pose(np.zeros((3, len(solid.stations)))).walls
+    walls = solid.pose(np.zeros((3, len(solid.stations)))).bodies[0]
     chord = walls[:, 1] - walls[:, 2]
     assert np.linalg.norm(chord[0]) == pytest.approx(beam.width + beam.thickness)
     assert np.linalg.norm(chord[-1]) == pytest.approx(0.5 * beam.width + beam.thickness)

@@ -262,6 +262,7 @@ DOORS = [
         {
             **{each.name: MATRIX for each in dataclasses.fields(Plant)},
             "control_interval": NUMBER,
+            "time_scale": NUMBER,
             "electronic_states": COUNT,
             **dict.fromkeys(("disturbances", "sensors", "assumed"), ANYTHING),
         },

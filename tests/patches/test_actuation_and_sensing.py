@@ -158,7 +158,7 @@ def charge_by_quadrature(patch, start, length, width, wall):
 def test_sensors_count_the_charge_of_the_strain_under_them_and_actuators_push_against_it(material):
     """Eq. 4.37 by a quadrature of its own on an oblique, pretwisted blade; per volt, thickness/spacing of it is the force."""
     layout = PatchLayout(actuators=(0.5,), sensors=(0.3, 1.2), material=material)
-    patch, size = layout.patch, (layout.length, layout.width)
+    patch, size = layout.only("actuators").patch, (layout.length, layout.width)
     below = np.array([charge_by_quadrature(patch, start, *size, "bottom") for start in (0.3, 1.2)])
     assert sensing(WALLED_BLADE, layout) == pytest.approx(below, abs=1e-10 * np.abs(below).max())
     above = charge_by_quadrature(patch, 0.5, *size, "top") * patch.thickness / patch.electrode_spacing
@@ -169,7 +169,7 @@ def test_a_sensor_below_reads_the_bending_that_the_actuator_above_makes_with_the
     """On a blade that is symmetric top to bottom: bending part −, stretching part + the known constant times the column."""
     beam = RotatingBeam(SECTION, ISOTROPIC, LENGTH)
     layout = PatchLayout(actuators=(START,), sensors=(START,))
-    column = layout.patch.charge_per_reaction * actuation(beam, layout)[:, 0]
+    column = layout.only("sensors").patch.charge_per_reaction * actuation(beam, layout)[:, 0]
     row = sensing(beam, layout)[0]
     tip = beam.displacements(LENGTH)
     bent, stretched = (np.linalg.solve(beam.matrices.elastic_stiffness, tip[field][0]) for field in ("v", "s"))

@@ -48,8 +48,8 @@ def test_actuators_are_above_and_sensors_below_with_fibres_along_the_span():
 
 
 def test_material_names_give_their_sheets():
-    assert PatchLayout(material="MFC").patch is MFC
-    assert PatchLayout(material="PZT").patch is PZT
+    assert PatchLayout(material="MFC").only("actuators").patch is MFC
+    assert PatchLayout(material="PZT").only("sensors").patch is PZT
 
 
 def placed(**fields):
@@ -95,7 +95,7 @@ REFUSED = {
         r"width = 0\.3 m must be positive and at most the top wall's 0\.254 m",
     ),
     "off the blade": (lambda: patch_force(BLADE, MFC, "top", 1.95, 0.1, 0.05), "must lie on the blade, 0 to 2.0 m"),
-    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall is 'nose', but must be one straight wall"),
+    "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall is 'nose', but must be one wall of the section"),
 }
 
 

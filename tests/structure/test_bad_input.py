@@ -183,7 +183,7 @@ REFUSED = {
     "inlay as thick as its wall": (blade_with(thickness=0.01), r"inlay thickness = 0\.01 m must be .* below the wall's 0\.01 m"),
     "inlay on no wall": (
         blade_with(wall="nose"),
-        "wall is 'nose', but must be one straight wall of the section: right, top, left, bottom",
+        "wall is 'nose', but must be one wall of the section: right, top, left, bottom",
     ),
     "inlay nowhere": (blade_with(start=NAN), "inlay.start is nan, but must be a finite number"),
 }

@@ -25,7 +25,7 @@ def test_frequencies_do_not_change_with_the_origin_of_the_corners(taper, steady_
 @pytest.fixture
 def off_axis(monkeypatch):
     """Sections that stay where their corners are, beside the pitch axis, and with them the blade."""
-    monkeypatch.setattr(PolygonSection, "placed_vertices", property(lambda section: section.vertices))
+    monkeypatch.setattr(PolygonSection, "placed_chains", property(lambda section: section.chains))
 
 
 def beside(shift, speed, **options):

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection, RotatingBeam
-from beamenv.structure.section import central_solution, element_sums, elements
-from beamenv.structure.section.mesh import ring
+from beamenv.structure.section import central_solution, element_sums, elements, lines
+from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.solid_sections import SolidSections
+from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate
 
 DATA = Path(__file__).parents[1] / "data"
@@ -94,11 +95,12 @@ def test_thick_box_has_the_bending_stiffness_of_finite_elements(angle):
 def refined(section, layup, pieces):
     """Stiffness of a section each of whose walls is cut into 2 ``pieces`` + 1."""
     hosts = {wall: Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls}
-    cuts = [(wall, share * section.wall_width(wall)) for wall in section.walls for share in np.arange(1, pieces + 1) / (pieces + 1)]
-    mesh = ring(section.vertices[None], section.walls, section.thickness, cuts)
+    shares = np.arange(1, pieces + 1) / (pieces + 1)
+    cuts = [Strip(wall, share * section.wall_width(wall)) for wall in section.walls for share in shares]
+    elements = mesh(section.chains, np.ones(1), cuts)
     laminates = list(dict.fromkeys(hosts.values()))
-    which = np.array([[laminates.index(hosts[edge.wall]) for edge in mesh.edges]])
-    return SolidSections.build(mesh, laminates, which, pretwist=0.0).stiffness[0]
+    which = np.array([[laminates.index(hosts[edge.wall]) for edge in elements.edges]])
+    return SolidSections.build(elements, laminates, which, pretwist=0.0).stiffness[0]
 
 
 LAYUPS = {"CUS": cus, "CAS": cas}
@@ -118,9 +120,10 @@ def test_higher_order_through_the_wall_changes_the_stiffness_of_the_thick_box_li
     """Fifth instead of third: less than 0.3 % of the root of the product of the diagonals, at 60°, where walls warp most."""
     layup = LAYUPS[kind](60)
     third = THICK_BOX.properties(layup).stiffness
-    for module in (elements, element_sums, central_solution):
+    for module in (elements, element_sums, lines):
         monkeypatch.setattr(module, "ACROSS", 5)
-    monkeypatch.setattr(central_solution, "PER_LINE", 18)
+    for module in (lines, central_solution):
+        monkeypatch.setattr(module, "PER_LINE", 18)
     fifth = THICK_BOX.properties(layup).stiffness
     assert np.abs(share_of_diagonals(third - fifth, fifth)).max() < 3e-3
 
@@ -167,9 +170,9 @@ def tube(edges, radius, thickness, centre=(0.0, 0.0)):
 
 def pretwisted(section, layup, rate):
     """(6, 6) of a section that twists by ``rate`` rad/m along the span."""
-    mesh = ring(section.vertices[None], section.walls, section.thickness)
+    elements = mesh(section.chains, np.ones(1))
     laminate = Laminate.equal_plies(layup.plies(section.walls[0]), section.thickness)
-    return SolidSections.build(mesh, [laminate], np.zeros((1, len(mesh.edges)), dtype=int), rate).stiffness[0]
+    return SolidSections.build(elements, [laminate], np.zeros((1, len(elements.edges)), dtype=int), rate).stiffness[0]
 
 
 def test_circular_tube_has_the_stiffness_of_the_textbooks():
@@ -232,9 +235,9 @@ def test_spanwise_stress_of_a_stretched_or_bent_isotropic_section_is_e_times_the
 
 
 def pretwisted_sections(rate):
-    mesh = ring(THICK_BOX.vertices[None], THICK_BOX.walls, THICK_BOX.thickness)
+    elements = mesh(THICK_BOX.chains, np.ones(1))
     laminate = Laminate.equal_plies(ISOTROPIC.plies("top"), THICK_BOX.thickness)
-    return SolidSections.build(mesh, [laminate], np.zeros((1, len(mesh.edges)), dtype=int), rate)
+    return SolidSections.build(elements, [laminate], np.zeros((1, len(elements.edges)), dtype=int), rate)
 
 
 def thin_walled(box):

@@ -7,8 +7,19 @@ import pytest
 
 from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.shape import body, edges, end_triangles, patch, quadrilaterals, side_triangles, sides
-from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, PolygonSection, RotatingBeam
+from beamenv.blade.shape import bodies, body, edges, end_triangles, patch, quadrilaterals, side_triangles, sides
+from beamenv.patches import MFC
+from beamenv.structure import (
+    GRAPHITE_EPOXY,
+    BoxSection,
+    CSection,
+    ISection,
+    Layup,
+    PolygonSection,
+    RotatingBeam,
+    StripSection,
+    TubeSection,
+)
 
 BOX = RotatingBeam(
     BoxSection(0.2, 0.06, 0.01), Layup.uniform(GRAPHITE_EPOXY, [30.0] * 6), 2.0, pretwist_deg=40.0, presetting_deg=10.0, taper=2.0
@@ -27,6 +38,10 @@ HOLLOW = PolygonSection(
 def bladed(section, **changes):
     """A straight, untwisted blade 1 m long."""
     return RotatingBeam(section, Layup.uniform(GRAPHITE_EPOXY, [0.0] * 2), 1.0, **changes)
+
+
+def sheet(wall, width):
+    return MFC.inlay(wall, 0.0, 1.0, width)
 
 
 def turned(angle_deg, points):
@@ -80,16 +95,32 @@ def test_a_section_is_shifted_by_lag_and_flap_and_turned_by_twist_about_its_axis
 
 
 def test_a_patch_lies_in_the_middle_of_its_wall_s_outer_face():
-    strip = patch(BOX, "top", 0.03, np.array([0.0, 2.0])).at_rest()
+    strip = patch(BOX, sheet("top", 0.03), np.array([0.0, 2.0])).at_rest()
     np.testing.assert_allclose(strip[0, :, :2], turned(10.0, [[-0.015, 0.035], [0.015, 0.035]]))
     np.testing.assert_allclose(strip[1, :, :2], turned(50.0, [[-0.015, 0.02], [0.015, 0.02]]))
-    middle = patch(bladed(WEDGE), "top", 0.02, np.zeros(1), raised=0.001).points[0].mean(axis=0)
+    middle = patch(bladed(WEDGE), sheet("top", 0.02), np.zeros(1), raised=0.001).points[0].mean(axis=0)
     np.testing.assert_allclose(middle, [0.05, 0.02] + 0.003 * np.array([0.04, 0.1]) / np.hypot(0.04, 0.1))
 
 
-def test_a_patch_on_a_wall_that_is_not_one_straight_edge_is_refused():
-    with pytest.raises(ValueError, match="wall is 'top', but must be one straight wall"):
-        patch(bladed(TUBE), "top", 0.01, np.zeros(1))
+def test_a_patch_on_a_wall_that_the_section_has_not_is_refused():
+    with pytest.raises(ValueError, match="wall is 'top', but must be one wall of the section: wall 0, wall 1"):
+        patch(bladed(TUBE), sheet("top", 0.01), np.zeros(1))
+
+
+def test_a_patch_on_a_round_wall_is_drawn_above_all_of_it():
+    blade = bladed(TubeSection(0.2, 0.2, 0.004))
+    ends = patch(blade, MFC.inlay("top", 0.0, 1.0, 0.1), np.zeros(1)).points[0]
+    assert ends[0] == pytest.approx([-0.1 * np.sin(0.5), 0.102], abs=1e-3)
+    assert ends[1] == pytest.approx([0.1 * np.sin(0.5), 0.102], abs=1e-3)
+
+
+def test_the_outline_of_an_open_section_goes_there_on_its_outer_face_and_back_on_the_inner():
+    strip, channel = (
+        body(bladed(each), np.zeros(1)).points[0] for each in (StripSection(0.03, 0.002), CSection(0.04, 0.08, 0.002))
+    )
+    np.testing.assert_allclose(strip, [[0.015, 0.001], [-0.015, 0.001], [-0.015, -0.001], [0.015, -0.001]])
+    assert area(channel) == pytest.approx(0.002 * (0.04 + 0.08 + 0.04), rel=1e-12)
+    assert [len(each.points[0]) for each in bodies(bladed(ISection(0.06, 0.1, 0.003)), np.zeros(1))] == [4, 4, 4]
 
 
 @pytest.mark.parametrize("section", [BoxSection(0.2, 0.06, 0.01), TUBE, WEDGE, HOLLOW])
@@ -102,7 +133,7 @@ def test_faces_look_outwards(section):
     ends = area(walls[-1, :, :2]) * walls[-1, 0, 2]
     volume = ((faces.mean(axis=1) * normals).sum() + ends) / 3.0
     assert volume == pytest.approx(area(walls[0, :, :2]), rel=1e-9)
-    strip = quadrilaterals(patch(bladed(BoxSection(0.2, 0.06, 0.01)), "bottom", 0.03, np.array([0.1, 0.2])).at_rest())
+    strip = quadrilaterals(patch(bladed(BoxSection(0.2, 0.06, 0.01)), sheet("bottom", 0.03), np.array([0.1, 0.2])).at_rest())
     assert np.cross(strip[2] - strip[0], strip[3] - strip[1])[1] < 0.0
 
 
@@ -125,5 +156,5 @@ def test_the_ends_of_a_hollow_section_are_covered_once_and_nothing_else_is():
 
 
 def test_sharp_corners_are_edges_and_a_round_section_has_its_outermost_points():
-    assert edges(BOX.section).tolist() == [0, 1, 2, 3]
-    assert edges(TUBE).tolist() == [0, 6, 12, 18]
+    assert edges(BOX.section)[0].tolist() == [0, 1, 2, 3]
+    assert edges(TUBE)[0].tolist() == [0, 6, 12, 18]

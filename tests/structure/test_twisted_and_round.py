@@ -35,7 +35,7 @@ def test_a_tube_twists_as_a_shaft_does(model, within):
     radius, thickness, length, angle = 0.05, 0.001, 2.0, 2.0 * np.pi * np.arange(64) / 64
     section = PolygonSection(radius * np.column_stack([np.cos(angle), np.sin(angle)]), ["wall"] * 64, thickness)
     beam = RotatingBeam(section, Layup.uniform(Lamina.isotropic(7e10, 0.3, 2700.0), [0]), length, model=model, terms=10)
-    start, edges = section.placed_vertices, section.edge_lengths
+    start, edges = section.placed_chains[0].points, section.chains[0].lengths
     end = np.roll(start, -1, axis=0)
     area = 0.5 * np.sum(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0])
     polar = thickness * np.sum(edges * ((start**2).sum(axis=1) + (start * end).sum(axis=1) + (end**2).sum(axis=1)) / 3.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +12,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.shape import Skin, body, edges, end_triangles, magnification, patch, side_triangles
-from beamenv.patches.layout import ACTUATOR_WALL
+from beamenv.blade.shape import Skin, bodies, edges, end_triangles, magnification, patch, side_triangles
 from train.figures.palette import NEUTRAL
 from train.figures.screen import plain
 from train.page.recording import RecordedEpisode, Recording
@@ -76,8 +76,8 @@ def blade_figures(episode: RecordedEpisode) -> tuple[go.Figure, go.Figure]:
 
 
 def _figure(blade: BladeConfig, motion: Motion, reach: float, limit: float) -> go.Figure:
-    skin, patches = body(build_beam(blade), _stations(blade)), _patches(blade)
-    walls, raised = skin.displaced(motion.displacement), _raised(blade, patches, motion.displacement)
+    skins, patches = bodies(build_beam(blade), _stations(blade)), _patches(blade)
+    walls, raised = _moved(skins, motion.displacement), _raised(blade, patches, motion.displacement)
     volts = motion.recording.volts[motion.rows]
     shades = np.broadcast_to(volts, (len(volts), len(patches)))  # ganged actuators share one voltage
     triangles = side_triangles(PATCH_STATIONS, 2, closed=False)
@@ -85,8 +85,8 @@ def _figure(blade: BladeConfig, motion: Motion, reach: float, limit: float) -> g
     drawn = [[_mesh(wall), {**_mesh(patch), "intensity": shade}] for wall, patch, shade in zip(walls, raised, shades, strict=True)]
     frames = [{"name": str(index), "data": data, "traces": [1, 2]} for index, data in enumerate(drawn)]
     several = np.concatenate([triangles + 2 * PATCH_STATIONS * k for k in range(len(patches))])
-    data = [_outline(blade, skin), _body(skin, drawn[0][0]), _actuators(several, drawn[0][1])]
-    extent = float(np.linalg.norm(skin.points, axis=-1).max())
+    data = [_outline(blade, skins), _body(skins, drawn[0][0]), _actuators(several, drawn[0][1])]
+    extent = max(float(np.linalg.norm(skin.points, axis=-1).max()) for skin in skins)
     return go.Figure(data=data, layout=_layout(blade, reach + 1.1 * extent, limit, motion.recording.name), frames=frames)
 
 
@@ -96,10 +96,14 @@ def _stations(blade: BladeConfig) -> Array:
 
 def _patches(blade: BladeConfig) -> list[Skin]:
     beam, patches = build_beam(blade), blade.patches
-    raised = RAISED * float(np.ptp(beam.section.vertices[:, 1]))
-    along = patches.length * np.linspace(0.0, 1.0, PATCH_STATIONS)
-    starts = patches.actuator_positions(beam.length)
-    return [patch(beam, ACTUATOR_WALL, patches.width, start + along, raised) for start in starts]
+    raised = RAISED * beam.section.least_extent
+    inlays = [inlay for group in patches.groups("actuators") for inlay in group.inlays("actuators", beam.length)]
+    return [patch(beam, inlay, inlay.start + inlay.length * np.linspace(0.0, 1.0, PATCH_STATIONS), raised) for inlay in inlays]
+
+
+def _moved(skins: Sequence[Skin], displacement: Array) -> Array:
+    """(F, V, 3), m: vertices of all outlines, one after the other."""
+    return np.concatenate([skin.displaced(displacement).reshape(len(displacement), -1, 3) for skin in skins], axis=1)
 
 
 def _raised(blade: BladeConfig, patches: list[Skin], displacement: Array) -> Array:
@@ -117,10 +121,15 @@ def _mesh(points: Array) -> dict[str, Any]:
     return {"type": "mesh3d", **dict(zip("xyz", points.reshape(-1, 3).T.astype(np.float32), strict=True))}
 
 
-def _body(skin: Skin, first: dict[str, Any]) -> dict[str, Any]:
-    stations, corners = skin.points.shape[:2]
-    end = end_triangles(skin.points[0])
-    triangles = np.concatenate([side_triangles(stations, corners, closed=True), end, end + corners * (stations - 1)])
+def _body(skins: Sequence[Skin], first: dict[str, Any]) -> dict[str, Any]:
+    parts, before = [], 0
+    for skin in skins:
+        stations, corners = skin.points.shape[:2]
+        end = end_triangles(skin.points[0])
+        own = np.concatenate([side_triangles(stations, corners, closed=True), end, end + corners * (stations - 1)])
+        parts.append(own + before)
+        before += stations * corners
+    triangles = np.concatenate(parts)
     light = {"ambient": 0.55, "diffuse": 0.6, "specular": 0.05, "roughness": 0.9, "fresnel": 0.0}
     look = {"color": BODY, "flatshading": True, "hoverinfo": "skip", "lighting": light}
     return {**first, **dict(zip("ijk", triangles.T, strict=True)), **look, "lightposition": {"x": 1e4, "y": 3e4, "z": -2e4}}
@@ -131,11 +140,14 @@ def _actuators(triangles: NDArray[np.intp], first: dict[str, Any]) -> dict[str, 
     return {**first, **dict(zip("ijk", triangles.T, strict=True)), **look, "hovertemplate": "%{intensity:.0f} V<extra></extra>"}
 
 
-def _outline(blade: BladeConfig, skin: Skin) -> dict[str, Any]:
+def _outline(blade: BladeConfig, skins: Sequence[Skin]) -> dict[str, Any]:
     """Edges of the blade at rest, one line."""
-    walls, gap = skin.at_rest(), np.full((1, 3), np.nan)
-    pieces = [np.concatenate([walls[:, edge], gap]) for edge in edges(build_beam(blade).section)]
-    pieces.append(np.concatenate([walls[-1], walls[-1, :1]]))
+    gap, pieces = np.full((1, 3), np.nan), list[Array]()
+    for skin, sharp in zip(skins, edges(build_beam(blade).section), strict=True):
+        walls = skin.at_rest()
+        pieces += [gap] if pieces else []
+        pieces += [np.concatenate([walls[:, edge], gap]) for edge in sharp]
+        pieces.append(np.concatenate([walls[-1], walls[-1, :1]]))
     points = dict(zip("xyz", np.concatenate(pieces).T.astype(np.float32), strict=True))
     look = {"mode": "lines", "line": {"color": NEUTRAL, "width": 2}, "hoverinfo": "skip", "showlegend": False}
     return {"type": "scatter3d", **points, **look}

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import build_beam
-from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
 from train.figures.figure import Curve, Look, Marker, Panel
 from train.figures.palette import INK
 from train.figures.panels import actuator
@@ -20,7 +19,6 @@ from train.placement.placed import PlacedSide
 
 Array = NDArray[np.float64]
 
-WALLS = {"actuators": ACTUATOR_WALL, "sensors": SENSOR_WALL}
 NAMES = {"actuators": "tr(P), s", "sensors": "tr(S), J"}
 
 
@@ -54,22 +52,23 @@ def _draw_wall(axis: Any, side: PlacedSide) -> None:
     from matplotlib.patches import Rectangle
 
     config, bounds = side.problem.config, side.problem.bounds
-    span, root_chord = config.beam.length, build_beam(config).section.wall_width(WALLS[side.placement.side])
-    tip_chord, width = root_chord / config.beam.taper, config.patches.width
-    chord = 1e3 * 0.5 * np.array([root_chord, tip_chord, -tip_chord, -root_chord])
-    axis.fill([0.0, span, span, 0.0], chord, facecolor="0.93", edgecolor="black", linewidth=0.8)
+    beam, group = build_beam(config), config.patches.only(side.placement.side)
+    span, width = beam.length, group.width
+    z = np.unique([0.0, span, *(piece.start for piece in beam.planform.pieces)])
+    half = 1e3 * 0.5 * beam.section.wall_width(group.wall) * beam.planform.scale(z)
+    axis.fill(np.append(z, z[::-1]), np.append(half, -half[::-1]), facecolor="0.93", edgecolor="black", linewidth=0.8)
     for start in bounds.uniform():
         axis.add_patch(Rectangle((start, -500.0 * width), bounds.length, 1e3 * width, fill=False, edgecolor="0.5", linestyle=":"))
     for index, start in enumerate(side.placement.positions):
         filled: dict[str, Any] = {"facecolor": actuator(index)[0].colour, "edgecolor": "black", "linewidth": 0.5}
         axis.add_patch(Rectangle((start, -500.0 * width), bounds.length, 1e3 * width, **filled))
         axis.text(start + 0.5 * bounds.length, 900.0 * width, str(index + 1), ha="center", va="center")
-    title = f"{side.placement.side}, {WALLS[side.placement.side]} wall, {config.speed:g} rad/s (dotted: equally spaced)"
+    title = f"{side.placement.side}, {group.wall} wall, {config.speed:g} rad/s (dotted: equally spaced)"
     axis.set(
         title=title,
         ylabel="chord, mm",
         xlim=(-0.02 * span, 1.02 * span),
-        ylim=1.15 * chord[[2, 0]] if tip_chord > root_chord else 1.15 * chord[[3, 0]],
+        ylim=1.15 * half.max() * np.array([-1.0, 1.0]),
     )
 
 

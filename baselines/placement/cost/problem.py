@@ -85,8 +85,7 @@ class PlacementProblem:
         checked("side", side, Choice(SIDES))
         if side == "sensors":
             check_noise(config)
-        own = getattr(config.patches, side)
-        number = (own if isinstance(own, int) else len(own)) if count is None else count
+        number = config.patches.only(side).count if count is None else count
         room = Bounds.of(config.patches, config.beam.length, number, bounds, name=side)
         uniform = with_positions(config, {side: tuple(room.uniform().tolist())})
         plant = build_plant(uniform)
@@ -105,7 +104,7 @@ class PlacementProblem:
     def cost_and_slopes(self, positions: Array) -> tuple[float, Array]:
         """The trace of one layout (count,) and its exact derivatives (count,) by the positions, per m."""
         actuators, sensors = self._layouts(self._numbers(positions, 1)[None])
-        size = self.bounds.length, self.config.patches.passive
+        size = self.bounds.length, self.config.patches.only("actuators").passive
         matrices = self._ganged(layout_matrices(self.parts, actuators, sensors, *size))
         moved = self._ganged(matrix_slopes(self.parts, actuators[0], sensors[0], *size))
         reduced, slopes = reduce_with_slopes(self.parts, matrices, moved, Reduction.of(self.config))
@@ -118,7 +117,8 @@ class PlacementProblem:
     def reduced(self, positions: Array) -> ReducedBlades:
         """Layouts (N, count), m from the root, as reduced blades."""
         actuators, sensors = self._layouts(self._numbers(positions, 2))
-        matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, self.config.patches.passive)
+        passive = self.config.patches.only("actuators").passive
+        matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, passive)
         return reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
 
     def at(self, positions: ArrayLike) -> ReducedBlades:
@@ -154,7 +154,7 @@ class PlacementProblem:
 
     def _ganged(self, matrices: Matrices) -> Matrices:
         """With one voltage for all actuators, their forces are one."""
-        if not self.config.patches.ganged:
+        if not self.config.patches.only("actuators").ganged:
             return matrices
         stored = matrices.stored_energy
         whole = None if stored is None else stored.sum(axis=(-2, -1), keepdims=True)

@@ -22,16 +22,16 @@ from baselines.placement.model.triangles import packed
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
-from beamenv.patches.layout import ACTUATOR_WALL, OUTERMOST, SENSOR_WALL
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
 from beamenv.structure.modes import normal_modes
+from beamenv.structure.walls.inlay import Strip
 
 Array = NDArray[np.float64]
 
-COVERED_WALLS = ((), (ACTUATOR_WALL,), (SENSOR_WALL,), (ACTUATOR_WALL, SENSOR_WALL))
+COVERED = ((), (0,), (1,), (0, 1))
 """What is covered in a section of kind 0 (bare), 1 (top), 2 (below), 3 (both)."""
-BARE, TOP, BELOW, BOTH = range(len(COVERED_WALLS))
+BARE, TOP, BELOW, BOTH = range(len(COVERED))
 
 KEPT = 60
 """Modes of a bare blade of solid sections that layouts are made of."""
@@ -80,15 +80,15 @@ def contributions(config: BladeConfig) -> Contributions:
 
 def of_solid_sections(config: BladeConfig) -> Contributions:
     """In the blade's model."""
-    layout, bare = config.patches, config.beam.build(model=config.model)
-    span = ChebyshevSpan(OUTERMOST * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    (actuators, sensors), bare = config.patches.pair(), config.beam.build(model=config.model)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
     covering = Covering.of(config, bare, span)
     exact = covering.bare(bare.exact)
     point = exact.at(config.speed)
     frequencies, shapes = normal_modes(point.mass, point.stiffness, min(max(KEPT, 2 * config.modes), bare.space.size))
     basis = shapes / frequencies
     blade = BareBlade.of(exact, point, span.nodes, basis)
-    sections = [covering.samples(kind, blade) for kind in range(len(COVERED_WALLS))]
+    sections = [covering.samples(kind, blade) for kind in range(len(COVERED))]
     tension = span.integral(np.stack([s.pull - sections[BARE].pull for s in sections], axis=1))
     pull = span.values(span.nodes) @ tension
     slopes = [s.per_tension * config.speed**2 for s in sections]
@@ -105,16 +105,16 @@ def of_solid_sections(config: BladeConfig) -> Contributions:
         gyroscopic=config.speed * beyond_bare(span, [s.gyroscopic for s in sections]),
         tension=tension,
         actuator_force=np.stack([top[:, TOP], top[:, BOTH] - top[:, TOP]]),
-        sensor_force=layout.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
+        sensor_force=sensors.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
         actuator_energy=np.stack([energy[:, TOP], energy[:, BOTH] - energy[:, TOP]]),
     )
 
 
 def of_walls(config: BladeConfig) -> Contributions:
     """In the thesis' model."""
-    layout = config.patches
+    actuators, sensors = config.patches.pair()
     bare = config.beam.build(model=config.model)
-    span = ChebyshevSpan(OUTERMOST * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
     frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / frequencies
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
@@ -137,17 +137,17 @@ def of_walls(config: BladeConfig) -> Contributions:
         gyroscopic=config.speed * beyond_bare(span, [s.gyroscopic for s in sections]),
         tension=tension,
         actuator_force=np.stack([top[:, TOP], top[:, BOTH] - top[:, TOP]]),
-        sensor_force=layout.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
+        sensor_force=sensors.patch.charge_per_reaction * np.stack([below[:, BELOW], below[:, BOTH] - below[:, BELOW]]),
     )
 
 
 def covered_blades(config: BladeConfig, span: ChebyshevSpan) -> list[RotatingBeam]:
     """The blade bare, and with its walls covered over the whole span of patches; all bare where patches are not passive."""
-    bare, layout = config.beam.build(model=config.model), config.patches
-    if not layout.passive:
-        return [bare] * len(COVERED_WALLS)
-    sheets = {wall: layout.patch.inlay(wall, 0.0, span.end, layout.width) for wall in (ACTUATOR_WALL, SENSOR_WALL)}
-    return [replace(bare, inlays=tuple(sheets[wall] for wall in walls)) for walls in COVERED_WALLS]
+    bare, groups = config.beam.build(model=config.model), config.patches.pair()
+    if not groups[0].passive:
+        return [bare] * len(COVERED)
+    sheets = [group.inlay(0.0, span.end) for group in groups]
+    return [replace(bare, inlays=tuple(sheets[side] for side in sides)) for sides in COVERED]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -202,8 +202,9 @@ def tension_of(bare: RotatingBeam, z: Array) -> Array:
 
 def force_samples(beam: RotatingBeam, config: BladeConfig, span: ChebyshevSpan, basis: Array) -> tuple[Array, Array]:
     """Force per volt and metre (nodes, N) of a patch on the actuators' and on the sensors' wall."""
-    layout = config.patches
-    on_top, below = (force_per_span(beam, layout.patch, wall, layout.width, span.nodes) for wall in (ACTUATOR_WALL, SENSOR_WALL))
+    on_top, below = (
+        force_per_span(beam, group.patch, Strip(group.wall, group.width), span.nodes) for group in config.patches.pair()
+    )
     return on_top @ basis, below @ basis
 
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.model.chebyshev import ChebyshevSpan
-from baselines.placement.model.contributions import BARE, COVERED_WALLS
+from baselines.placement.model.contributions import BARE, COVERED
 
 Array = NDArray[np.float64]
 
-KINDS = len(COVERED_WALLS)
+KINDS = len(COVERED)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

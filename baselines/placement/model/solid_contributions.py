@@ -26,7 +26,6 @@ from numpy.typing import NDArray
 
 from baselines.placement.model.chebyshev import ChebyshevSpan
 from beamenv.blade.config import BladeConfig
-from beamenv.patches.layout import ACTUATOR_WALL, SENSOR_WALL
 from beamenv.patches.operators import work_on_section
 from beamenv.structure import RotatingBeam
 from beamenv.structure.geometrically_exact.at_stations import SHAPE, increment_rows, without_shear
@@ -111,11 +110,11 @@ class Covering:
     @classmethod
     def of(cls, config: BladeConfig, bare: RotatingBeam, span: ChebyshevSpan) -> Covering:
         """Of a configuration, whose patches may lie in ``span``."""
-        layout, half = config.patches, 0.5 * span.end
-        sides = ((ACTUATOR_WALL, 0.0), (SENSOR_WALL, 0.5 * half))  # every combination occurs somewhere
-        inlays = [layout.patch.inlay(wall, start, half, layout.width) for wall, start in sides] if layout.passive else []
-        covered = replace(bare, inlays=tuple(inlays))
-        work = tuple(work_on_section(covered, layout.patch, wall, layout.width) for wall, _ in sides)
+        groups, half = config.patches.pair(), 0.5 * span.end
+        places = zip(groups, (0.0, 0.5 * half), strict=True)  # every combination occurs somewhere
+        inlays = [group.inlay(start, half) for group, start in places]
+        covered = replace(bare, inlays=tuple(inlays) if groups[0].passive else ())
+        work = tuple(work_on_section(covered, group.patch, inlay) for group, inlay in zip(groups, inlays, strict=True))
         return cls(config, covered.exact.sections, work)
 
     def bare(self, exact: ExactBeam) -> ExactBeam:
@@ -124,7 +123,7 @@ class Covering:
 
     def samples(self, kind: int, bare: BareBlade) -> SolidSamples:
         """Of sections of one kind (0 bare, 1 top, 2 below, 3 both) along the whole span."""
-        code, z = kind * self.config.patches.passive, bare.z
+        code, z = kind * self.config.patches.only("actuators").passive, bare.z
         solid = self.sections.solid
 
         def under(values: Array) -> Array:

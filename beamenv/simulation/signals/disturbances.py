@@ -62,7 +62,7 @@ class Turbulence:
     def of(cls, plant: Plant, scenario: Scenario) -> Turbulence | None:
         """That of a scenario; None without any."""
         rotor = scenario.rotor
-        return cls(math.exp(-plant.control_interval / rotor.turbulence_time)) if rotor.turbulence else None
+        return cls(math.exp(-plant.scenario_interval / rotor.turbulence_time)) if rotor.turbulence else None
 
     def following(self, gusts: Array, normals: Array) -> Array:
         """The loads (…, k) of the next instant, from this one's and normals of the right size."""

@@ -23,7 +23,7 @@ class Electronics:
 
     def __init__(self, plant: Plant, scenario: Scenario, count: int) -> None:
         m, p = plant.B.shape[1], len(plant.C)
-        self._scenario, self._interval = scenario, plant.control_interval
+        self._scenario, self._interval = scenario, plant.scenario_interval
         self.hysteresis = hysteresis_of(plant, scenario.drive.hysteresis)
         self.threshold = float(ndtri(scenario.acquisition.dropout)) if scenario.acquisition.dropout else None
         """A reading is lost where its standard normal is below."""

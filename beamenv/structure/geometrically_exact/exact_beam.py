@@ -17,6 +17,7 @@ from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES
 from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.walls.inlay import Strip
 
 Array = NDArray[np.float64]
 
@@ -104,12 +105,11 @@ class ExactBeam:
         shapes = [np.einsum("st,jtc->sjc", table, by_shape, optimize=True) for table in (value, slope)]
         return np.concatenate([beam, *shapes], axis=1)
 
-    def cut_for(self, wall: str, width: float) -> SectionsAlong:
-        """The sections with the wall's elements cut where a strip of some width in its middle begins and ends."""
-        edges = self.sections.solid.ring.edges
-        if any(edge.wall == wall and abs(edge.reach - 0.5 * width) <= 1e-9 * width for edge in edges):
+    def cut_for(self, strip: Strip) -> SectionsAlong:
+        """The sections with a wall's elements cut where a strip begins and ends."""
+        if any(strip in edge.strips for edge in self.sections.solid.mesh.edges):
             return self.sections
-        return self.sections.cut_for(wall, width)
+        return self.sections.cut_for(strip)
 
     @sealed_property
     def at_stations(self) -> BladeAtStations:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
 
@@ -10,53 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed_property
-from beamenv.structure.geometrically_exact.rotations import about_span
-from beamenv.structure.section.mesh import ring
+from beamenv.structure.planform import Planform
+from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.section import Section
 from beamenv.structure.section.solid_sections import SolidSections
-from beamenv.structure.walls.contour import Inlay
+from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Laminate, Layup
 
 Array = NDArray[np.float64]
-
-SIZES = 9
-"""Sizes at which the sections of a tapered blade are worked out; between them its properties, smooth functions of the size, follow
-a polynomial."""
-
-
-@dataclass(frozen=True, slots=True)
-class Planform:
-    """How the section is turned and scaled along the span."""
-
-    length: float
-    pretwist: float
-    presetting: float
-    """rad, of the whole span and of the root."""
-    taper: float
-
-    def scale(self, z: Array) -> Array:
-        """Size over that of the root (S,)."""
-        tip = 1.0 / self.taper
-        return tip + (1.0 - tip) * (1.0 - z / self.length)
-
-    def frames(self, z: Array) -> Array:
-        """C₀ (S, 3, 3): the axes of the sections."""
-        return about_span(self.presetting + self.pretwist * z / self.length)
-
-    @property
-    def rate(self) -> float:
-        """rad/m."""
-        return self.pretwist / self.length
-
-    @property
-    def sizes(self) -> Array:
-        """Chebyshev points from the size of the root to that of the tip, both included; one for a blade without taper."""
-        if self.taper == 1.0:
-            return np.ones(1)
-        nodes = np.cos(np.pi * np.arange(SIZES) / (SIZES - 1))
-        tip = 1.0 / self.taper
-        return 0.5 * (1.0 + tip) + 0.5 * (1.0 - tip) * nodes
-
 
 NOTHING = 1e-9
 """Energy, over that of one strain alone, that rounding may take."""
@@ -75,34 +36,41 @@ class SectionsAlong(Sealed):
     codes: NDArray[np.intp]
     """(C,) ascending: which combinations of kinds occur, as sums of powers of two."""
     solid: SolidSections
-    """C times SIZES of them (or one), combination after combination."""
+    """C times as many as the planform's pieces have sizes, combination after combination."""
 
     @classmethod
     def build(
-        cls, section: Section, layup: Layup, planform: Planform, inlays: Sequence[Inlay], cuts: Sequence[tuple[str, float]] = ()
+        cls, section: Section, layup: Layup, planform: Planform, inlays: Sequence[Inlay], cuts: Sequence[Strip] = ()
     ) -> SectionsAlong:
         """Those of a blade whose inlays may lie anywhere."""
         kinds = _kinds(inlays)
         codes = _combinations(inlays, kinds)
-        widths = sorted({*cuts, *((inlay.wall, inlay.width) for inlay in inlays)})
-        hosts = tuple(Laminate.equal_plies(layup.plies(wall), section.thickness) for wall in section.walls)
-        sheets = tuple((kind.wall, kind.width, kind.ply, kind.thickness) for kind in kinds)
-        key = (section, hosts, sheets, codes.tobytes(), tuple(widths), planform.rate, planform.taper)
+        strips = tuple(sorted({*cuts, *(inlay.strip for inlay in inlays)}, key=lambda each: (each.wall, each.width, each.offset)))
+        hosts = section.hosts(layup)
+        sheets = tuple(kind.kind for kind in kinds)
+        key = (
+            section,
+            tuple(hosts.items()),
+            sheets,
+            codes.tobytes(),
+            strips,
+            tuple((piece.rate, piece.sizes) for piece in planform.pieces),
+        )
         solid = _ALIVE.get(key)
         if solid is None:
-            solid = _ALIVE[key] = _solid_sections(section, hosts, planform, kinds, codes, widths)
+            solid = _ALIVE[key] = _solid_sections(section, hosts, planform, kinds, codes, strips)
         return cls(section, layup, planform, tuple(inlays), kinds, codes, solid)
 
-    def cut_for(self, wall: str, width: float) -> SectionsAlong:
-        """The same sections, with the wall's elements cut where a strip of some width in its middle begins and ends."""
-        cut = SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [(wall, width)])
+    def cut_for(self, strip: Strip) -> SectionsAlong:
+        """The same sections, with a wall's elements cut where a strip begins and ends."""
+        cut = SectionsAlong.build(self.section, self.layup, self.planform, self.inlays, [strip])
         return replace(cut, solid=cut.solid.aligned(self.solid))
 
     def at(self, z: Array, values: Array) -> Array:
         """(S, …): what the sections have (V, …), at stations z (m)."""
         code = np.zeros(len(z), dtype=np.intp)
         for bit, kind in enumerate(self.kinds):
-            covered = np.any([inlay.covers(z) for inlay in self.inlays if _same_kind(inlay, kind)], axis=0)
+            covered = np.any([inlay.covers(z) for inlay in self.inlays if inlay.kind == kind.kind], axis=0)
             code += covered.astype(np.intp) << bit
         return self._of(np.searchsorted(self.codes, code), z, values)
 
@@ -111,32 +79,53 @@ class SectionsAlong(Sealed):
         return self._of(np.full(len(z), np.searchsorted(self.codes, code)), z, values)
 
     def _of(self, which: NDArray[np.intp], z: Array, values: Array) -> Array:
-        sizes = self.planform.sizes
-        if len(sizes) == 1:
+        count = sum(len(piece.sizes) for piece in self.planform.pieces)
+        if count == 1:
             return values[which]
-        by_size = values.reshape(len(self.codes), len(sizes), *values.shape[1:])[which]
-        return np.einsum("sn,sn...->s...", self._weights(self.planform.scale(z)), by_size)
+        by_size = values.reshape(len(self.codes), count, *values.shape[1:])[which]
+        return np.einsum("sn,sn...->s...", self._weights(z), by_size)
 
-    def _weights(self, scale: Array) -> Array:
-        """(S, SIZES): of the sizes known, for sections of other sizes."""
-        sizes = self.planform.sizes
-        if self._smooth:
+    def _weights(self, z: Array) -> Array:
+        """(S, sizes): of the sections known, for those at stations z (m)."""
+        pieces, scale = self.planform.pieces, self.planform.scale(z)
+        if len(pieces) == 1:
+            return self._within(0, scale)
+        ends = np.array([piece.end for piece in pieces[:-1]])
+        where, weights = np.searchsorted(ends, z, side="right"), []
+        for k in range(len(pieces)):
+            own = where == k
+            part = np.zeros((len(z), len(pieces[k].sizes)))
+            part[own] = self._within(k, scale[own])
+            weights.append(part)
+        return np.concatenate(weights, axis=1)
+
+    def _within(self, piece: int, scale: Array) -> Array:
+        """(S, n): of the n sections of a piece, for those of other sizes."""
+        sizes = np.array(self.planform.pieces[piece].sizes)
+        if len(sizes) == 1:
+            return np.ones((len(scale), 1))
+        if self._smooth[piece]:
             return between(sizes, scale)
         order = np.argsort(sizes)
         return np.stack([np.interp(scale, sizes[order], row[order]) for row in np.eye(len(sizes))], axis=-1)
 
     @sealed_property
-    def _smooth(self) -> bool:
-        """Whether the polynomial between sizes leaves every section some energy in every strain. That of very thin walls under
-        strong pretwist, which warp otherwise at every size, may not; then the mean of two neighbours does.
+    def _smooth(self) -> tuple[bool, ...]:
+        """Whether the polynomial between sizes leaves every section some energy in every strain, piece by piece. That of very thin
+        walls under strong pretwist, which warp otherwise at every size, may not; then the mean of two neighbours does.
         """
-        sizes = self.planform.sizes
-        halfway = between(sizes, np.linspace(sizes.min(), sizes.max(), 4 * len(sizes)))
-        energy = self.solid.energy.reshape(len(self.codes), len(sizes), -1)
-        size = self.solid.energy.shape[-1]
+        found, pieces = [], self.planform.pieces
+        energy = self.solid.energy.reshape(len(self.codes), -1, *self.solid.energy.shape[1:])
+        size, first = energy.shape[-1], 0
         unit = 1.0 / np.sqrt(np.diagonal(self.solid.energy[0]))
-        every = np.einsum("sn,cne->cse", halfway, energy).reshape(-1, size, size) * np.outer(unit, unit)
-        return bool(np.linalg.eigvalsh(every).min() > -NOTHING)
+        for piece in pieces:
+            sizes, count = np.array(piece.sizes), len(piece.sizes)
+            halfway = between(sizes, np.linspace(sizes.min(), sizes.max(), 4 * count)) if count > 1 else np.ones((1, 1))
+            own = energy[:, first : first + count].reshape(len(self.codes), count, -1)
+            every = np.einsum("sn,cne->cse", halfway, own).reshape(-1, size, size) * np.outer(unit, unit)
+            found.append(bool(np.linalg.eigvalsh(every).min() > -NOTHING))
+            first += count
+        return tuple(found)
 
 
 _ALIVE: WeakValueDictionary[Hashable, SolidSections] = WeakValueDictionary()
@@ -146,25 +135,25 @@ patches are, or on how many terms there are."""
 
 def _solid_sections(
     section: Section,
-    hosts: Sequence[Laminate],
+    hosts: Mapping[str, Laminate],
     planform: Planform,
     kinds: Sequence[Inlay],
     codes: NDArray[np.intp],
-    widths: Sequence[tuple[str, float]],
+    strips: Sequence[Strip],
 ) -> SolidSections:
-    sizes = planform.sizes
-    vertices = np.tile(sizes[:, None, None] * section.placed_vertices, (len(codes), 1, 1))
-    elements = ring(vertices, section.walls, section.thickness, widths)
-    by_wall, laminates = dict(zip(section.walls, hosts, strict=True)), dict[Laminate, int]()
+    sizes = np.concatenate([piece.sizes for piece in planform.pieces])
+    rates = np.concatenate([np.full(len(piece.sizes), piece.rate) for piece in planform.pieces])
+    elements = mesh(section.placed_chains, np.tile(sizes, len(codes)), strips)
+    laminates = dict[Laminate, int]()
     which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
     for row, code in enumerate(codes.tolist()):
         for k, edge in enumerate(elements.edges):
-            laminate = by_wall[edge.wall]
+            laminate = hosts[edge.wall]
             for bit, kind in enumerate(kinds):
                 if code >> bit & 1 and edge.lies_under(kind):
-                    laminate = laminate.with_outer_layer(kind.ply, kind.thickness)
+                    laminate = kind.let_into(laminate)
             which[row, k] = laminates.setdefault(laminate, len(laminates))
-    return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), planform.rate)
+    return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), np.tile(rates, len(codes)))
 
 
 def between(nodes: Array, at: Array) -> Array:
@@ -175,14 +164,10 @@ def between(nodes: Array, at: Array) -> Array:
     return np.asarray(factors.prod(axis=2))
 
 
-def _same_kind(one: Inlay, other: Inlay) -> bool:
-    return (one.wall, one.width, one.ply, one.thickness) == (other.wall, other.width, other.ply, other.thickness)
-
-
 def _kinds(inlays: Sequence[Inlay]) -> tuple[Inlay, ...]:
     found: list[Inlay] = []
     for inlay in inlays:
-        if not any(_same_kind(inlay, kind) for kind in found):
+        if not any(inlay.kind == kind.kind for kind in found):
             found.append(inlay)
     return tuple(found)
 
@@ -194,6 +179,6 @@ def _combinations(inlays: Sequence[Inlay], kinds: Sequence[Inlay]) -> NDArray[np
     code = np.zeros(len(middles), dtype=np.intp)
     for bit, kind in enumerate(kinds):
         for inlay in inlays:
-            if _same_kind(inlay, kind):
+            if inlay.kind == kind.kind:
                 code |= inlay.covers(middles).astype(np.intp) << bit
     return np.unique(np.append(code, 0))

@@ -20,12 +20,10 @@ from scipy.linalg import lu_factor, lu_solve
 
 from beamenv.configuration import Refused
 from beamenv.structure.section.element_sums import ElementSums
-from beamenv.structure.section.elements import ACROSS, RIGID
+from beamenv.structure.section.elements import RIGID
+from beamenv.structure.section.lines import PER_LINE
 
 Array = NDArray[np.float64]
-
-PER_LINE = 3 * (ACROSS + 1)
-"""Displacements on a line across the wall."""
 
 PASSES = 10
 """Most iterations for the pretwist's terms before they are extrapolated; on a blade each is some 50 times smaller than the last,
@@ -60,18 +58,20 @@ def equilibrium(pretwist: float) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Factorised:
-    """The equations of V sections for warping and beam strain, ready to be solved; the inside of elements is eliminated."""
+    """The equations of V sections for warping and beam strain, ready to be solved; the inside of elements is eliminated, but for
+    those that joints lie on.
+    """
 
     sums: ElementSums
     inner: Array
-    """(V, K, i, i): inverse of the inside of each element."""
+    """(V, K, i, i): inverse of the inside of each element; zero where that stays."""
     coupling: Array
     """(V, K, i, b + 6): between the inside, and the two ends of the element and the beam strain."""
     factors: tuple[tuple[Array, NDArray[np.int32]], ...]
     scale: Array
-    """(V, 12 K + 6): units of displacements on lines and of beam strain, in which every equation has 1 on its diagonal."""
+    """(V, 12 L + 6): units of displacements on lines and of beam strain, in which every equation has 1 on its diagonal."""
     held: Array
-    """(V, 12 K, 6): averages of the lines' rigid motion, in their units, of which the squares are added to the energy."""
+    """(V, 12 L, 6): averages of the lines' rigid motion, in their units, of which the squares are added to the energy."""
 
     @classmethod
     def of(cls, sums: ElementSums) -> Factorised:
@@ -81,6 +81,7 @@ class Factorised:
         stiffness = sums.warping
         full = np.concatenate([stiffness, sums.beam_strain], axis=-1)
         inner = _inverse(sums, stiffness[..., inside, inside])
+        inner[:, sums.lines.hosts] = 0.0
         columns = np.concatenate([ends, size + np.arange(RIGID)])
         coupling = full[..., inside, :][..., columns]
         bordered = np.zeros((*stiffness.shape[:2], len(columns), len(columns)))
@@ -88,7 +89,7 @@ class Factorised:
         bordered[..., len(ends) :, : len(ends)] = sums.beam_strain[..., ends, :].swapaxes(-1, -2)
         bordered[..., len(ends) :, len(ends) :] = sums.beam
         bordered -= coupling.swapaxes(-1, -2) @ inner @ coupling
-        systems = [_assembled(each) for each in bordered]
+        systems = [_assembled(sums, v, each) for v, each in enumerate(bordered)]
         scale = np.stack([_unit(sums, system) for system in systems])
         held = sums.rigid_lines * scale[:, :-RIGID, None]
         held /= np.linalg.norm(held, axis=1, keepdims=True)
@@ -122,32 +123,34 @@ class Factorised:
         return warping, strain
 
     def _in_units(self, warping: Array, strain: Array) -> Array:
-        """(V, 12 K + 6, c): displacements of the ends of elements and beam strain."""
-        order = self.sums.lines // self.inner.shape[1]
-        ends = warping[:, ::order].reshape(len(warping), -1, warping.shape[-1])
-        return np.asarray(np.concatenate([ends, strain], axis=1) / self.scale[..., None])
+        """(V, 12 L + 6, c): displacements of the lines solved for and beam strain."""
+        lines = warping[:, self.sums.lines.solved].reshape(len(warping), -1, warping.shape[-1])
+        return np.asarray(np.concatenate([lines, strain], axis=1) / self.scale[..., None])
 
     def _solve(self, loads: Array, resultants: Array, rigid: Array) -> tuple[Array, Array]:
         """Once, and with the rigid motion (V, 6, c) taken back by which a first solution was held."""
-        size = self.sums.size
+        size, lines = self.sums.size, self.sums.lines
         inside = slice(PER_LINE, size - PER_LINE)
         freed = self.inner @ loads[..., inside, :]
         passed = self.coupling.swapaxes(-1, -2) @ freed
         on_ends = loads[..., _ends(size), :] - passed[..., : 2 * PER_LINE, :]
-        lines = on_ends[..., :PER_LINE, :] + np.roll(on_ends[..., PER_LINE:, :], 1, axis=1)
         strain_loads = resultants - passed[..., 2 * PER_LINE :, :].sum(axis=1)
-        count, columns = lines.shape[1] * PER_LINE, loads.shape[-1]
-        right = self.scale[..., None] * np.concatenate([lines.reshape(len(lines), count, columns), strain_loads], axis=1)
+        on_lines = _on_lines(self.sums, on_ends, loads[:, lines.hosts, inside])
+        count, columns = on_lines.shape[1], loads.shape[-1]
+        right = self.scale[..., None] * np.concatenate([on_lines, strain_loads], axis=1)
         right[:, :count] -= self.held @ rigid
         scaled = np.stack([lu_solve(factor, each, check_finite=False) for factor, each in zip(self.factors, right, strict=True)])
         solved = self.scale[..., None] * scaled
         strain = solved[:, count:]
-        ends = solved[:, :count].reshape(len(lines), -1, PER_LINE, columns)
-        around = np.concatenate([ends, np.roll(ends, -1, axis=1)], axis=2)
+        found = np.zeros((len(loads), lines.free, PER_LINE, columns))
+        found[:, lines.solved] = solved[:, :count].reshape(len(loads), -1, PER_LINE, columns)
+        around = lines.gather(found)[..., _ends(size), :]
         known = np.concatenate([around, np.broadcast_to(strain[:, None], (*around.shape[:2], RIGID, columns))], axis=2)
-        inner = freed - self.inner @ (self.coupling @ known)
-        whole = np.concatenate([ends, inner], axis=2)
-        return whole.reshape(len(lines), -1, PER_LINE, columns), strain
+        within = freed - self.inner @ (self.coupling @ known)
+        rest = np.delete(np.arange(within.shape[1]), lines.hosts)
+        own = lines.of_elements[rest, 1:-1]
+        found[:, own] = within[:, rest].reshape(len(loads), *own.shape, PER_LINE, columns)
+        return found, strain
 
 
 def _ends(size: int) -> NDArray[np.intp]:
@@ -175,20 +178,48 @@ def _inverse(sums: ElementSums, stiffness: Array) -> Array:
     return np.asarray(unit[..., None] * np.linalg.inv(unit[..., None] * stiffness * unit[..., None, :]) * unit[..., None, :])
 
 
-def _assembled(bordered: Array) -> Array:
-    """One system of lines and beam strain from elements (K, 24 + 6, 24 + 6)."""
-    count = len(bordered)
-    lines = np.zeros((count, PER_LINE, count, PER_LINE))
-    here = np.arange(count)
-    there = (here + 1) % count
+def _on_lines(sums: ElementSums, on_ends: Array, inside: Array) -> Array:
+    """(V, 12 L, c): loads on the lines solved for, of those on ends of elements (V, K, 24, c) and inside hosts (V, H, i, c)."""
+    lines, (sections, _, _, columns) = sums.lines, on_ends.shape
+    count, places = len(lines.solved), lines.places
+    total = np.zeros((sections, count + len(lines.faces), PER_LINE, columns))
+    for at, part in ((0, slice(0, PER_LINE)), (-1, slice(PER_LINE, None))):
+        total[:, places[lines.of_elements[:, at]]] += on_ends[:, :, part]
+    if not len(lines.faces):
+        return total.reshape(sections, -1, columns)
+    own = places[lines.of_elements[lines.hosts, 1:-1]]
+    total[:, own] += inside.reshape(sections, *own.shape, PER_LINE, columns)
+    flat = total.reshape(sections, -1, columns)
+    return np.asarray(flat[:, : count * PER_LINE] + lines.follow.T @ flat[:, count * PER_LINE :])
+
+
+def _assembled(sums: ElementSums, section: int, bordered: Array) -> Array:
+    """One system of lines and beam strain from elements (K, 24 + 6, 24 + 6), and of hosts their whole."""
+    lines = sums.lines
+    count, places = len(lines.solved), lines.places
+    every = count + len(lines.faces)
+    blocks, border = np.zeros((every, PER_LINE, every, PER_LINE)), np.zeros((every, PER_LINE, RIGID))
+    rest = np.delete(np.arange(len(bordered)), lines.hosts)
     first, last, strain = slice(0, PER_LINE), slice(PER_LINE, 2 * PER_LINE), slice(2 * PER_LINE, None)
+    here, there = places[lines.of_elements[rest, 0]], places[lines.of_elements[rest, -1]]
     for rows, row in ((here, first), (there, last)):
         for columns, column in ((here, first), (there, last)):
-            lines[rows, :, columns] += bordered[:, row, column]
+            blocks[rows, :, columns] += bordered[rest, row, column]
+        border[rows] += bordered[rest, row, strain]
+    for host in lines.hosts:
+        own = places[lines.of_elements[host]]
+        shape = (len(own), PER_LINE)
+        blocks[own[:, None], :, own] += sums.warping[section, host].reshape(*shape, *shape).swapaxes(1, 2)
+        border[own] += sums.beam_strain[section, host].reshape(*shape, RIGID)
     size = count * PER_LINE
+    square, side = blocks.reshape(every * PER_LINE, -1), border.reshape(-1, RIGID)
     whole = np.zeros((size + RIGID, size + RIGID))
-    whole[:size, :size] = lines.reshape(size, size)
-    whole[:size, size:] = (bordered[:, first, strain] + np.roll(bordered[:, last, strain], 1, axis=0)).reshape(size, RIGID)
+    whole[:size, :size], whole[:size, size:] = square[:size, :size], side[:size]
+    if len(lines.faces):
+        follow = lines.follow
+        crossed = square[:size, size:] @ follow
+        whole[:size, :size] += crossed + crossed.T + follow.T @ square[size:, size:] @ follow
+        whole[:size, size:] += follow.T @ side[size:]
     whole[size:, :size] = whole[:size, size:].T
     whole[size:, size:] = bordered[:, strain, strain].sum(axis=0)
     return whole
@@ -219,7 +250,7 @@ def central_solution(system: Factorised, pretwist: float) -> CentralSolution:
     sums = system.sums
     sections = len(sums.warping)
     T, one = equilibrium(pretwist), np.broadcast_to(np.eye(RIGID), (sections, RIGID, RIGID))
-    warping = np.zeros((sections, sums.lines, PER_LINE, RIGID))
+    warping = np.zeros((sections, sums.lines.free, PER_LINE, RIGID))
     strain = np.zeros((sections, RIGID, RIGID))
     for _ in range(CYCLES):
         passes = [(warping, strain)]

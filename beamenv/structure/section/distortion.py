@@ -27,15 +27,15 @@ TOLD_APART = 1e-12
 """Least energy of a mixture of shapes, of unit energy each, that is more than rounding."""
 
 
-def distortion_shapes(system: Factorised) -> Array:
-    """(V, lines, 12, DISTORTIONS) of unit energy, ½ for half a unit. All sections take the loads of the first one's vibrations, so
-    that the same coefficient means the same shape in all.
+def distortion_shapes(system: Factorised, loads: Array) -> Array:
+    """(V, lines, 12, DISTORTIONS) of unit energy, ½ for half a unit, in the section that the loads are those of the vibrations of.
+
+    All sections take the same loads, so that the same coefficient means the same shape in all.
     """
-    loads = _loads_of_vibrations(system.first)
     return _under(system, np.broadcast_to(loads, (len(system.factors), *loads.shape[1:])))
 
 
-def _loads_of_vibrations(system: Factorised) -> Array:
+def loads_of_vibrations(system: Factorised) -> Array:
     """Inertial loads on the elements (1, K, size, DISTORTIONS) that give one section its slowest shapes, of unit energy."""
     sums = system.sums
     shapes = without(sums, trial := _polynomials(sums.nodes), mean_motion(sums, trial))

@@ -18,7 +18,8 @@ from beamenv.structure.section.elements import (
     stiffness_in_section,
     strain_of_tables,
 )
-from beamenv.structure.section.mesh import Ring
+from beamenv.structure.section.lines import Lines
+from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.trial_functions import gauss_rule
 from beamenv.structure.walls.laminate import Laminate, Ply
 
@@ -51,27 +52,23 @@ class ElementSums:
     inertia: Array
     """∫ ρ (1, x, y, x², xy, y²) dA (V, 6)."""
     middles: Array
-    """(V, lines, 2), m: where lines cross the mid-line."""
+    """(V, lines, 2), m: where lines cross the mid-line, joints aside."""
     reaches: Array
     """(V, lines, 2), m: from there to the outer face along the line."""
+    lines: Lines
     thickness: float
-    """m, of the walls."""
+    """m, of the thinnest wall."""
 
     @property
     def first(self) -> ElementSums:
         """That of the first section alone."""
-        arrays = {each.name: getattr(self, each.name)[:1] for each in fields(self) if each.name != "thickness"}
+        arrays = {each.name: getattr(self, each.name)[:1] for each in fields(self) if each.name not in ("lines", "thickness")}
         return replace(self, **arrays)
 
     @property
     def size(self) -> int:
         """Displacements of an element."""
         return self.warping.shape[-1]
-
-    @property
-    def lines(self) -> int:
-        """How many lines across the wall all elements have together."""
-        return self.middles.shape[1]
 
     @property
     def rigid(self) -> Array:
@@ -83,9 +80,8 @@ class ElementSums:
 
     @property
     def rigid_lines(self) -> Array:
-        """(V, 12 K, 6): rigid motion of the lines at which elements meet."""
-        order = self.lines // self.warping.shape[1]
-        return self.rigid[:, ::order].reshape(len(self.middles), -1, RIGID)
+        """(V, 12 L, 6): rigid motion of the lines that the equations are of."""
+        return self.rigid[:, self.lines.solved].reshape(len(self.middles), -1, RIGID)
 
     @property
     def nodes(self) -> Array:
@@ -94,10 +90,7 @@ class ElementSums:
 
     def gather(self, lines: Array) -> Array:
         """(V, K, size, c): displacements of each element from those of the lines (V, lines, 12, c)."""
-        sections, elements = self.warping.shape[:2]
-        of_elements = lines.reshape(sections, elements, -1, *lines.shape[2:])
-        last = np.roll(of_elements[:, :, :1], -1, axis=1)
-        return np.concatenate([of_elements, last], axis=2).reshape(sections, elements, self.size, -1)
+        return self.lines.gather(lines)
 
     def energy(self, warping: Array, derivative: Array, strain: Array) -> Array:
         """∫ εᵀ Q ε (V, c, c) of c states: warping and its derivative (V, K, size, c), beam strain (V, 6, c)."""
@@ -118,36 +111,37 @@ class ElementSums:
         return (self.mass @ warping.reshape(*shape[:2], nodes, -1)).reshape(shape)
 
 
-def element_sums(ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> ElementSums:
-    """Those of V sections: the ring's S sizes are V of them, and element k of section v has the wall ``laminates[which[v, k]]``."""
+def element_sums(mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> ElementSums:
+    """Those of V sections: the mesh's S sizes are V of them, and element k of section v has the wall ``laminates[which[v, k]]``."""
     sections, count = which.shape
-    nodes = (ring.order + 1) * (ACROSS + 1)
-    first, of_elements = _distinct(ring, which)
+    nodes = (mesh.order + 1) * (ACROSS + 1)
+    first, of_elements = _distinct(mesh, which)
     totals = _Totals.zeros(len(first), nodes)
     for number, laminate in enumerate(laminates):
         members = np.flatnonzero(which.ravel()[first] == number)
         for low, high, ply in layers(laminate):
-            totals.add(ring, _Layer(members, first[members], low, high, ply), pretwist)
+            totals.add(mesh, _Layer(members, first[members], low, high, ply), pretwist)
     shaped = {name: values[of_elements].reshape(sections, count, *values.shape[1:]) for name, values in vars(totals).items()}
     inertia = shaped.pop("inertia").sum(axis=1)
-    middles, reaches = lines_across(ring)
-    return ElementSums(**shaped, inertia=inertia, middles=middles, reaches=reaches, thickness=ring.thickness)
+    middles, reaches = lines_across(mesh)
+    thinnest = float(mesh.thickness.min())
+    return ElementSums(**shaped, inertia=inertia, middles=middles, reaches=reaches, lines=Lines.of(mesh), thickness=thinnest)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Layer:
-    """A layer of one ply and the elements that have it, by their places among the distinct ones and in the ring."""
+    """A layer of one ply and the elements that have it, by their places among the distinct ones and in the mesh."""
 
     members: NDArray[np.intp]
-    in_ring: NDArray[np.intp]
+    in_mesh: NDArray[np.intp]
     low: float
     high: float
     ply: Ply
 
 
-def _distinct(ring: Ring, which: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Elements (flat indices into the ring) of which no two are alike, and (V·K,) which of them each element is."""
-    _, size = np.unique(ring.points.reshape(len(which), -1), axis=0, return_inverse=True)
+def _distinct(mesh: Mesh, which: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Elements (flat indices into the mesh) of which no two are alike, and (V·K,) which of them each element is."""
+    _, size = np.unique(mesh.points.reshape(len(which), -1), axis=0, return_inverse=True)
     place = np.arange(which.shape[1])
     key = (size.reshape(-1, 1) * which.shape[1] + place) * (which.max() + 1) + which
     _, first, of_elements = np.unique(key.ravel(), return_index=True, return_inverse=True)
@@ -176,19 +170,20 @@ class _Totals:
         shapes = square, square, square, strain, strain, (elements, RIGID, RIGID), moments, (elements, nodes, nodes)
         return cls(*(np.zeros(shape) for shape in (*shapes, (elements, MONOMIALS))))
 
-    def add(self, ring: Ring, layer: _Layer, pretwist: float) -> None:
+    def add(self, mesh: Mesh, layer: _Layer, pretwist: float) -> None:
         """∫ table × table over the layer, contracted with what a pair of tables means in energy."""
-        along, weight_along = gauss_rule(ring.order + 1)
-        depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * ring.thickness else 2)
+        along, weight_along = gauss_rule(mesh.order + 1)
+        thickness = mesh.thickness[layer.in_mesh[0] % len(mesh.edges)]
+        depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * thickness else 2)
         half = 0.5 * (layer.high - layer.low)
-        here = places(ring, layer.in_ring, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
+        here = places(mesh, layer.in_mesh, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
         tables = here.tables()
-        nodes, count = here.value.shape[-1], len(layer.in_ring)
+        nodes, count = here.value.shape[-1], len(layer.in_mesh)
         pairs = (tables * here.weight[..., None]).swapaxes(-1, -2) @ tables
         shapes = pairs[:, : 4 * nodes, : 4 * nodes].reshape(count, 4, nodes, 4, nodes)
         with_beam = pairs[:, : 4 * nodes, 4 * nodes :].reshape(count, 4, nodes, 3)
         of_beam = pairs[:, 4 * nodes :, 4 * nodes :]
-        stiffness = stiffness_in_section(layer.ply, ring.tangents.reshape(-1, 2)[layer.in_ring])
+        stiffness = stiffness_in_section(layer.ply, mesh.tangents.reshape(-1, 2)[layer.in_mesh])
         B, S, Z = strain_of_tables(pretwist)
         stressed_B, stressed_S, stressed_Z = (_stressed(stiffness, rows) for rows in (B, S[None], Z))
         at, value = layer.members, shapes[:, 3, :, 3]
@@ -234,11 +229,19 @@ def _summed(meaning: Array, integrals: Array) -> Array:
     return product.reshape(count, i, j, c, d).transpose(0, 1, 3, 2, 4).reshape(count, i * c, j * d)
 
 
-def lines_across(ring: Ring) -> tuple[Array, Array]:
-    """(S, lines, 2) each, m: where all lines, element after element, cross the mid-line, and from there to the outer face."""
-    share = 0.5 * (1.0 + lobatto_nodes(ring.order)[:-1])[:, None]
+def lines_across(mesh: Mesh) -> tuple[Array, Array]:
+    """(S, lines, 2) each, m: where all lines, joints aside, cross the mid-line, and from there to the outer face."""
+    half = 0.5 * mesh.thickness[:, None]
+    first, last = mesh.points, mesh.last_points
+    reach, last_reach = half * mesh.directions, half * mesh.last_directions
+    share = 0.5 * (1.0 + lobatto_nodes(mesh.order)[1:-1])[:, None]
+    free = mesh.lines < mesh.count
 
-    def between(start: Array) -> Array:
-        return ((1.0 - share) * start[:, :, None] + share * np.roll(start, -1, axis=1)[:, :, None]).reshape(len(start), -1, 2)
+    def across(start: Array, end: Array) -> Array:
+        between = np.empty((len(start), mesh.count, 2))
+        for at, values in ((1, end), (0, start)):
+            between[:, mesh.lines[free[:, at], at]] = values[:, free[:, at]]
+        inner = (1.0 - share) * start[:, :, None] + share * end[:, :, None]
+        return np.concatenate([between, inner.reshape(len(start), -1, 2)], axis=1)
 
-    return between(ring.points), between(0.5 * ring.thickness * ring.directions)
+    return across(first, last), across(reach, last_reach)

@@ -1,4 +1,4 @@
-"""The solid elements of a section: displacement shapes over a ring of elements, and what they strain.
+"""The solid elements of a section: displacement shapes over elements through the wall, and what they strain.
 
 In a frame that turns with the blade's pretwist at k rad/m a displacement g(x, y, z) has the strains ε = B g + S g′, where
 g′ = ∂g/∂z at fixed place in the section, and
@@ -18,7 +18,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import sealed
-from beamenv.structure.section.mesh import Ring
+from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.walls.laminate import Laminate, Ply
 from beamenv.structure.walls.materials import wall_stiffness
 
@@ -119,10 +119,11 @@ def rigid_motion(x: Array, y: Array) -> Array:
     return moved
 
 
-def places(ring: Ring, members: NDArray[np.intp], along: Array, across: Array, weight_along: Array, weight_across: Array) -> Places:
-    """Points of some elements (flat indices into (S, K)): ``along`` on −1 … 1 times ``across``, n in m."""
-    P, d = (each.reshape(-1, 2)[members] for each in (ring.points, ring.directions))
-    Q, e = (np.roll(each, -1, axis=1).reshape(-1, 2)[members] for each in (ring.points, ring.directions))
+def places(mesh: Mesh, members: NDArray[np.intp], along: Array, across: Array, weight_along: Array, weight_across: Array) -> Places:
+    """Points of some elements of one thickness (flat indices into (S, K)): ``along`` on −1 … 1 times ``across``, n in m."""
+    P, d = (each.reshape(-1, 2)[members] for each in (mesh.points, mesh.directions))
+    Q, e = (each.reshape(-1, 2)[members] for each in (mesh.last_points, mesh.last_directions))
+    thickness = float(mesh.thickness[members[0] % len(mesh.edges)])
     share = 0.5 * (1.0 + along)[None, :, None, None]
     n = across[None, None, :, None]
     start, end = P[:, None, None] + n * d[:, None, None], Q[:, None, None] + n * e[:, None, None]
@@ -130,12 +131,12 @@ def places(ring: Ring, members: NDArray[np.intp], along: Array, across: Array, w
     by_along = np.broadcast_to(0.5 * (end - start), position.shape)
     by_across = np.broadcast_to((1.0 - share) * d[:, None, None] + share * e[:, None, None], position.shape)
     area = by_along[..., 0] * by_across[..., 1] - by_along[..., 1] * by_across[..., 0]
-    values, slopes = lagrange(ring.order, along)
-    through, steepness = through_wall(ACROSS, 2.0 * across / ring.thickness)
+    values, slopes = lagrange(mesh.order, along)
+    through, steepness = through_wall(ACROSS, 2.0 * across / thickness)
     shape = (len(along), len(across), -1)
     value = (values[:, None, :, None] * through[None, :, None, :]).reshape(shape)
     s = (slopes[:, None, :, None] * through[None, :, None, :]).reshape(shape)
-    t = (values[:, None, :, None] * steepness[None, :, None, :]).reshape(shape) * (2.0 / ring.thickness)
+    t = (values[:, None, :, None] * steepness[None, :, None, :]).reshape(shape) * (2.0 / thickness)
     along_x = (by_across[..., 1:] * s - by_along[..., 1:] * t) / area[..., None]
     along_y = (by_along[..., :1] * t - by_across[..., :1] * s) / area[..., None]
     count = len(members)

@@ -8,18 +8,20 @@ beam is as stiff as the (6, 6) matrix says; at the clamp they vanish, which Sain
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed, sealed_property
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
-from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes
+from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes, loads_of_vibrations
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
-from beamenv.structure.section.mesh import Ring
+from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.trial_functions import gauss_rule
+from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate
 
 Array = NDArray[np.float64]
@@ -35,11 +37,11 @@ STRAINS = RIGID + 2 * AMPLITUDES
 class SolidSections(Sealed):
     """V sections of one topology, in their own axes."""
 
-    ring: Ring
+    mesh: Mesh
     shapes: Array
     """(V, K, size, AMPLITUDES): displacements of each element's nodes."""
-    pretwist: float
-    """rad/m."""
+    pretwist: Array
+    """(V,), rad/m."""
     stiffness: Array
     """Saint-Venant's (V, 6, 6): rows Vx, Vy, N, Mx, My, Mz."""
     energy: Array
@@ -52,28 +54,55 @@ class SolidSections(Sealed):
     """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, STRAINS)."""
     saint_venant: Array
     """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
-    _forces: dict[tuple[str, float, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
+    _forces: dict[tuple[Strip, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
 
     @classmethod
-    def build(cls, ring: Ring, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float) -> SolidSections:
-        """Sections whose element k has the wall ``laminates[which[v, k]]``; they twist by ``pretwist`` rad/m along the span."""
-        sums = element_sums(ring, laminates, which, pretwist)
+    def build(cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float | Array) -> SolidSections:
+        """Sections whose element k has the wall ``laminates[which[v, k]]``; they twist by ``pretwist`` rad/m, all alike or
+        each (V,).
+        """
+        rates = np.broadcast_to(np.asarray(pretwist, dtype=np.float64), (len(which),))
+        parts: list[SolidSections] = []
+        places, meant = [], None
+        for rate in dict.fromkeys(rates.tolist()):
+            rows = np.flatnonzero(rates == rate)
+            part, meant = cls._of_rate(mesh.rows(rows), laminates, which[rows], rate, meant)
+            parts.append(part)
+            places.append(rows)
+        if len(parts) == 1:
+            return parts[0]
+        order = np.argsort(np.concatenate(places))
+        by_section = ("shapes", "pretwist", "stiffness", "energy", "inertia", "shape_mass", "stress_moments", "saint_venant")
+        whole: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts])[order] for name in by_section}
+        return cls(mesh=mesh, **whole)
+
+    @classmethod
+    def _of_rate(
+        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: tuple[Array, Array] | None
+    ) -> tuple[SolidSections, tuple[Array, Array]]:
+        """Those of one pretwist, and what amplitudes of 1 mean: the resultants (6,), in the first section of unit energy, and the
+        loads that distort. ``meant`` is that of other sections of the blade.
+        """
+        sums = element_sums(mesh, laminates, which, rate)
         system = Factorised.of(sums)
-        central = central_solution(system, pretwist)
-        unit = np.sqrt(np.diagonal(central.stiffness[0]))  # resultants of unit energy, the same in all sections
-        shapes = np.concatenate([central.warping * unit, distortion_shapes(system)], axis=-1)
+        central = central_solution(system, rate)
+        if meant is None:
+            meant = np.sqrt(np.diagonal(central.stiffness[0])), loads_of_vibrations(system.first)
+        unit, loads = meant
+        shapes = np.concatenate([central.warping * unit, distortion_shapes(system, loads)], axis=-1)
         here = sums.gather(shapes)
-        return cls(
-            ring=ring,
+        sections = cls(
+            mesh=mesh,
             shapes=here,
-            pretwist=pretwist,
+            pretwist=np.full(len(which), rate),
             stiffness=central.stiffness,
             energy=_energy(sums, here),
             inertia=sums.inertia,
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, here),
-            saint_venant=_saint_venant(central, unit, pretwist),
+            saint_venant=_saint_venant(central, unit, rate),
         )
+        return sections, meant
 
     def aligned(self, other: SolidSections) -> SolidSections:
         """The same sections with distortions that mean what equal amplitudes mean in ``other``, whose elements are cut elsewhere.
@@ -81,8 +110,8 @@ class SolidSections(Sealed):
         A vibration's sign is anybody's choice, and of two with one frequency so is every mixture: here they move the lines that
         both have as nearly alike as may be (Procrustes).
         """
-        apart = np.linalg.norm(self.ring.points[0][:, None] - other.ring.points[0][None], axis=-1)
-        mine, its = np.nonzero(apart < 1e-9 * np.abs(self.ring.points).max())
+        apart = np.linalg.norm(self.mesh.points[0][:, None] - other.mesh.points[0][None], axis=-1)
+        mine, its = np.nonzero(apart < 1e-9 * np.abs(self.mesh.points).max())
         moved, wanted = (
             solid.shapes[0, lines, : 3 * (ACROSS + 1), RIGID:].reshape(-1, AMPLITUDES - RIGID)
             for solid, lines in ((self, mine), (other, its))
@@ -125,35 +154,49 @@ class SolidSections(Sealed):
         return np.stack([-compliance[:, 5, 1], compliance[:, 5, 0]], axis=-1) / twist[:, None]
 
     def face_points(self) -> Array:
-        """(V, K, 2), m: where lines between elements reach the outer face."""
-        return self.ring.points + 0.5 * self.ring.thickness * self.ring.directions
+        """(V, F, 2), m: where strains are watched, on lines between elements: the outer face, the inner one too of walls that have
+        loose ends or stand on others, and the loose ends.
+        """
+        mesh = self.mesh
+        points = []
+        for elements, last, side in faces_of(self.mesh):
+            P, d = (mesh.last_points, mesh.last_directions) if last else (mesh.points, mesh.directions)
+            points.append(P[:, elements] + side * 0.5 * mesh.thickness[elements, None] * d[:, elements])
+        return np.concatenate(points, axis=1)
 
     @sealed_property
     def face_strain(self) -> Array:
-        """Spanwise strain (V, K, STRAINS) there, per strain of the section."""
-        every = np.arange(self.ring.points.shape[0] * self.ring.points.shape[1])
-        one = np.ones(1)
-        start = places(self.ring, every, np.array([-1.0]), np.array([0.5 * self.ring.thickness]), one, one)
-        sections, count = self.ring.points.shape[:2]
-        return self._strain(start, every)[..., 0, 5, :].reshape(sections, count, STRAINS)
+        """Spanwise strain (V, F, STRAINS) there, per strain of the section."""
+        sections, count = self.mesh.points.shape[:2]
+        found = []
+        for elements, last, side in faces_of(self.mesh):
+            strain = np.empty((sections, len(elements), STRAINS))
+            for thickness in np.unique(self.mesh.thickness[elements]):
+                own = np.flatnonzero(self.mesh.thickness[elements] == thickness)
+                members = (np.arange(sections)[:, None] * count + elements[own]).ravel()
+                along, depth, one = np.array([1.0 if last else -1.0]), np.array([side * 0.5 * thickness]), np.ones(1)
+                at = places(self.mesh, members, along, depth, one, one)
+                strain[:, own] = self._strain(at, members)[..., 0, 5, :].reshape(sections, len(own), STRAINS)
+            found.append(strain)
+        return np.concatenate(found, axis=1)
 
-    def layer_force(self, wall: str, width: float, low: float, high: float, stress: tuple[float, float, float]) -> Array:
+    def layer_force(self, strip: Strip, low: float, high: float, stress: tuple[float, float, float]) -> Array:
         """Work (V, STRAINS) per strain of the section and per metre, of stresses (ss, zz, sz), Pa, in a layer from ``low`` to
-        ``high`` (m from the mid-line) of the strip that is ``width`` (m) wide in the middle of a wall. Worked out once.
+        ``high`` (m from the mid-line) of a strip of a wall. Worked out once.
         """
-        key = wall, width, low, high, stress
+        key = strip, low, high, stress
         if key not in self._forces:
-            self._forces[key] = sealed(self._layer_force(wall, width, low, high, np.array(stress)))
+            self._forces[key] = sealed(self._layer_force(strip, low, high, np.array(stress)))
         return self._forces[key]
 
-    def _layer_force(self, wall: str, width: float, low: float, high: float, stress: Array) -> Array:
-        under = [edge.wall == wall and edge.reach <= 0.5 * width * (1.0 + 1e-9) for edge in self.ring.edges]
+    def _layer_force(self, strip: Strip, low: float, high: float, stress: Array) -> Array:
+        under = [strip in edge.strips for edge in self.mesh.edges]
         members = np.flatnonzero(np.tile(under, len(self.shapes)))
-        along, weight_along = gauss_rule(self.ring.order + 1)
+        along, weight_along = gauss_rule(self.mesh.order + 1)
         depth, weight = gauss_rule(2)
         half = 0.5 * (high - low)
-        here = places(self.ring, members, along, low + half * (1.0 + depth), weight_along, half * weight)
-        turned = turn_of_strains(self.ring.tangents.reshape(-1, 2)[members]).swapaxes(-1, -2)[..., [0, 5, 3]] @ stress
+        here = places(self.mesh, members, along, low + half * (1.0 + depth), weight_along, half * weight)
+        turned = turn_of_strains(self.mesh.tangents.reshape(-1, 2)[members]).swapaxes(-1, -2)[..., [0, 5, 3]] @ stress
         strain = self._strain(here, members)
         work = np.einsum("eqkn,eq,ek->en", strain, here.weight, turned, optimize=True)
         return np.asarray(work.reshape(len(self.shapes), -1, STRAINS).sum(axis=1))
@@ -163,7 +206,10 @@ class SolidSections(Sealed):
         shapes = self.shapes.reshape(-1, *self.shapes.shape[2:])[members]
         e, q, nodes = here.value.shape
         tables = here.tables()
-        B, S, Z = strain_of_tables(self.pretwist)
+        rates = self.pretwist[members // len(self.mesh.edges)]
+        if np.any(rates != rates[0]):
+            return self._strain_by_rate(here, members, rates)
+        B, S, Z = strain_of_tables(float(rates[0]))
         moved = shapes.reshape(e, nodes, 3, -1)
         of_shapes = tables[..., : 4 * nodes].reshape(e, q * 4, nodes) @ moved.reshape(e, nodes, -1)
         fields = of_shapes.reshape(e, q, 4, 3, -1)
@@ -171,6 +217,22 @@ class SolidSections(Sealed):
         onward = np.einsum("eqcj,kc->eqkj", fields[:, :, 3], S)
         beam = np.einsum("eqt,tkc->eqkc", tables[..., 4 * nodes :], Z)
         return np.concatenate([beam, strained, onward], axis=-1)
+
+    def _strain_by_rate(self, here: Places, members: NDArray[np.intp], rates: Array) -> Array:
+        strain = np.empty((*here.x.shape, 6, STRAINS))
+        for rate in np.unique(rates):
+            own = rates == rate
+            parts = {each.name: getattr(here, each.name)[own] for each in fields(here)}
+            strain[own] = self._strain(replace(here, **parts), members[own])
+        return strain
+
+
+def faces_of(mesh: Mesh) -> list[tuple[NDArray[np.intp], bool, float]]:
+    """Where strains are watched: elements, whether at their last line or their first, and on which side, 1 or −1."""
+    outer = np.arange(len(mesh.edges))
+    loose, both = mesh.loose_ends, mesh.open_elements
+    found = [(outer, False, 1.0), (both, False, -1.0), (loose, True, 1.0), (loose, True, -1.0)]
+    return [(elements, last, side) for elements, last, side in found if len(elements)]
 
 
 def _saint_venant(central: CentralSolution, unit: Array, pretwist: float) -> Array:

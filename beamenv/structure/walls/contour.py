@@ -4,52 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, Text, configuration
-from beamenv.structure.walls.laminate import Ply
+from beamenv.structure.walls.inlay import Edge, Strip
 
 Array = NDArray[np.float64]
 
 GAUSS_POSITIONS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
 """Two points per edge: exact, since every section integrand is at most quadratic along a straight edge."""
-
-
-@configuration("inlay")
-class Inlay:
-    """A rectangle of foreign material let into the outer face of a wall, centred on it and flush with it."""
-
-    wall: Annotated[str, Text()]
-    start: Annotated[float, Number(unit="m")]
-    """Root-side edge, m from the clamp."""
-    length: Annotated[float, Number(unit="m")]
-    """m along the span."""
-    width: Annotated[float, Number(unit="m")]
-    """m along the contour."""
-    ply: Ply
-    """Material and fibre angle."""
-    thickness: Annotated[float, Number(unit="m")]
-    """m."""
-
-    def covers(self, z: Array) -> NDArray[np.bool_]:
-        """Which stations (m from the clamp) lie inside the inlay."""
-        return (z > self.start) & (z < self.start + self.length)
-
-
-@dataclass(frozen=True, slots=True)
-class Edge:
-    """A straight piece of a wall."""
-
-    wall: str
-    reach: float
-    """Largest distance (m) of the piece from the wall's centre where inlays split the wall, infinite elsewhere."""
-
-    def lies_under(self, inlay: Inlay) -> bool:
-        """Whether the inlay spans this piece of its wall."""
-        return self.wall == inlay.wall and self.reach <= 0.5 * inlay.width * (1.0 + 1e-9)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,18 +52,20 @@ class WallPoints:
         return np.repeat(start, 2, axis=1) + slope * self.along
 
 
-def split_walls(vertices: Array, walls: Sequence[str], inlay_widths: Sequence[tuple[str, float]]) -> tuple[Array, tuple[Edge, ...]]:
-    """Cut walls where inlays begin and end: vertices (S, K, 2) to (S, K', 2), with what each new edge is."""
+def split_walls(vertices: Array, walls: Sequence[str], strips: Sequence[Strip]) -> tuple[Array, tuple[Edge, ...]]:
+    """Cut walls where strips in their middle begin and end: vertices (S, K, 2) to (S, K', 2), with what each new edge is."""
     points, edges = [], []
     following = np.roll(vertices, -1, axis=1)
     for k, wall in enumerate(walls):
         start, end = vertices[:, k], following[:, k]
         length = np.hypot(*(end - start).T)[:, None]
-        halves = sorted({0.5 * width for name, width in inlay_widths if name == wall})
+        own = [strip for strip in strips if strip.wall == wall]
+        halves = sorted({0.5 * strip.width for strip in own})
         cuts = [-half for half in reversed(halves)] + halves
         points += [start, *(0.5 * (start + end) + cut * (end - start) / length for cut in cuts)]
         limits = [-np.inf, *cuts, np.inf]
-        edges += [Edge(wall, max(abs(a), abs(b))) for a, b in zip(limits[:-1], limits[1:], strict=True)]
+        reach = [max(abs(a), abs(b)) for a, b in zip(limits[:-1], limits[1:], strict=True)]
+        edges += [Edge(wall, frozenset(strip for strip in own if far <= 0.5 * strip.width)) for far in reach]
     return np.stack(points, axis=1), tuple(edges)
 
 

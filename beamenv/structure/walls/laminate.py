@@ -135,6 +135,16 @@ class Laminate:
         starts = tuple(self.interfaces[k] for k in kept)
         return Laminate((*starts, level, self.interfaces[-1]), (*(self.plies[k] for k in kept), ply))
 
+    def with_layer_on_top(self, ply: Ply, thickness: float) -> Laminate:
+        """The same wall with a further layer of ``thickness`` (m) on its outer face; the mid-line stays where it is."""
+        thickness = checked("thickness", thickness, Number(gt=0.0, unit="m"))
+        return Laminate((*self.interfaces, self.interfaces[-1] + thickness), (*self.plies, ply))
+
+    @property
+    def turned_over(self) -> Laminate:
+        """The same plies from the outer face to the inner."""
+        return Laminate(tuple(-level for level in reversed(self.interfaces)), tuple(reversed(self.plies)))
+
     def moments(self, values: Array, highest: int = HIGHEST_MOMENT) -> Array:
         """∫ value(n) nʲ dn for j = 0 … highest, from one value (any shape) per ply: (highest + 1, …)."""
         return np.tensordot(power_integrals(np.array(self.interfaces), highest), values, axes=1)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from baselines.placement import PlacementProblem, place
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.layouts import SIDES, positions_of
 from beamenv.patches import PatchLayout
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
@@ -116,8 +117,8 @@ def later_voltage(response: Response) -> float:
 
 def positions_in_words(layouts: Layouts) -> str:
     """Where the optimal layout has its patches."""
-    patches = layouts.optimal.patches
-    shown = [", ".join(f"{at:.3f}" for at in np.atleast_1d(side)) for side in (patches.actuators, patches.sensors)]
+    sides = (positions_of(layouts.optimal, side) for side in SIDES)
+    shown = [", ".join(f"{at:.3f}" for at in side) for side in sides]
     return f"Optimal by GA then SQP: actuators begin {shown[0]} m and sensors {shown[1]} m from the root."
 
 

@@ -58,7 +58,7 @@ def one_loop(plant: Plant) -> Plant:
 def plant_of(config: BladeConfig) -> Plant:
     """The plant of a blade, with one loop where its actuators are ganged."""
     plant = build_plant(config)
-    return one_loop(plant) if config.patches.ganged else plant
+    return one_loop(plant) if config.patches.only("actuators").ganged else plant
 
 
 @dataclass(frozen=True, slots=True, eq=False)
