@@ -180,9 +180,7 @@ class Blade:
         return other
 
     def with_fixed_range(self) -> Blade:
-        """The blade behind the data acquisition, and under the loads, that fit it now: another blade made of its configuration keeps
-        them.
-        """
+        """The blade behind the data acquisition and under the loads that fit it now: one made of its configuration keeps them."""
         config = replace(self.config, sensor_full_scale=float(self.plant.sensor_full_scale[0]))
         return self.changed(under_reference(config, self.reference_load))
 

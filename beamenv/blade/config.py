@@ -23,7 +23,9 @@ from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
 from beamenv.structure.walls.laminate import PLY_ANGLES
 
-MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6, "aluminium": ALUMINIUM})
+MATERIALS: Mapping[str, Lamina] = MappingProxyType(
+    {"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6, "aluminium": ALUMINIUM}
+)
 
 ON_EVERY_WALL = "all"
 

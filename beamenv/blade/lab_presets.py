@@ -1,4 +1,4 @@
-"""Blades that lie on benches: an aluminium strip with a pair of piezoceramic sheets, and a slender airfoil with macro-fibre composite."""
+"""Blades that lie on benches: an aluminium strip with piezoceramic sheets, and a slender airfoil with macro-fibre composite."""
 
 from __future__ import annotations
 
@@ -52,5 +52,5 @@ AIRFOIL_BLADE = BladeConfig(
     strain_limit="total",
 )
 """A hollow NACA 0012 of graphite-epoxy, 1 mm thick, with a web at 0.4 of its width, of about the size of a rotor in a wind tunnel
-(chord 0.108 m, radius 1.4 m, as NASA's Active Twist Rotor); four MFC (85 × 28 mm, the M-8528-P1) let into its upper side bend it, four
-in its lower side are read."""
+(chord 0.108 m, radius 1.4 m, as NASA's Active Twist Rotor); four MFC (85 × 28 mm, the M-8528-P1) let into its upper side bend it,
+four in its lower side are read."""

@@ -104,7 +104,7 @@ PIC255 = PatchMaterial(
     thickness=0.5e-3,
     electrode_spacing=0.5e-3,
 )
-"""A soft piezoceramic, poled through a thickness of 0.5 mm: s11 = 16.1·10⁻¹² m²/N, d31 = −180 pm/V and density of PI Ceramic's data;
-Poisson's ratio is that of soft PZT."""
+"""A soft piezoceramic, poled through a thickness of 0.5 mm: s11 = 16.1·10⁻¹² m²/N, d31 = −180 pm/V and density of PI Ceramic's
+data; Poisson's ratio is that of soft PZT."""
 
 PATCH_MATERIALS: Mapping[str, PatchMaterial] = MappingProxyType({"MFC": MFC, "PZT": PZT, "PIC255": PIC255})

@@ -92,7 +92,8 @@ def test_half_the_voltage_makes_the_same_episode_of_half_the_size():
 
 def test_a_blade_whose_patches_bend_nothing_needs_a_reference_load_of_its_own():
     twins = PatchLayout(actuators=(group("outer", ganged=True),), sensors=(group("inner"),))
-    idle = replace(STRIP, patches=replace(twins, actuators=(replace(twins.actuators[0], material=replace(SHEET, d11=0.0, d12=0.0)),)))
+    still = replace(twins.actuators[0], material=replace(SHEET, d11=0.0, d12=0.0))
+    idle = replace(STRIP, patches=replace(twins, actuators=(still,)))
     with pytest.raises(ValueError, match="blade.reference_load is None, but must be a number"):
         Blade(idle).plant  # noqa: B018
     assert np.array_equal(Blade(replace(idle, reference_load=2.0)).plant.reference_load, [2.0, 2.0])
