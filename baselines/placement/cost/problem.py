@@ -170,7 +170,7 @@ def check_noise(config: BladeConfig) -> None:
 
 def parts_of(config: BladeConfig) -> Contributions:
     """The contributions of a blade, kept from one problem to the next: they depend on neither side nor positions."""
-    patches = replace(config.patches, actuators=1, sensors=1, ganged=False)
+    patches = replace(config.patches.placed("actuators", 1).placed("sensors", 1), ganged=False)
     return _parts(BladeConfig(beam=config.beam, patches=patches, model=config.model, speed=config.speed, modes=config.modes))
 
 
