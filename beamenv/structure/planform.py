@@ -88,9 +88,10 @@ class Planform:
     def pieces(self) -> tuple[Piece, ...]:
         """One where neither is by a table."""
         tapered = self.taper != 1.0 if self.chords is None else len({size for _, size in self.chords}) > 1
-        end = self.covered / self.length
-        split = {end} if tapered and LEAST_PIECE < end < 1.0 - LEAST_PIECE else set()
-        shares = sorted({0.0, 1.0, *split, *(share for table in (self.twists, self.chords) for share, _ in table or ())})
+        end, known = self.covered / self.length, {share for table in (self.twists, self.chords) for share, _ in table or ()}
+        near = any(-1e-9 <= share - end <= LEAST_PIECE for share in {1.0, *known})
+        split = {end} if tapered and end > LEAST_PIECE and not near else set()
+        shares = sorted({0.0, 1.0, *split, *known})
         several = len(shares) > 2
         return tuple(self._piece(low, high, several) for low, high in zip(shares[:-1], shares[1:], strict=True))
 
