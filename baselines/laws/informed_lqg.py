@@ -15,6 +15,7 @@ from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.detuning_search import LOST, TRIALS, coordinate_search, kept_detuning
 from baselines.laws.foreseen_load import foreseen_loads
 from beamenv.blade.files import to_dict
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.knowledge import Prior
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.scenario import Scenario
@@ -92,7 +93,7 @@ def _depends_on(prior: Prior) -> tuple[Any, ...]:
     return (
         (VERSION, EPISODES, TRIALS, prior.steps),
         _departing(prior.scenario.to_dict(), Scenario().to_dict()),
-        to_dict(prior.blade.config),
+        prior.blade.identity if isinstance(prior.blade, ModelBlade) else to_dict(prior.blade.config),
         fingerprint(prior.blade.truth),
     )
 
