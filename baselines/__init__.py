@@ -15,6 +15,10 @@ from baselines.evaluation.episodes import Episodes, roll_out
 from baselines.evaluation.evaluate import Evaluation, evaluate
 from baselines.evaluation.metrics import EpisodeMetrics
 from baselines.evaluation.statistics import Estimate
+from baselines.identification.files import read_measurement
+from baselines.identification.identified import Identified
+from baselines.identification.identify import identify
+from baselines.identification.measurement import Measurement
 from baselines.laws.clairvoyant_lqg import ClairvoyantLQG, clairvoyant_lqg
 from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.detuned_lqg import Detuning, detuned_lqg
@@ -45,10 +49,12 @@ __all__ = [
     "Estimate",
     "Evaluation",
     "Hypothesis",
+    "Identified",
     "Instruments",
     "InverseHysteresis",
     "Law",
     "LinearController",
+    "Measurement",
     "MultipleModel",
     "PersistentLoad",
     "PredictiveController",
@@ -64,6 +70,7 @@ __all__ = [
     "full_order_lqg",
     "h_infinity",
     "h_infinity_norm",
+    "identify",
     "informed_lqg",
     "informed_mpc",
     "inverse_hysteresis",
@@ -73,6 +80,7 @@ __all__ = [
     "multiple_model",
     "no_control",
     "positive_position_feedback",
+    "read_measurement",
     "reference_lqg",
     "robust_lqg",
     "roll_out",

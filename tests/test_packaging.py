@@ -168,7 +168,7 @@ def test_baselines_never_know_environments():
 ROOMS_OF_TRAIN = (
     {"shared"},
     {"controllers", "figures", "tools"},
-    {"export", "learning", "page", "placement", "reproduce"},
+    {"export", "identification", "learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore"},
     {"cli"},
 )

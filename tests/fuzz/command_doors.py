@@ -27,12 +27,14 @@ for _room in (
     "benchmark.showing.page",
     "figures.paper_heat_map",
     "figures.screen_heat_map",
+    "identification.files",
     "placement.picture",
 ):
     import_module(f"train.{_room}")  # what they import sets itself up, once
 plotly.graph_objects.Figure()  # and this when the first figure is made
 
 BLADE = 'model = "thesis"\nmodes = 3\n[beam]\nterms = 4\n[patches]\nactuators = 2\nsensors = 2\n'
+MEASURED = "time,u1,y1 [A]\n" + "".join(f"{0.001 * k:.3f},{k * k % 17},{k * k % 13}\n" for k in range(240))
 WORDS = (
     *("no", "false", "nan", "inf", "-1", "0", "1", "2", "3", "2.5", "1e400", "1_0", "0x10", "10**9", "99999999999999999999", "x"),
     *("--", "-", "=", ".", "..", "/", "~", "*", "None", "null", "true", "é", "{}", "[1]", "", " ", "a\nb", "\ud800", "x" * 5000),
@@ -128,6 +130,24 @@ COMMANDS = {
         ("--json", "--trust", "--overwrite"),
         ("train.benchmark.campaign._cells",),
     ),
+    "identify": (
+        ("measured.csv",),
+        {
+            "--order": "auto",
+            "--folder": "made",
+            "--voltage": "u1",
+            "--reading": "y1",
+            "--time": "time",
+            "--interval": "0.001",
+            "--held-back": "0.25",
+            "--collocated": "1",
+            "--ensemble": "2",
+            "--seed": "0",
+            "--drive-limit": "100",
+        },
+        ("--json",),
+        ("baselines.identification.identify.observer",),
+    ),
     "place": (
         (),
         {
@@ -191,6 +211,7 @@ def invoked(command):
         if words.get("more") is not None:
             given.append(words["more"])
         Path("blade.toml").write_text(BLADE)
+        Path("measured.csv").write_text(MEASURED)
         Path("broken.toml").write_text("[")
         Path("broken.json").write_text("{")
         Path("folder").mkdir(exist_ok=True)

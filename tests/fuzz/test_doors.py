@@ -21,6 +21,7 @@ from tests.fuzz import (
     episode_doors,
     export_doors,
     file_doors,
+    identification_doors,
     informed_law_doors,
     judging_doors,
     law_doors,
@@ -34,7 +35,7 @@ from tests.fuzz.oracle import Door, examined, shown
 from tests.fuzz.wrong import arguments, copied, value_at
 from train.cli.app import app
 
-OF_LAWS = (law_doors, informed_law_doors, judging_doors, placement_doors)
+OF_LAWS = (law_doors, informed_law_doors, judging_doors, placement_doors, identification_doors)
 OF_BLADES = (blade_doors, env_doors, episode_doors, wrapper_doors, file_doors, archive_doors, model_doors)
 DOORS = [door for room in (*OF_BLADES, *OF_LAWS, train_doors, export_doors, command_doors) for door in room.DOORS]
 
@@ -105,7 +106,7 @@ def test_a_door_holds_for_three_hundred_examples(door, default_blade, tmp_path, 
 
 RECORDS = {
     "BENCHMARK_SCENARIOS", "ENV_ID", "OPEN_SCENARIOS", "PRESETS", "SCENARIOS", "UNSEEN_SCENARIOS",  # no callables
-    "Controller", "Episodes", "EpisodeMetrics", "Estimate", "Evaluation", "StabilityMargins",  # what functions give
+    "Controller", "Episodes", "EpisodeMetrics", "Estimate", "Evaluation", "Identified", "StabilityMargins",  # what functions give
     "PredictiveController", "ScheduledLQG", "ClairvoyantLQG",  # what mpc, scheduled_lqg and clairvoyant_lqg give
     "InverseHysteresis", "RunUpLQG",  # what inverse_hysteresis and run_up_lqg give
     "BeamConfig",

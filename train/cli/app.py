@@ -13,6 +13,7 @@ from rich.table import Table
 
 from train.cli.benchmark import benchmark
 from train.cli.export import export
+from train.cli.identify import identify
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -38,6 +39,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command()(identify)
 app.command()(place)
 app.command()(export)
 app.command()(train)

@@ -1,0 +1,135 @@
+"""What an identification found: the model, how well it does, how well it is known, and the plant for controllers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.identification.fit import Fit
+from baselines.identification.innovation_model import InnovationModel
+from baselines.identification.measurement import Measurement
+from baselines.identification.modes import Modes, drawn, modes_of
+from baselines.identification.order import Choice
+from baselines.identification.realisation import Stabilisation
+from baselines.identification.state_space import StateSpace, continuous
+from baselines.identification.white_noise import WhiteNoise
+from beamenv.configuration import Count, checked
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Identified:
+    """The model of a measurement, with everything that is to be said of it."""
+
+    measurement: Measurement
+    """What was measured, all of it."""
+    learned: int
+    """Rows that the model was learned from, the first; the others were held back."""
+    scaled: InnovationModel
+    """For voltages and readings of unit standard deviation."""
+    parameters: Array
+    """Covariance of its parameters, as ``prediction_error.moved`` takes steps."""
+    noise: WhiteNoise
+    """Of ``scaled``."""
+    choice: Choice
+    """Which orders were tried."""
+    balanced: dict[int, float]
+    """Loss on the rows held back, as ``Tried`` has it, of the balanced model of each order, among which the search began."""
+    stabilisation: Stabilisation
+    fit: Fit
+    collocated: float | None = None
+    """|charge per strain of a sensor| over |moment per volt| of the actuator at its place."""
+
+    def __repr__(self) -> str:
+        modes = self.modes
+        fits = ", ".join(f"{each:.3f}" for each in self.fit.free_run)
+        return f"Identified({self.model.order} states, {len(modes)} modes, free-run fit {fits})"
+
+    @property
+    def model(self) -> InnovationModel:
+        """In V and the sensors' units."""
+        return self._in_units(self.scaled)
+
+    def _in_units(self, model: InnovationModel) -> InnovationModel:
+        return model.scaled(self.measurement.voltages.std(axis=0), self.measurement.readings.std(axis=0))
+
+    @property
+    def modes(self) -> Modes:
+        """Frequencies and dampings with their spread."""
+        return modes_of(self.scaled, self.parameters)
+
+    @property
+    def sensor_noise(self) -> Array:
+        """(p,): standard deviation of one reading's own noise, in its unit."""
+        return np.asarray(np.sqrt(self.noise.sensor_variance) * self.measurement.readings.std(axis=0))
+
+    @property
+    def state_space(self) -> StateSpace:
+        """In continuous time."""
+        return continuous(self.model, self.noise.load_input, self.collocated)
+
+    def arrays(self, model: StateSpace | None = None, **about: Any) -> dict[str, Any]:
+        """The arguments of ``Plant.from_state_space`` for the model, or one of the ``ensemble``; ``about`` says more, or otherwise.
+
+        Loads are the disturbances, of unit variance in each interval; voltages may go as far as they did in the measurement.
+        """
+        model = self.state_space if model is None else model
+        measurement, loads = self.measurement, self.noise.load_input.shape[1]
+        known = {
+            "A": model.A,
+            "B": model.B,
+            "C": model.C,
+            "interval": measurement.interval,
+            "energy": model.energy,
+            "disturbance_input": model.load_input,
+            "disturbance_names": [f"load {k}" for k in range(1, loads + 1)],
+            "process_noise": np.ones(loads),
+            "sensor_noise": self.sensor_noise,
+            "sensor_names": list(measurement.reading_names),
+            "sensor_units": list(measurement.reading_units),
+            "actuator_limits": np.abs(measurement.voltages).max(axis=0) * np.array([[-1.0], [1.0]]),
+        }
+        return {name: value for name, value in {**known, **about}.items() if value is not None}
+
+    def ensemble(self, count: int, seed: int = 0) -> list[StateSpace]:
+        """So many models drawn from the spread of the parameters, each with the loads of the model itself."""
+        count, seed = checked("count", count, Count()), checked("seed", seed, Count(0))
+        models = drawn(self.scaled, self.parameters, count, seed)
+        return [continuous(self._in_units(each), self.noise.load_input, self.collocated) for each in models]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What JSON can hold of it."""
+        measurement, fit, modes = self.measurement, self.fit, self.modes
+        return {
+            "seconds": measurement.seconds,
+            "interval": measurement.interval,
+            "rows_learned_from": self.learned,
+            "rows_held_back": fit.rows,
+            "order": self.model.order,
+            "order_reason": self.choice.reason,
+            "orders_tried": [
+                {"order": each.order, "loss": each.loss, "missed": each.missed, "kept": each.kept} for each in self.choice.tried
+            ],
+            "modes": [
+                dict(zip(("frequency", "frequency_spread", "damping_ratio", "damping_spread"), map(float, row), strict=True))
+                for row in zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
+            ],
+            "spread": "one standard deviation, from the curvature of the likelihood (Cramér and Rao)",
+            "readings": [
+                {
+                    "name": name,
+                    "unit": unit,
+                    "one_step_fit": float(fit.one_step[k]),
+                    "free_run_fit": float(fit.free_run[k]),
+                    "attainable_free_run_fit": float(fit.attainable[k]),
+                    "noise": float(self.sensor_noise[k]),
+                    "share_of_correlations_outside": float(fit.outside[k]),
+                }
+                for k, (name, unit) in enumerate(zip(measurement.reading_names, measurement.reading_units, strict=True))
+            ],
+            "loads": self.noise.load_input.shape[1],
+        }

@@ -1,0 +1,110 @@
+"""From a measurement to a model: OKID and ERA to begin with, prediction error to refine, rows held back to choose the order by.
+
+``control.eigensys_realization`` on the Markov parameters that ``control.markov`` estimates is no way at 1 % damping: these are
+thousands a channel, and each as noisy as the readings. On those of an observer that forgets (``observer``) it finds all modes
+that can be seen, within a tenth of a per cent of their frequencies and a tenth of their damping, and, of low order, with poles
+that are none. Prediction error (``prediction_error``) halves the errors and tells how large they are; ``order`` takes the false
+poles away.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal
+
+from baselines.identification.files import read_measurement
+from baselines.identification.fit import fit_of
+from baselines.identification.identified import Identified
+from baselines.identification.measurement import Measurement
+from baselines.identification.observer import observer
+from baselines.identification.order import first_order, pruned
+from baselines.identification.prediction_error import Spectra, refined
+from baselines.identification.realisation import realise
+from baselines.identification.white_noise import white_noise
+from beamenv.configuration import Count, Instance, Number, Refused, checked
+
+MOST_STATES = 60
+SHARE = 0.25
+"""Of the rows, held back."""
+
+Progress = Callable[[str, float], None]
+"""Is told what is being done and which share of the whole is done."""
+
+
+def identify(
+    data: Measurement | str | os.PathLike[str],
+    order: int | Literal["auto"] = "auto",
+    *,
+    held_back: float = SHARE,
+    collocated: float | None = None,
+    progress: Progress | None = None,
+) -> Identified:
+    """The model of a measurement, or of the CSV file that holds one (``read_measurement``).
+
+    ``order`` is its number of states; "auto" takes as many as rows held back, the last share ``held_back`` of them, need to be
+    predicted by. ``collocated`` is for piezoelectric sensors, of current in A, that lie where the actuators do, one each: the ratio
+    of what they are per strain and per volt, 1 where both are the same patch; modes then have their energy in joules. ``progress``
+    is told what is done. Raises ``ValueError`` for another order or share, for a measurement too short, and as ``Measurement`` and
+    ``read_measurement`` do.
+    """
+    measurement = data if isinstance(data, Measurement) else read_measurement(data)
+    wanted = None if order == "auto" else _checked_order(order)
+    held_back = checked("held_back", held_back, Number(ge=0.05, le=0.5))
+    told = progress or (lambda what, done: None)
+    scaled = _scaled(checked("data", measurement, Instance(Measurement)))
+    learned = len(scaled) - round(held_back * len(scaled))
+    learning = scaled.first(learned)
+    _check_collocated(collocated, measurement)
+    told("observer", 0.0)
+    realisation = realise(observer(learning), scaled.interval, MOST_STATES)
+    candidates = range(2, len(realisation.A) + 1, 2)
+    least, balanced = first_order(realisation, scaled, learned, candidates)
+    begun = max(least, wanted or 0) if wanted is None or wanted <= len(realisation.A) else len(realisation.A)
+    spectra = Spectra(learning)
+    told(f"{begun} states", 0.1)
+    first = refined(spectra, realisation.model(begun), progress=lambda done: told(f"{begun} states", 0.1 + 0.3 * done))
+    choice = pruned(first, spectra, scaled, learned, wanted, lambda what, done: told(what, 0.4 + 0.5 * done))
+    told("noise", 0.9)
+    found = choice.refined
+    whole = Identified(
+        measurement=measurement,
+        learned=learned,
+        scaled=found.model,
+        parameters=found.parameters,
+        noise=white_noise(found.model, learned),
+        choice=choice,
+        balanced=balanced,
+        stabilisation=realisation.stabilisation(),
+        fit=fit_of(found.model, scaled, learned),
+        collocated=collocated,
+    )
+    told("done", 1.0)
+    return whole
+
+
+def _checked_order(order: object) -> int:
+    try:
+        return checked("order", order, Count(2, MOST_STATES))
+    except ValueError:
+        raise Refused("order", order, f"'auto' or a count of states from 2 to {MOST_STATES}") from None
+
+
+def _scaled(measurement: Measurement) -> Measurement:
+    """Without means, each column over its standard deviation."""
+    columns = {name: getattr(measurement, name) for name in ("voltages", "readings")}
+    return replace(measurement, **{name: (each - each.mean(axis=0)) / each.std(axis=0) for name, each in columns.items()})
+
+
+def _check_collocated(collocated: float | None, measurement: Measurement) -> None:
+    if collocated is None:
+        return
+    checked("collocated", collocated, Number(gt=0.0))
+    m, p = measurement.voltages.shape[1], measurement.readings.shape[1]
+    if m != p:
+        raise ValueError(
+            f"collocated = {collocated!r} needs a sensor for each actuator, but there are {p} sensors and {m} actuators."
+        )
+    if set(measurement.reading_units) - {"A", ""}:
+        raise Refused("collocated", collocated, f"None with sensors in {', '.join(sorted(set(measurement.reading_units)))}, not A")

@@ -1,0 +1,57 @@
+"""What ``beamenv identify`` leaves in a folder, and what it says of bad input."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tests.identification.conftest import DAMPING_RATIOS, FREQUENCIES, INTERVAL, record
+from train.cli.app import app
+
+FILES = {"plant.npz", "ensemble", "report.json", "report.md", "stabilisation.png", "fit.png"}
+
+
+@pytest.fixture(scope="module", name="folder")
+def _folder(tmp_path_factory):
+    """Of a measurement of 20 s, identified by the command."""
+    folder, of = tmp_path_factory.mktemp("identified"), record(1, 20.0)
+    table = np.column_stack([INTERVAL * np.arange(len(of.volts)), of.volts, of.readings])
+    data = folder / "data.csv"
+    np.savetxt(data, table, delimiter=",", header="time,u1,u2,y1 [A],y2 [A]", comments="", fmt="%.8e")
+    asked = ["identify", str(data), "--folder", str(folder / "mine"), "--collocated", "1.5", "--ensemble", "3"]
+    result = CliRunner().invoke(app, asked)
+    assert result.exit_code == 0, result.output
+    assert "60." in result.stdout and "free run" in result.stdout
+    return folder / "mine"
+
+
+def test_the_folder_has_plant_ensemble_report_and_figures(folder):
+    assert {each.name for each in folder.iterdir()} == FILES
+    assert len(list((folder / "ensemble").glob("*.npz"))) == 3
+    assert all((folder / name).stat().st_size > 10_000 for name in FILES if name.endswith(".png"))
+
+
+def test_the_report_has_the_modes_with_their_spread(folder):
+    modes = json.loads((folder / "report.json").read_text())["modes"]
+    for mode, frequency, ratio in zip(modes, FREQUENCIES, DAMPING_RATIOS, strict=True):
+        assert abs(mode["frequency"] - frequency) < 4.0 * mode["frequency_spread"]
+        assert abs(mode["damping_ratio"] - ratio) < 4.0 * mode["damping_spread"]
+    assert "| mode | rad/s | Hz | damping ratio, % |" in (folder / "report.md").read_text()
+
+
+def test_the_ensemble_is_of_other_plants_of_the_same_size(folder):
+    with np.load(folder / "plant.npz") as plant, np.load(folder / "ensemble" / "000.npz") as other:
+        assert set(plant.files) == set(other.files)
+        assert plant["A"].shape == other["A"].shape
+        assert not np.array_equal(plant["A"], other["A"])
+
+
+def test_bad_input_is_one_sentence_and_leaves_no_folder(tmp_path):
+    data = tmp_path / "data.csv"
+    data.write_text("time,u,y\n0,1,2\n0.1,2,nan\n")
+    result = CliRunner().invoke(app, ["identify", str(data), "--folder", str(tmp_path / "mine")])
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1
+    assert "column 'y' is nan on line 3" in result.stderr
+    assert not (tmp_path / "mine").exists()

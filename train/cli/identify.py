@@ -1,0 +1,103 @@
+"""The command ``beamenv identify``: from measured voltages and readings to a plant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from train.cli.options import JsonOption, one_sentence, print_json, print_table
+from train.shared.files import check_folder
+
+
+def identify(
+    data: Annotated[Path, typer.Argument(help="CSV whose first line names its columns; units may follow in brackets, y1 [A].")],
+    order: Annotated[str, typer.Option(help="Number of states, or auto: as many as rows held back ask for.")] = "auto",
+    folder: Annotated[Path, typer.Option(help="Where plant, report and figures are written.")] = Path("results/identified"),
+    voltage: Annotated[
+        list[str] | None, typer.Option(help="Column of an actuator's voltage; repeat for more. All that begin with u if left out.")
+    ] = None,
+    reading: Annotated[
+        list[str] | None, typer.Option(help="Column of a sensor's reading; repeat for more. All that begin with y if left out.")
+    ] = None,
+    time: Annotated[str | None, typer.Option(help="Column of the time, s; time or t if left out.")] = None,
+    interval: Annotated[float | None, typer.Option(help="s between rows, where no column tells.")] = None,
+    held_back: Annotated[float, typer.Option(help="Share of the rows, the last, that the model is judged by.")] = 0.25,
+    collocated: Annotated[
+        float | None,
+        typer.Option(help="Where each current sensor lies at an actuator: charge per strain over moment per volt; 1 for equals."),
+    ] = None,
+    ensemble: Annotated[int, typer.Option(help="How many plants within the spread are written besides.")] = 16,
+    seed: Annotated[int, typer.Option(help="Of the ensemble.")] = 0,
+    drive_limit: Annotated[float | None, typer.Option(help="V, either way; as far as they went if left out.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """From measured voltages and readings to a plant: its modes, its noise, how well all is known.
+
+    The folder gets plant.npz, an ensemble of plants within the spread, report.md, report.json, stabilisation.png and fit.png.
+    """
+    with one_sentence():
+        from baselines.identification.files import read_measurement
+        from baselines.identification.identify import identify as run
+        from beamenv.configuration import Count, checked
+
+        check_folder(folder)
+        members, seed = checked("ensemble", ensemble, Count(0, 1000)), checked("seed", seed, Count(0, 2**63 - 1))
+        about = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
+        measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval)
+        with bar() as report:
+            found = run(measurement, _order(order), held_back=held_back, collocated=collocated, progress=report)
+        from train.identification.files import write_all
+
+        written = write_all(found, folder, members, seed, about)
+    if as_json:
+        print_json(found.to_dict())
+        return
+    show(found)
+    for path in written:
+        Console().print(f"written to {path}", soft_wrap=True, markup=False, highlight=False)
+
+
+def _order(order: str) -> Any:
+    return int(order) if order.isdecimal() and len(order) < 10 else order
+
+
+def _limit(limit: float) -> float:
+    from beamenv.configuration import Number, checked
+    from beamenv.plant.limits import STRONGEST_DRIVE
+
+    return checked("drive_limit", limit, Number(gt=0.0, le=STRONGEST_DRIVE, unit="V"))
+
+
+@contextmanager
+def bar() -> Iterator[Callable[[str, float], None]]:
+    """What is being done, on standard error."""
+    columns = TextColumn("{task.description:>12}", markup=False), BarColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("reading", total=1.0)
+        yield lambda what, done: progress.update(task, description=what, completed=done)
+
+
+def show(found: Any) -> None:
+    """Modes and fits on the screen."""
+    modes, fit, names = found.modes, found.fit, found.measurement.reading_names
+    table = Table(title="Modes", caption="± one standard deviation")
+    for column in ("mode", "rad/s", "damping ratio, %"):
+        table.add_column(column, justify="right")
+    rows = zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
+    for k, (frequency, spread, ratio, of_ratio) in enumerate(rows, start=1):
+        table.add_row(str(k), f"{frequency:.2f} ± {spread:.2g}", f"{100.0 * ratio:.3f} ± {100.0 * of_ratio:.2g}")
+    print_table(table)
+    fits = Table(title="Fit on rows held back")
+    for column in ("reading", "one step", "free run", "attainable"):
+        fits.add_column(column, justify="left" if column == "reading" else "right")
+    for name, *values in zip(names, fit.one_step, fit.free_run, fit.attainable, strict=True):
+        fits.add_row(name, *(f"{value:.3f}" for value in values))
+    print_table(fits)
+    Console().print(found.choice.reason, soft_wrap=True, markup=False, highlight=False)
