@@ -39,7 +39,7 @@ def _plant():
 
 @pytest.fixture(name="uncommon", scope="module")
 def _uncommon():
-    """Of an odd number of states in coordinates of its own, with three sensors that feel its one voltage, and three disturbances."""
+    """An odd number of states in coordinates of its own, three sensors that feel its one voltage, three disturbances."""
     generator = np.random.default_rng(0)
     basis, own = generator.normal(size=(5, 5)), block_diag(A, [[-60.0]])
     return Plant.from_state_space(
@@ -116,7 +116,7 @@ def test_episodes_are_as_long_as_the_model_is_slow(plant):
 
 @pytest.fixture(name="reference", scope="module")
 def _reference(uncommon):
-    envs = gym.make_vec(beamenv.ENV_ID, num_envs=4, plant=uncommon, dtype="float64")
+    envs = gym.make_vec(beamenv.ENV_ID, num_envs=4, plant=uncommon, scenario="white", dtype="float64")
     return envs, roll_out(no_control(uncommon), envs, range(4))
 
 
@@ -128,10 +128,9 @@ def test_every_controller_that_needs_no_rotor_damps_it(name, reference):
             named(name).build_for(envs.unwrapped.task)
         return
     found = evaluate(named(name).build_for(envs.unwrapped.task), envs, range(4), reference=without)
-    assert found.relative_cost.value < 0.95 or name == "none"
+    assert found.relative_cost.value < 0.9 or name == "none"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["informed-lqg", "informed-mpc", "robust-lqg"])
 def test_controllers_that_search_find_a_law_for_it(name, reference):
     envs, without = reference
