@@ -61,9 +61,11 @@ def export(
         path = output or Path(f"{called}.{format}")
         check_file(path, "output")
         law = chosen(controller, task, scenario, trained_seed)
-        found = exported(law, task.design_plant, precision=precision, name=called)
+        note = f"{controller}, blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}, scenario {scenario}"
+        more: dict[str, Any] = {"precision": precision, "name": called, "note": note}
+        found = exported(law, task.design_plant, **more)
         seconds = _measured(found) if measure else None
-        export(law, task.design_plant, path, format=format, precision=precision, name=called)
+        export(law, task.design_plant, path, format=format, **more)
     if as_json:
         print_json({"file": str(path), "format": format, "name": found.name, **found.facts, "seconds_a_step": seconds})
     else:
