@@ -11,6 +11,7 @@ from rich.console import Console
 from train.cli.options import (
     BladeOption,
     JsonOption,
+    PlantOption,
     PresetOption,
     ScenarioOption,
     SpeedOption,
@@ -40,6 +41,7 @@ def export(
     speed: SpeedOption = None,
     blade: BladeOption = None,
     scenario: ScenarioOption = "default",
+    plant: PlantOption = None,
     trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
     as_json: JsonOption = False,
@@ -56,7 +58,7 @@ def export(
         checked("format", format, Choice(tuple(FORMATS)))
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
-        task = resolve_task(**environment_arguments(preset, speed, blade), scenario=scenario)
+        task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
         called = identifier(Path(controller).name) if name is None else name
         path = output or Path(f"{called}.{format}")
         check_file(path, "output")
