@@ -71,10 +71,8 @@ def identify(
     whole = Identified(
         measurement=measurement,
         learned=learned,
-        scaled=found.model,
-        parameters=found.parameters,
-        noise=white_noise(found.model, learned),
         choice=choice,
+        noise=white_noise(found.model, learned),
         balanced=balanced,
         stabilisation=realisation.stabilisation(),
         fit=fit_of(found.model, scaled, learned),

@@ -21,8 +21,8 @@ from beamenv.configuration.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
-KNEE = 5e-4
-"""Loss per reading, against the best order, below which a balanced model is as good as any to begin with."""
+MADE_GOOD = 300.0
+"""Likelihood of all rows held back that a balanced model may lack to begin with: prediction error makes it good."""
 DOUBTFUL = 3.0
 """Wald's statistic over the count of its numbers, 1 for a pole that is not there: all below this are taken away together."""
 CERTAIN = 3.0
@@ -71,24 +71,33 @@ Told = Callable[[str, float], None]
 
 
 def first_order(realisation: Realisation, everything: Measurement, learned: int, candidates: range) -> tuple[int, dict[int, float]]:
-    """The least order of a balanced model that is about as good as the best on the rows after ``learned``; the loss of each."""
-    found = {order: held_back_loss(realisation.model(order), everything, learned) for order in candidates}
-    good = min(found.values()) + KNEE * everything.readings.shape[1]
-    return next(order for order, value in found.items() if value <= good), found
+    """The least order of a balanced model that explains the rows after ``learned`` about as well as the best; the loss of each."""
+    errors = {order: _held_back(realisation.model(order), everything, learned) for order in candidates}
+    losses = {order: np.inf if each is None else _loss(each) for order, each in errors.items()}
+    least = min(losses.values())
+    if not np.isfinite(least):
+        raise ValueError("the measurement is explained by no model that is stable: it is too short, or of nothing that is.")
+    rows = len(everything) - learned
+    return next(order for order, loss in losses.items() if rows * (loss - least) <= MADE_GOOD), losses
 
 
-def held_back_loss(model: InnovationModel, everything: Measurement, learned: int) -> float:
-    """As ``Tried.loss``; infinite where the model or its predictor is not stable."""
+def _held_back(model: InnovationModel, everything: Measurement, learned: int) -> Array | None:
+    """One-step errors of the rows after ``learned``; None where there are no finite ones."""
     if not model.stable:
-        return np.inf
-    errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
+        return None
+    with np.errstate(all="ignore"):  # of a predictor that is nearly unstable
+        errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
+    return errors if np.isfinite(errors).all() else None
+
+
+def _loss(errors: Array) -> float:
     return 0.5 * float(np.linalg.slogdet(errors.T @ errors / len(errors))[1])
 
 
 def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: int, wanted: int | None, told: Told) -> Choice:
     """Poles taken away down to ``wanted`` states; None: for as long as the rows after ``learned`` do not miss them."""
-    now, losses = first, _losses(first.model, everything, learned)
-    tried, passed = [Tried(first.model.order, held_back_loss(first.model, everything, learned), 0.0, True)], 0
+    now, (losses, loss) = first, _losses(first.model, everything, learned)
+    tried, passed = [Tried(first.model.order, loss, 0.0, True)], 0
     least, together = wanted or 2, first.model.order
     while now.model.order > least and passed < REFUSALS:
         poles = _next(now, least, passed, together)
@@ -96,10 +105,10 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
             break
         shorter = without(now, poles)
         after = refined(spectra, shorter.model, shorter.start, steps=STEPS)
-        left = _losses(after.model, everything, learned)
+        left, loss = _losses(after.model, everything, learned)
         missed = _in_standard_errors(left - losses)
         kept = wanted is not None or missed < CERTAIN
-        tried.append(Tried(after.model.order, held_back_loss(after.model, everything, learned), missed, kept))
+        tried.append(Tried(after.model.order, loss, missed, kept))
         told(f"{after.model.order} states", 0.0)
         if kept:
             now, losses, passed = after, left, 0
@@ -124,14 +133,18 @@ def _next(found: Refined, least: int, passed: int, together: int) -> list[int]:
     return fitting[passed : passed + 1]
 
 
-def _losses(model: InnovationModel, everything: Measurement, learned: int) -> Array:
-    """Minus log likelihood (rows,) of each row after ``learned``, less a constant."""
-    errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
+def _losses(model: InnovationModel, everything: Measurement, learned: int) -> tuple[Array, float]:
+    """Minus log likelihood (rows,) of each row after ``learned``, less a constant; and what ``Tried`` has."""
+    errors = _held_back(model, everything, learned)
+    if errors is None:
+        return np.full(len(everything) - learned, np.inf), np.inf
     root = np.linalg.cholesky(model.covariance)
-    return np.asarray(0.5 * (np.linalg.solve(root, errors.T) ** 2).sum(axis=0) + np.log(np.diag(root)).sum())
+    return 0.5 * (np.linalg.solve(root, errors.T) ** 2).sum(axis=0) + np.log(np.diag(root)).sum(), _loss(errors)
 
 
 def _in_standard_errors(difference: Array) -> float:
+    if not np.isfinite(difference).all():
+        return np.inf
     blocks = np.array([each.mean() for each in np.array_split(difference, BLOCKS)])
     return float(blocks.mean() / (blocks.std(ddof=1) / np.sqrt(len(blocks)) + 1e-300))
 

@@ -131,6 +131,7 @@ def order_panel(found: Identified) -> Panel:
     """How much worse rows held back are predicted than by the best, over the order."""
     orders, losses = np.array(list(found.balanced), dtype=float), np.array(list(found.balanced.values()))
     tried = np.array([[each.order, each.loss] for each in found.choice.tried])
+    tried = tried[np.isfinite(tried[:, 1])]
     least, finite = min(losses.min(), tried[:, 1].min()), np.isfinite(losses)
     balanced, refined = Look(NEUTRAL, marker=Marker("circle", size=3)), Look(colour(0), marker=Marker("square", size=4))
     curves = [
