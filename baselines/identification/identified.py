@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import os
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,9 +19,13 @@ from baselines.identification.realisation import Stabilisation
 from baselines.identification.state_space import StateSpace, continuous
 from baselines.identification.white_noise import WhiteNoise
 from beamenv.configuration import Count, checked
+from beamenv.configuration.files import checked_path
+from beamenv.configuration.writing import write_whole
 from beamenv.plant.plant import Plant
 
 Array = NDArray[np.float64]
+
+ENDING = ".npz"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -105,6 +111,15 @@ class Identified:
     def plant(self, **about: Any) -> Plant:
         """The plant that controllers are built from and environments run (``Plant.from_state_space`` of ``arrays``)."""
         return Plant.from_state_space(**self.arrays(**about))
+
+    def save(self, path: str | os.PathLike[str], model: StateSpace | None = None, **about: Any) -> None:
+        """Write ``arrays`` for ``Plant.from_file``, whole or not at all; ``ValueError`` unless it ends in .npz and can be written."""
+        place, file = checked_path("path", path, (ENDING,)), io.BytesIO()
+        np.savez(file, **self.arrays(model, **about))
+        try:
+            write_whole(place, file.getvalue())
+        except OSError as error:
+            raise ValueError(f"file {str(place)!r} cannot be written: {error.strerror or error}.") from None
 
     def ensemble(self, count: int, seed: int = 0) -> list[StateSpace]:
         """So many models drawn from the spread of the parameters, each with the loads of the model itself."""

@@ -178,7 +178,7 @@ def without(found: Refined, poles: list[int]) -> Refined:
     where, values = _driving(found.model, states)
     inverse = np.linalg.pinv(found.parameters[np.ix_(where, where)], rcond=1e-8, hermitian=True)
     made_good = _dropped(moved(found.model, -found.parameters[:, where] @ inverse @ values), poles, states)
-    model = made_good if made_good.stable else _dropped(found.model, poles, states)
+    model = made_good if made_good.stable else _dropped(found.model, poles, states).steadied()
     return replace(found, model=model, start=np.delete(found.start, states))
 
 
