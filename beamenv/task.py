@@ -18,6 +18,7 @@ from beamenv.blade.clamp import clamp_note
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
+from beamenv.blade.held_load import under_reference
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
 from beamenv.configuration.arrays import real_numbers
@@ -232,6 +233,8 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
             raise Refused(f"design.{name}", getattr(design, name), f"the true blade's, {getattr(true.config, name)!r}")
     if design.sensor_full_scale is None:
         design = replace(design, sensor_full_scale=float(true.plant.sensor_full_scale[0]))
+    if design.reference_load is None:
+        design = under_reference(design, true.reference_load)
     designed = true.as_beam.changed(design)
     shapes = [(plant.B.shape[1], len(plant.C)) for plant in (designed.plant, true.plant)]
     if shapes[0] != shapes[1]:

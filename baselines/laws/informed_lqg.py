@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,8 @@ from baselines.design.objects import instance
 from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.detuning_search import LOST, TRIALS, coordinate_search, kept_detuning
 from baselines.laws.foreseen_load import foreseen_loads
-from beamenv.blade.files import to_dict
+from beamenv.blade.files import departures
+from beamenv.configuration.cache import departing
 from beamenv.knowledge import Prior
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.scenario import Scenario
@@ -91,13 +92,7 @@ def _mean_cost(prior: Prior, law: LinearController | None, without: float) -> fl
 def _depends_on(prior: Prior) -> tuple[Any, ...]:
     return (
         (VERSION, EPISODES, TRIALS, prior.steps),
-        _departing(prior.scenario.to_dict(), Scenario().to_dict()),
-        to_dict(prior.blade.config),
+        departing(prior.scenario.to_dict(), Scenario().to_dict()),
+        departures(prior.blade.config),
         fingerprint(prior.blade.truth),
     )
-
-
-def _departing(table: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
-    """What of a table is not as usual: a field that is yet to come leaves the key of a scenario without it as it is."""
-    own = {name: value for name, value in table.items() if value != usual[name]}
-    return {name: _departing(value, usual[name]) if isinstance(value, dict) else value for name, value in own.items()}

@@ -19,7 +19,7 @@ from baselines.laws.lqg import sampled_with_loads
 from baselines.laws.no_control import no_control
 from beamenv.blade.build import Blade
 from beamenv.blade.design import Design
-from beamenv.blade.files import to_dict
+from beamenv.blade.files import departures
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant
 
@@ -71,4 +71,4 @@ def _law(plant: Plant, detuning: Detuning) -> LinearController:
 
 
 def _depends_on(blade: Blade) -> tuple[Any, ...]:
-    return (VERSION, PLANTS, TRIALS, FREQUENCY, SHAPE), to_dict(blade.config), fingerprint(blade.truth)
+    return (VERSION, PLANTS, TRIALS, FREQUENCY, SHAPE), departures(blade.config), fingerprint(blade.truth)

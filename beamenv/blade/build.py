@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
+from beamenv.blade.held_load import own_reference, reference_of, under_reference
 from beamenv.configuration import Count, Instance, Refused, checked
 from beamenv.configuration.read_only import sealed_property
 from beamenv.patches import PatchResponse, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
+from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.structure import RotatingBeam
 from beamenv.structure.scale import OUT_OF_SCALE
 
@@ -63,6 +66,12 @@ class Blade:
     def full(self) -> FullModel:
         """What acts on it and what is seen of it."""
         return full_model(self.beam, self.config.patches, self.config.speed, self.at_rest)
+
+    @cached_property
+    def reference_load(self) -> float:
+        """N/m: what stands for 30 N/m of a scenario."""
+        known = own_reference(self.config)
+        return reference_of(self._reduced(self.modal, 1.0, REFERENCE_LOAD)) if known is None else known
 
     @sealed_property
     def plant(self) -> Plant:
@@ -134,8 +143,9 @@ class Blade:
         shapes = modal.mode_shapes
         return static_residual(static, rows @ shapes, shapes.T @ self.full.forces, modal.natural_frequencies)
 
-    def _reduced(self, modal: ModalModel, sensor_full_scale: float | None) -> Plant:
+    def _reduced(self, modal: ModalModel, sensor_full_scale: float | None, reference_load: float | None = None) -> Plant:
         config = self.config
+        reference = self.reference_load if reference_load is None else reference_load
         try:
             plant = reduced_plant(
                 modal,
@@ -147,6 +157,7 @@ class Blade:
                 sensor_full_scale=sensor_full_scale,
                 voltage_limits=config.voltage_limits,
                 control_interval=config.control_interval,
+                reference_load=reference,
             )
         except OverflowError:
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}") from None
@@ -169,8 +180,9 @@ class Blade:
         return other
 
     def with_fixed_range(self) -> Blade:
-        """The blade behind the data acquisition that fits it now: another blade made of its configuration keeps it."""
-        return self.changed(replace(self.config, sensor_full_scale=float(self.plant.sensor_full_scale[0])))
+        """The blade behind the data acquisition and under the loads that fit it now: one made of its configuration keeps them."""
+        config = replace(self.config, sensor_full_scale=float(self.plant.sensor_full_scale[0]))
+        return self.changed(under_reference(config, self.reference_load))
 
     def with_fixed_order(self) -> Blade:
         """The blade with as many modes in its true plant as it has now, whatever becomes of their frequencies."""

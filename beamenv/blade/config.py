@@ -15,7 +15,7 @@ from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
 from beamenv.plant.limits import VOLTAGES
-from beamenv.structure import AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
+from beamenv.structure import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.planform import TABLE, Steps
@@ -23,7 +23,9 @@ from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
 from beamenv.structure.walls.laminate import PLY_ANGLES
 
-MATERIALS: Mapping[str, Lamina] = MappingProxyType({"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6})
+MATERIALS: Mapping[str, Lamina] = MappingProxyType(
+    {"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6, "aluminium": ALUMINIUM}
+)
 
 ON_EVERY_WALL = "all"
 
@@ -160,7 +162,11 @@ class BladeConfig:
     """Which strain fails the blade where it exceeds what its patches are rated for: that of "vibration" alone, or the "total", with
     the steady state's."""
     white_load: Annotated[float, Number(ge=0.0, le=1e6, unit="N/m")] = 3.0
-    """N/m: standard deviation, in lag and in flap, of the white line load of each interval; a tenth of the reference load."""
+    """N/m on a blade whose reference load is 30 N/m, and in proportion to it: standard deviation, in lag and in flap, of the white
+    line load of each interval."""
+    reference_load: Annotated[float | None, Number(ge=1e-9, le=1e6, unit="N/m")] = None
+    """N/m: what stands for 30 N/m of a scenario, by which all its loads, the white one and the sensors' range are scaled. None: 30
+    on a box of the thesis' size, on any other blade five times what its patches can hold (``beamenv.blade.held_load``)."""
     sensor_noise_fraction: Annotated[float, Number(ge=0.0, le=100.0)] = 0.02
     """Standard deviation of one sample over the sensors' full scale."""
     sensor_full_scale: Annotated[float | None, Number(ge=1e-15, le=1e6, unit="A")] = None

@@ -11,6 +11,7 @@ from typing import Any
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Refused, read
+from beamenv.configuration.cache import departing
 from beamenv.configuration.files import of_file, read_table
 
 
@@ -25,6 +26,16 @@ def to_dict(config: Any) -> dict[str, Any]:
 def from_dict(values: Mapping[str, Any]) -> BladeConfig:
     """The configuration that ``to_dict`` wrote; fields left out take the thesis' values."""
     return read(THESIS, values)
+
+
+def departures(config: BladeConfig) -> dict[str, Any]:
+    """What of a blade is not as the thesis', as plain dictionaries, to nine digits: what keys are made of."""
+    mine: dict[str, Any] = json.loads(json.dumps(to_dict(config)), parse_float=_to_nine_digits)
+    return departing(mine, json.loads(json.dumps(to_dict(THESIS)), parse_float=_to_nine_digits))
+
+
+def _to_nine_digits(number: str) -> float:
+    return float(f"{float(number):.9g}")
 
 
 def load_config(path: str | Path) -> BladeConfig:

@@ -86,6 +86,7 @@ class GivenBlade(Blade):
             sensor_full_scale=float(self.plant.sensor_full_scale[0]),
             voltage_limits=config.voltage_limits,
             control_interval=config.control_interval,
+            reference_load=self.reference_load,
         )
         return self._behind_electronics(replace(plant, input_weight=self.plant.input_weight))
 

@@ -84,7 +84,8 @@ def patch(beam: RotatingBeam, inlay: Inlay, span: Array, raised: float = 0.0) ->
     between = (np.abs(arcs - middle) < half[:, None])[..., None] * (line - ends[:, 1:])
     bulge = np.maximum((between * normal[:, None]).sum(axis=-1).max(axis=1), 0.0)
     height = size * bulge + 0.5 * section.thickness_of(inlay.wall) + raised
-    return Skin(span, size[:, None, None] * ends + (height[:, None] * normal)[:, None], beam.planform.angle(span))
+    points = size[:, None, None] * ends + (height[:, None] * normal)[:, None]
+    return Skin(span, points if inlay.face == "outer" else points[:, ::-1], beam.planform.angle(span))
 
 
 def _along(line: Array, arcs: Array, at: Array) -> Array:

@@ -56,13 +56,15 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     2.8 %, far beyond what its laminate bears, and stretches it by 32 mm. It is there because the thesis is; `sound-blade` is a
     blade that could be built.
 
-    | `preset`            | Blade                                                                     | rad/s | Static strain |
-    |---------------------|---------------------------------------------------------------------------|-------|---------------|
-    | `thesis`            | the default                                                               | 200   | 2.8 %         |
-    | `sound-blade`       | the same box, plies at ±75°, no patch at the clamp; fails by total strain | 100   | 0.03 %        |
-    | `thesis-untwisted`  | the default without pretwist                                              | 200   | 2.6 %         |
-    | `thesis-pretwisted` | the default with 30° presetting                                           | 200   | 3.1 %         |
-    | `chandra-chopra`    | a box of 0.84 m with bending–twist coupling (Chandra and Chopra 1992)     | 104.7 | 0.02 %        |
+    | `preset`               | Blade                                                                     | rad/s | Static strain |
+    |------------------------|---------------------------------------------------------------------------|-------|---------------|
+    | `thesis`               | the default                                                               | 200   | 2.8 %         |
+    | `sound-blade`          | the same box, plies at ±75°, no patch at the clamp; fails by total strain | 100   | 0.03 %        |
+    | `thesis-untwisted`     | the default without pretwist                                              | 200   | 2.6 %         |
+    | `thesis-pretwisted`    | the default with 30° presetting                                           | 200   | 3.1 %         |
+    | `chandra-chopra`       | a box of 0.84 m with bending–twist coupling (Chandra and Chopra 1992)     | 104.7 | 0.02 %        |
+    | `aluminium-cantilever` | a strip of 300 × 30 × 2 mm with a pair of piezoceramic sheets             | 0     | 0             |
+    | `airfoil-blade`        | a hollow NACA 0012 with a web, 1.3 m, with MFC along the span             | 72    | 0.01 %        |
 
     ## Action Space
 

@@ -95,6 +95,16 @@ class PatchLayout:
             ),
         )
 
+    def without_mass(self) -> PatchLayout:
+        """The layout with patches whose mass and stiffness do not count."""
+        own = {side: tuple(replace(group, passive=False) for group in self.groups(side)) for side in SIDES}
+        listed = {side: own[side] if self._in_groups(side) else getattr(self, side) for side in SIDES}
+        return replace(self, actuators=listed["actuators"], sensors=listed["sensors"], passive=False)
+
+    def _in_groups(self, side: Side) -> bool:
+        given = self.actuators if side == "actuators" else self.sensors
+        return isinstance(given, tuple) and isinstance(given[0], PatchGroup)
+
     def only(self, side: Side) -> PatchGroup:
         """The one group of a side; ``ValueError`` where there are several."""
         groups = self.groups(side)

@@ -97,4 +97,14 @@ PZT = PatchMaterial(
 )
 """Monolithic sheet poled through its thickness: d31 in both directions (thesis Table 5.1)."""
 
-PATCH_MATERIALS: Mapping[str, PatchMaterial] = MappingProxyType({"MFC": MFC, "PZT": PZT})
+PIC255 = PatchMaterial(
+    lamina=Lamina.isotropic(E=1.0 / 16.1e-12, nu=0.34, density=7800.0),
+    d11=-180e-12,
+    d12=-180e-12,
+    thickness=0.5e-3,
+    electrode_spacing=0.5e-3,
+)
+"""A soft piezoceramic, poled through a thickness of 0.5 mm: s11 = 16.1·10⁻¹² m²/N, d31 = −180 pm/V and density of PI Ceramic's
+data; Poisson's ratio is that of soft PZT."""
+
+PATCH_MATERIALS: Mapping[str, PatchMaterial] = MappingProxyType({"MFC": MFC, "PZT": PZT, "PIC255": PIC255})

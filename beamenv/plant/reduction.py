@@ -222,7 +222,7 @@ def reduced_plant(
         natural_frequencies=omega,
         state_weight=0.5 * np.eye(2 * len(omega)),
         input_weight=blade.input_weight,
-        process_noise=white_load**2 * control_interval * np.eye(2),
+        process_noise=(white_load * (reference_load / REFERENCE_LOAD)) ** 2 * control_interval * np.eye(2),
         sensor_noise=np.diag((sensor_noise_fraction * full_scale) ** 2) * control_interval,
         voltage_limits=np.repeat(np.asarray(voltage_limits, dtype=float)[:, None], forces.shape[1], axis=1),
         sensor_full_scale=full_scale,

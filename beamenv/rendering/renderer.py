@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
+from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import drive_limit
 from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.charts import Chart, draw_scale, round_above
@@ -45,6 +47,7 @@ class BladeRenderer:
         self._scene = Scene(task.blade)
         self._deformation = Deformation(task, self._scene.solid.stations)
         self._actuators = len(config.patches.actuator_positions(config.beam.length))
+        self._walls = {side: _in_words([group.wall for group in config.patches.groups(side)]) for side in SIDES}
         self._limit = float(drive_limit(plant).max())
         self._colours = line_colours(plant.B.shape[1])
         usual_cost = 0.1 * WINDOW / config.control_interval * reward_scale(plant)
@@ -100,7 +103,11 @@ class BladeRenderer:
         magnified = self._scene.solid.magnification
         canvas.write(f"deflection × {magnified:,.0f}   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
         canvas.write(
-            "actuators lie in the top wall; sensors lie in the bottom wall and are drawn below it", 24.0, 68.0, QUIET, "note"
+            f"actuators lie in {self._walls['actuators']}; sensors lie in {self._walls['sensors']} and are drawn below it",
+            24.0,
+            68.0,
+            QUIET,
+            "note",
         )
         draw_scale(canvas, VOLTAGE_KEY, VOLTAGE_SCALE, self._limit, "actuator voltage, V")
         draw_scale(canvas, OUTPUT_KEY, OUTPUT_SCALE, 1.0, "sensor output, full scale")
@@ -137,3 +144,9 @@ def _check_installed() -> None:
         import pygame  # noqa: F401
     except ImportError as error:
         raise DependencyNotInstalled(f'{error.name} is not installed, run `pip install "beamenv[render]"`') from error
+
+
+def _in_words(walls: Sequence[str]) -> str:
+    """Say, the top wall."""
+    names = list(dict.fromkeys(walls))
+    return f"the {' and '.join(names)} wall{'s' if len(names) > 1 else ''}"

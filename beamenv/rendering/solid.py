@@ -11,7 +11,6 @@ from beamenv.blade.build import Blade
 from beamenv.blade.shape import bodies, magnification, patch, quadrilaterals
 from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import Plant
-from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.scenarios.load_cases import static_deflection
 
 Array = NDArray[np.float64]
@@ -25,7 +24,7 @@ greatest load of the default scenario, with its overshoot, then reaches three ti
 
 def reference_deflection(plant: Plant) -> float:
     """Static tip deflection, m, under the reference load in lag or in flap, whichever is larger."""
-    tip = plant.tip_displacement @ static_deflection(plant, np.diag([REFERENCE_LOAD] * 2)).T
+    tip = plant.tip_displacement @ static_deflection(plant, np.diag(np.asarray(plant.reference_load))).T
     return float(np.linalg.norm(tip, axis=0).max())
 
 

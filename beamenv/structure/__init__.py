@@ -10,9 +10,10 @@ from beamenv.structure.section.section import Section
 from beamenv.structure.section.webs import Web
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Laminate, Layup, Ply
-from beamenv.structure.walls.materials import AS4_3501_6, GRAPHITE_EPOXY, Lamina
+from beamenv.structure.walls.materials import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, Lamina
 
 __all__ = [
+    "ALUMINIUM",
     "AS4_3501_6",
     "GRAPHITE_EPOXY",
     "AirfoilSection",

@@ -40,6 +40,8 @@ class TrialSpace:
     """Whether sections stay plane in torsion, so that the clamp holds no warping back."""
     clamp_reach: float = 1.0
     """m: distance from the clamp over which sections come to warp at will."""
+    breaks: tuple[float, ...] = ()
+    """m: where the blade's stiffness jumps, and strains with it. Every field has a ramp and a parabola that begin there."""
 
     def root_order(self, field: str) -> int:
         """The power of z with which a field leaves the clamp."""
@@ -55,22 +57,27 @@ class TrialSpace:
     @property
     def size(self) -> int:
         """Number of coefficients."""
-        return self.terms * len(self.fields)
+        return self.each * len(self.fields)
+
+    @property
+    def each(self) -> int:
+        """Number of coefficients of each field."""
+        return self.terms + 2 * len(self.breaks)
 
     def columns(self, motions: tuple[str, ...] | None) -> NDArray[np.intp]:
         """Indices of the coefficients that belong to ``motions`` (None: all)."""
         if motions is not None and not set(checked("motions", motions, Texts()) or ("none",)) <= set(MOTIONS):
             raise Refused("motions", motions, f"a list of one or more of {', '.join(MOTIONS)}")
         wanted = FIELDS if motions is None else [name for motion in motions for name in MOTIONS[motion]]
-        blocks = [np.arange(self.terms) + self.terms * k for k, name in enumerate(self.fields) if name in wanted]
+        blocks = [np.arange(self.each) + self.each * k for k, name in enumerate(self.fields) if name in wanted]
         return np.concatenate(blocks)
 
     def evaluate(self, z: Array) -> dict[tuple[str, int], Array]:
         """Rows (stations, size) that give each field's derivative: keys (field, order), orders 0, 1, 2."""
-        tables = {power: polynomial_table(z / self.length, power, self.terms, self.length) for power in (1, 2)}
+        tables = {power: self.table(z, power) for power in (1, 2)}
         rows: dict[tuple[str, int], Array] = {}
         for index, name in enumerate(self.fields):
-            block = slice(index * self.terms, (index + 1) * self.terms)
+            block = slice(index * self.each, (index + 1) * self.each)
             for order in range(3):
                 row = np.zeros((len(z), self.size))
                 row[:, block] = tables[self.root_order(name)][order]
@@ -80,6 +87,18 @@ class TrialSpace:
                 rows["theta_y", order] = rows["u", order + 1]
                 rows["theta_x", order] = -rows["v", order + 1]
         return rows
+
+    def table(self, z: Array, power: int) -> tuple[Array, Array, Array]:
+        """Values and first two derivatives (stations, each) of a field's functions, that leave the clamp with a power of z."""
+        smooth = polynomial_table(z / self.length, power, self.terms, self.length)
+        if not self.breaks:
+            return smooth
+        beyond = np.maximum(z[:, None] - np.array(self.breaks), 0.0) / self.length
+        there = (beyond > 0.0) / self.length
+        ramps = beyond, there, np.zeros_like(there)
+        parabolas = beyond**2, 2.0 * beyond * there, 2.0 * there**2
+        value, first, second = (np.hstack(parts) for parts in zip(smooth, ramps, parabolas, strict=True))
+        return value, first, second
 
 
 def polynomial_table(xi: Array, power: int, terms: int, length: float) -> tuple[Array, Array, Array]:

@@ -27,6 +27,7 @@ for _room in (
     "benchmark.showing.page",
     "figures.paper_heat_map",
     "figures.screen_heat_map",
+    "figures.section",
     "identification.files",
     "placement.picture",
 ):
@@ -66,6 +67,12 @@ COMMANDS = {
         {"--preset": "thesis", "--speed": "20", "--count": "2", "--blade": "blade.toml"},
         ("--json", "--no-gyroscopic", "--no-patches"),
         (),
+    ),
+    "section": (
+        (),
+        {"--preset": "thesis", "--blade": "blade.toml", "--at": "0.5", "--picture": "made.png"},
+        ("--json",),
+        ("train.figures.section.save",),
     ),
     "evaluate": (
         ("none",),

@@ -13,7 +13,7 @@ from beamenv.blade.presets import PRESETS, blade_config
 def test_every_preset_survives_json_and_builds(preset):
     config = blade_config(preset)
     assert from_dict(json.loads(json.dumps(to_dict(config)))) == config
-    assert build_plant(config).B.shape == (22, 4)
+    assert build_plant(config).B.shape == (2 * config.modes, config.patches.channels("actuators"))
 
 
 def test_a_nested_dictionary_changes_only_what_it_names():

@@ -135,6 +135,9 @@ def test_faces_look_outwards(section):
     assert volume == pytest.approx(area(walls[0, :, :2]), rel=1e-9)
     strip = quadrilaterals(patch(bladed(BoxSection(0.2, 0.06, 0.01)), sheet("bottom", 0.03), np.array([0.1, 0.2])).at_rest())
     assert np.cross(strip[2] - strip[0], strip[3] - strip[1])[1] < 0.0
+    under = replace(sheet("strip", 0.01), face="inner")
+    strip = quadrilaterals(patch(bladed(StripSection(0.03, 0.002)), under, np.array([0.1, 0.2])).at_rest())
+    assert np.cross(strip[2] - strip[0], strip[3] - strip[1])[1] < 0.0
 
 
 @pytest.mark.parametrize("section", [BoxSection(0.2, 0.06, 0.01), TUBE, WEDGE, HOLLOW])

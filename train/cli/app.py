@@ -28,6 +28,7 @@ from train.cli.options import (
 )
 from train.cli.place import place
 from train.cli.schema import schema
+from train.cli.section import section
 from train.cli.speed import speed
 from train.cli.train import train
 from train.cli.usage import OneSentence
@@ -38,6 +39,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command()(section)
 app.command()(identify)
 app.command()(place)
 app.command()(export)

@@ -45,7 +45,7 @@ def place(
         if drawn is not None:
             check_file(drawn, "picture")
         config = blade_config(preset, load_config(blade) if blade else None, speed)
-        config = config if passive else replace(config, patches=replace(config.patches, passive=False))
+        config = config if passive else replace(config, patches=config.patches.without_mass())
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
         with bars(counts) as report:

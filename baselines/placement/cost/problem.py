@@ -26,7 +26,7 @@ from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes,
 from baselines.placement.model.reduced_layouts import Reduction, reduce_layouts
 from baselines.placement.model.reduced_slopes import ReducedSlopes, reduce_with_slopes
 from beamenv.blade.bounds import Bounds
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
 from beamenv.configuration import Choice, Instance, Number, Refused, checked
@@ -88,9 +88,9 @@ class PlacementProblem:
         number = config.patches.only(side).count if count is None else count
         room = Bounds.of(config.patches, config.beam.length, number, bounds, name=side)
         uniform = with_positions(config, {side: tuple(room.uniform().tolist())})
-        plant = build_plant(uniform)
-        held = replace(uniform, sensor_full_scale=float(plant.sensor_full_scale[0]))
-        return cls(held, side, room, plant.process_noise, float(plant.sensor_noise[0, 0]), parts_of(config))
+        held = Blade(uniform).with_fixed_range()
+        plant = held.plant
+        return cls(held.config, side, room, plant.process_noise, float(plant.sensor_noise[0, 0]), parts_of(config))
 
     def configuration(self, positions: ArrayLike) -> BladeConfig:
         """The blade with its moving patches at ``positions`` (count,), m: what ``build_plant`` takes."""
@@ -170,7 +170,7 @@ def check_noise(config: BladeConfig) -> None:
 
 def parts_of(config: BladeConfig) -> Contributions:
     """The contributions of a blade, kept from one problem to the next: they depend on neither side nor positions."""
-    patches = replace(config.patches, actuators=1, sensors=1, ganged=False)
+    patches = replace(config.patches.placed("actuators", 1).placed("sensors", 1), ganged=False)
     return _parts(BladeConfig(beam=config.beam, patches=patches, model=config.model, speed=config.speed, modes=config.modes))
 
 

@@ -23,7 +23,7 @@ from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.section.element_sums import MONOMIALS
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.solid_sections import AMPLITUDES, STRAINS
-from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clamped_table, polynomial_table
+from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clamped_table
 
 Array = NDArray[np.float64]
 
@@ -276,13 +276,13 @@ def increment_rows(space: TrialSpace, z: Array) -> Array:
     rows = np.zeros((len(z), INCREMENT, space.size))
     for order, table in enumerate(field_tables(space, z)):
         for k in range(FIELD_COUNT):
-            rows[:, FIELD_COUNT * order + k, space.terms * k : space.terms * (k + 1)] = table
+            rows[:, FIELD_COUNT * order + k, space.each * k : space.each * (k + 1)] = table
     return rows
 
 
 def field_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
-    """Values and slopes (S, terms) of the trial functions that every field has."""
-    value, slope = polynomial_table(z / space.length, 1, space.terms, space.length)[:2]
+    """Values and slopes (S, each) of the trial functions that every field has."""
+    value, slope, _ = space.table(z, 1)
     return value, slope
 
 

@@ -51,6 +51,19 @@ def loads_of_vibrations(system: Factorised) -> Array:
     return np.asarray(sums.inertial(sums.gather(slowest)))
 
 
+def loads_of_bimoment(system: Factorised, torsion: Array) -> Array:
+    """Loads on the elements (1, K, size, 1) that contract one section as the stresses of warping held back do, of unit energy.
+
+    ``torsion`` (1, lines, 12, 1) is its warping in torsion. An open section bears torsion by these stresses; were it not free to
+    contract across them, it would be stiffer by (1 − ν)/(1 + ν)(1 − 2ν), a third for ν = 0.3.
+    """
+    sums = system.sums
+    loads = -sums.cross @ sums.gather(torsion)
+    shape = sums.gather(_under(system, loads))
+    energy = (shape.swapaxes(-1, -2) @ loads).sum(axis=1)
+    return np.asarray(loads / np.sqrt(energy)[:, None])
+
+
 def _slowest(mass: Array, energy: Array) -> tuple[Array, Array]:
     """1/ω², descending, of mixtures of shapes, and the mixtures (c, d), of unit energy; none that only rounding tells apart.
 

@@ -83,7 +83,8 @@ class Mesh(Sealed):
     @property
     def loose_ends(self) -> NDArray[np.intp]:
         """Elements whose last line is no other's first."""
-        return np.flatnonzero(~np.isin(self.lines[:, 1], self.lines[:, 0]))
+        last = self.lines[:, 1]
+        return np.flatnonzero((last < self.count) & ~np.isin(last, self.lines[:, 0]))
 
     @property
     def open_elements(self) -> NDArray[np.intp]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Refused
+from beamenv.structure.section.standing import check_apart, check_joined
 from beamenv.structure.walls.chain import Chain
 
 Array = NDArray[np.float64]
@@ -100,6 +101,8 @@ def paths(chains: Sequence[Chain], sizes: Array) -> tuple[Path, ...]:
         for last in (False, True)
         if (landing := _landing(chains, guest, last, sizes)) is not None
     ]
+    check_apart(chains)
+    check_joined(chains, [(landing.guest, landing.host) for landing in landings])
     laid = [_with_seats(chain, [each for each in landings if each.host == k], sizes) for k, chain in enumerate(chains)]
     found: dict[tuple[int, bool], Seat] = {}
     for landing in landings:
@@ -219,6 +222,4 @@ def _along(points: Array, arcs: Array, at: Array) -> Array:
 
 def _too_near(chain: Chain) -> ValueError:
     names = ", ".join(dict.fromkeys(chain.walls))
-    return ValueError(
-        f"section has a web on {names} that must end further, by its own thickness, from corners, ends and other webs."
-    )
+    return ValueError(f"section has a wall that ends on {names} too near to a corner, an end or another web: within its thickness.")

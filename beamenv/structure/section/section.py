@@ -151,15 +151,16 @@ class Section(ABC):
         """Its walls at stations of the span by the thesis' kinematics; options as in ``SpanWalls.build``."""
         return SpanWalls.build(self.vertices, hosts, self.walls, **options)
 
-    def properties(self, layup: Layup) -> SectionProperties:
-        """Stiffness with transverse shear, centres and inertia by solid finite elements, about the origin of the corners.
+    def properties(self, layup: Layup, size: float = 1.0) -> SectionProperties:
+        """Stiffness with transverse shear, centres and inertia by solid finite elements, about the origin of the corners; of the
+        section ``size`` times as large, with walls as thick.
 
         Raises ``ValueError`` for a lay-up of other walls, for a wall too short for its thickness, and for one so thin (below some
         10⁻⁵ of the section's size) that rounding would be seen.
         """
         checked("layup", layup, Instance(Layup)).check_walls(self.wall_names)
         hosts = self.hosts(layup)
-        elements = mesh(self.chains, np.ones(1))
+        elements = mesh(self.chains, np.array([checked("size", size, Number(gt=0.0))]))
         laminates = list(dict.fromkeys(hosts.values()))
         which = np.array([[laminates.index(hosts[edge.wall]) for edge in elements.edges]])
         with in_scale("section"):

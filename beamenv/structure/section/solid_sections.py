@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed, sealed_property
 from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
-from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes, loads_of_vibrations
+from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes, loads_of_bimoment, loads_of_vibrations
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.mesh import Mesh
@@ -87,7 +87,11 @@ class SolidSections(Sealed):
         system = Factorised.of(sums)
         central = central_solution(system, rate)
         if meant is None:
-            meant = np.sqrt(np.diagonal(central.stiffness[0])), loads_of_vibrations(system.first)
+            loads = loads_of_vibrations(system.first)
+            if len(mesh.loose_ends):
+                torsion = central.warping[:1, :, :, RIGID - 1 :]
+                loads = np.concatenate([loads_of_bimoment(system.first, torsion), loads[..., : DISTORTIONS - 1]], axis=-1)
+            meant = np.sqrt(np.diagonal(central.stiffness[0])), loads
         unit, loads = meant
         shapes = np.concatenate([central.warping * unit, distortion_shapes(system, loads)], axis=-1)
         here = sums.gather(shapes)

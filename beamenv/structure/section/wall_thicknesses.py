@@ -30,8 +30,9 @@ class ByWall(Kind):
         return core_schema.no_info_after_validator_function(_once, core_schema.no_info_before_validator_function(_pairs, pairs))
 
     def json(self) -> JsonSchema:
-        """An object of numbers."""
-        return {"type": "object", "additionalProperties": METRES.json()}
+        """An object of numbers, or an array of pairs."""
+        pair = {"type": "array", "prefixItems": [{"type": "string"}, METRES.json()], "minItems": 2, "maxItems": 2}
+        return {"anyOf": [{"type": "object", "additionalProperties": METRES.json()}, {"type": "array", "items": pair}]}
 
 
 def _pairs(value: Any) -> Any:

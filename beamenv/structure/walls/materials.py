@@ -104,3 +104,6 @@ GRAPHITE_EPOXY = Lamina(E1=206.8e9, E2=5.17e9, G12=3.1e9, G13=3.1e9, G23=2.5511e
 
 AS4_3501_6 = Lamina(E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8)
 """The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992)."""
+
+ALUMINIUM = Lamina.isotropic(E=68.9e9, nu=0.33, density=2700.0)
+"""6061-T6 (ASM Aerospace Specification Metals)."""

@@ -1,0 +1,97 @@
+"""The command ``beamenv section``: what a section is worth to a beam, and what it looks like."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, print_table
+from train.shared.files import check_file
+
+ROWS = ("γx", "γy", "w′", "θx′", "θy′", "φ′")
+MEANING = ("shear along x", "shear along y", "extension", "bending in flap", "bending in lag", "torsion")
+UNITS = ("N", "N", "N", "N m²", "N m²", "N m²")
+SEEN = 1e-6
+"""Couplings below this share of the root of the product of the diagonals are none."""
+
+
+def section(
+    preset: PresetOption = "thesis",
+    blade: BladeOption = None,
+    at: Annotated[float, typer.Option(help="Where along the span: 0 at the root, 1 at the tip.")] = 0.0,
+    picture: Annotated[Path | None, typer.Option(help="PNG of the section with its walls, patches and centres.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Stiffness, mass and centres of a blade's section, without its patches, about the origin of its coordinates."""
+    with one_sentence():
+        from beamenv.blade.files import load_config
+        from beamenv.blade.presets import blade_config
+        from beamenv.configuration import Number, checked
+
+        at = checked("at", at, Number(ge=0.0, le=1.0))
+        if picture is not None:
+            check_file(picture, "picture")
+        config = blade_config(preset, load_config(blade) if blade else None)
+        beam = config.beam.build(model=config.model)
+        size = float(beam.planform.scale(np.array([at * beam.length]))[0])
+        found = beam.section.properties(beam.layup, size)
+        if picture is not None:
+            from train.figures.section import draw_section
+
+            draw_section(config, found, at, picture)
+    walls = _walls(beam, size)
+    if as_json:
+        content = {each.name: np.asarray(getattr(found, each.name)).tolist() for each in fields(found)}
+        print_json({"preset": preset, "at": at, "size": size, "walls": walls, **content})
+        return
+    _print(found, walls)
+
+
+def _walls(beam: Any, size: float) -> list[dict[str, Any]]:
+    rows = []
+    for wall in beam.section.wall_names:
+        lengths = [float(chain.lengths[[name == wall for name in chain.walls]].sum()) for chain in beam.section.chains]
+        plies = beam.layup.plies(wall)
+        angles = [ply.angle_deg for ply in plies]
+        rows.append(
+            {"wall": wall, "length": size * sum(lengths), "thickness": beam.section.thickness_of(wall), "ply_angles_deg": angles}
+        )
+    return rows
+
+
+def _print(found: Any, walls: list[dict[str, Any]]) -> None:
+    table = Table(title="Walls")
+    for name in ("wall", "length, mm", "thickness, mm", "plies, ° from the contour, inner to outer"):
+        table.add_column(name, justify="left" if name in ("wall",) else "right")
+    for row in walls:
+        plies = ", ".join(f"{angle:g}" for angle in row["ply_angles_deg"])
+        table.add_row(row["wall"], f"{1e3 * row['length']:.4g}", f"{1e3 * row['thickness']:.4g}", plies)
+    print_table(table)
+    table = Table(title="Stiffness, transverse shear with it")
+    for name in ("", "meaning", "value"):
+        table.add_column(name, justify="right" if name == "value" else "left")
+    diagonal = np.diag(found.stiffness)
+    for name, meaning, value, unit in zip(ROWS, MEANING, diagonal, UNITS, strict=True):
+        table.add_row(name, meaning, f"{value:.5g} {unit}")
+    unit = np.sqrt(np.outer(diagonal, diagonal))
+    for one, other in zip(*np.triu_indices(len(ROWS), 1), strict=True):
+        if abs(found.stiffness[one, other]) > SEEN * unit[one, other]:
+            table.add_row(f"{ROWS[one]} {ROWS[other]}", "coupling", f"{found.stiffness[one, other]:.5g}")
+    print_table(table)
+    classical = np.diag(found.classical_stiffness)
+    names = zip(("EA", "EI flap", "EI lag", "GJ"), classical, ("N", "N m²", "N m²", "N m²"), strict=True)
+    console = Console()
+    console.print("no transverse force: " + ", ".join(f"{name} {value:.5g} {unit}" for name, value, unit in names), soft_wrap=True)
+    centres = (("tension", found.tension_centre), ("shear", found.shear_centre), ("mass", found.mass_centre))
+    places = ", ".join(f"{name} centre ({_millimetres(x)}, {_millimetres(y)}) mm" for name, (x, y) in centres)
+    console.print(f"{places}; {found.mass_per_length:.4g} kg/m", soft_wrap=True)
+
+
+def _millimetres(metres: float) -> str:
+    return f"{round(1e3 * metres, 3) + 0.0:g}"

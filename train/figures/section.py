@@ -1,0 +1,85 @@
+"""A section as it is: its walls, what lies in them and on them, and its centres."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.blade.build import build_beam
+from beamenv.blade.config import BladeConfig
+from beamenv.structure.section.mesh import Mesh, mesh
+from beamenv.structure.section.properties import SectionProperties
+from beamenv.structure.walls.inlay import Inlay
+from train.figures.palette import INK, PALETTE
+from train.figures.paper import STYLE, save
+
+Array = NDArray[np.float64]
+
+WALL = "0.80"
+WIDTH = 7.0
+"""Inches; the height follows the section's shape, within limits."""
+THINNEST = 0.012
+"""Of the section's extent: patches thinner than that are drawn so thick."""
+
+
+def draw_section(config: BladeConfig, found: SectionProperties, at: float, path: Path) -> None:
+    """Write the picture of a blade's section at a share of the span, with the patches that there are anywhere along it."""
+    save(section_figure(config, found, at), path)
+
+
+def section_figure(config: BladeConfig, found: SectionProperties, at: float) -> Any:
+    """Walls in grey, actuators and sensors in colours, centres by their signs."""
+    import matplotlib.pyplot as plt
+
+    beam = build_beam(config)
+    size = beam.planform.scale(np.array([at * beam.length]))
+    sides = [(side, [group.inlay(0.0, 1.0) for group in config.patches.groups(side)]) for side in ("actuators", "sensors")]
+    strips = {inlay.strip for _, inlays in sides for inlay in inlays}
+    elements = mesh(beam.section.chains, size, sorted(strips, key=lambda strip: (strip.wall, strip.width, strip.offset)))
+    extent = float(np.ptp(elements.points[0], axis=0).max())
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=_shape(elements), layout="constrained")
+        for k in range(len(elements.edges)):
+            half = 0.5 * elements.thickness[k]
+            axis.fill(*(1e3 * _piece(elements, k, -half, half)).T, facecolor=WALL, edgecolor=WALL, linewidth=0.3)
+        for (side, inlays), colour in zip(sides, PALETTE[:2], strict=True):
+            _draw_patches(axis, elements, side, inlays, colour, extent)
+        for name, (x, y), sign in (
+            ("tension centre", found.tension_centre, "+"),
+            ("shear centre", found.shear_centre, "x"),
+            ("mass centre", found.mass_centre, "o"),
+        ):
+            axis.plot(1e3 * x, 1e3 * y, sign, color=INK, markerfacecolor="none", markersize=7, label=name)
+        axis.set(xlabel="x, along the chord, mm", ylabel="y, mm", aspect="equal", title=f"section at {at:g} of the span")
+        axis.margins(0.06, 0.15)
+        figure.legend(loc="outside lower center", ncols=5, handlelength=1.2, columnspacing=1.2)
+    return figure
+
+
+def _draw_patches(axis: Any, elements: Mesh, side: str, inlays: list[Inlay], colour: str, extent: float) -> None:
+    label: str | None = side
+    for inlay in inlays:
+        for k, edge in enumerate(elements.edges):
+            if not edge.lies_under(inlay):
+                continue
+            low, high = inlay.depths(float(elements.thickness[k]))
+            if high - low < THINNEST * extent:
+                low, high = (high - THINNEST * extent, high) if inlay.face == "outer" else (low, low + THINNEST * extent)
+                shift = THINNEST * extent if inlay.bonded else 0.0
+                low, high = (low + shift, high + shift) if inlay.face == "outer" else (low - shift, high - shift)
+            axis.fill(*(1e3 * _piece(elements, k, low, high)).T, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label)
+            label = None
+
+
+def _piece(elements: Mesh, k: int, low: float, high: float) -> Array:
+    """(4, 2), m: an element between two distances from the mid-line."""
+    P, d, Q, e = elements.points[0, k], elements.directions[0, k], elements.last_points[0, k], elements.last_directions[0, k]
+    return np.array([P + low * d, Q + low * e, Q + high * e, P + high * d])
+
+
+def _shape(elements: Mesh) -> tuple[float, float]:
+    wide, high = np.ptp(elements.points[0], axis=0) + elements.thickness.max()
+    return WIDTH, float(np.clip(WIDTH * high / wide, 1.2, 6.0)) + 1.4
