@@ -113,7 +113,7 @@ class Identified:
         return Plant.from_state_space(**self.arrays(**about))
 
     def save(self, path: str | os.PathLike[str], model: StateSpace | None = None, **about: Any) -> None:
-        """Write ``arrays`` for ``Plant.from_file``, whole or not at all; ``ValueError`` unless it ends in .npz and can be written."""
+        """Write ``arrays`` for ``Plant.from_file``, whole or not at all; ``ValueError`` for another ending than .npz."""
         place, file = checked_path("path", path, (ENDING,)), io.BytesIO()
         np.savez(file, **self.arrays(model, **about))
         try:

@@ -28,6 +28,8 @@ from beamenv.configuration import Count, Instance, Number, Refused, checked
 MOST_STATES = 60
 SHARE = 0.25
 """Of the rows, held back."""
+LAST_STEPS, LAST_GAIN = 15, 0.002
+"""Of prediction error once the order is chosen: ten times as far as while it is sought."""
 
 Progress = Callable[[str, float], None]
 """Is told what is being done and which share of the whole is done."""
@@ -65,13 +67,15 @@ def identify(
     spectra = Spectra(learning)
     told(f"{begun} states", 0.1)
     first = refined(spectra, realisation.model(begun), progress=lambda done: told(f"{begun} states", 0.1 + 0.3 * done))
-    choice = pruned(first, spectra, scaled, learned, wanted, lambda what, done: told(what, 0.4 + 0.5 * done))
-    told("noise", 0.9)
+    choice = pruned(first, spectra, scaled, learned, wanted, lambda what, done: told(what, 0.4 + 0.4 * done))
     found = choice.refined
+    told(f"{found.model.order} states", 0.9)
+    found = refined(spectra, found.model, found.start, steps=LAST_STEPS, enough=LAST_GAIN)
+    told("noise", 0.95)
     whole = Identified(
         measurement=measurement,
         learned=learned,
-        choice=choice,
+        choice=replace(choice, refined=found),
         noise=white_noise(found.model, learned),
         balanced=balanced,
         stabilisation=realisation.stabilisation(),

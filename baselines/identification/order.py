@@ -26,12 +26,12 @@ MADE_GOOD = 300.0
 DOUBTFUL = 3.0
 """Wald's statistic over the count of its numbers, 1 for a pole that is not there: all below this are taken away together."""
 CERTAIN = 3.0
-"""Standard errors by which rows held back must miss a pole for it to stay."""
+"""Standard errors by which rows held back must miss a pole for it to stay; of several poles at once, none may be missed at all."""
 BLOCKS = 50
 """Into which those rows are cut for the standard error, long against what a row remembers."""
 STEPS = 4
 """Of prediction error after a pole was taken away."""
-REFUSALS = 2
+REFUSALS = 6
 """How many poles in turn must be missed before the search ends."""
 
 
@@ -107,7 +107,7 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
         after = refined(spectra, shorter.model, shorter.start, steps=STEPS)
         left, loss = _losses(after.model, everything, learned)
         missed = _in_standard_errors(left - losses)
-        kept = wanted is not None or missed < CERTAIN
+        kept = wanted is not None or missed < (CERTAIN if len(poles) == 1 else 0.0)
         tried.append(Tried(after.model.order, loss, missed, kept))
         told(f"{after.model.order} states", 0.0)
         if kept:

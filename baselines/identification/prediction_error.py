@@ -107,6 +107,7 @@ def refined(
     start: Array | None = None,
     *,
     steps: int = 12,
+    enough: float = ENOUGH,
     lines: int = CURVATURE_LINES,
     progress: Progress | None = None,
 ) -> Refined:
@@ -124,7 +125,7 @@ def refined(
         curvature, gradient = _normal_equations(spectra, model, start, covariance, lines)
         if progress:
             progress((step + 1) / steps)
-        if gain < ENOUGH * len(gradient) / spectra.rows:
+        if gain < enough * len(gradient) / spectra.rows:
             break
     return Refined(replace(model, covariance=covariance), start, least, _inverse(2.0 * curvature))
 

@@ -1,4 +1,4 @@
-"""The proof: an LQG of a plant that was identified from the blade with all its modes and electronics, beside the LQG of that blade."""
+"""The proof: an LQG of a plant identified from the blade with all its modes and electronics, beside the LQG of that blade."""
 
 import gymnasium as gym
 import numpy as np
