@@ -31,6 +31,12 @@ def test_example_runs_and_its_numbers_hold(script, monkeypatch, capsys):
         np.testing.assert_allclose([float(number) for number in told], [float(number) for number in printed], atol=0.011)
 
 
+def test_hardware_in_the_loop_runs_without_a_compiler_too(monkeypatch, capsys):
+    monkeypatch.setattr("shutil.which", lambda name, *given: None)
+    runpy.run_path(str(EXAMPLES / "05_hardware_in_the_loop.py"))
+    assert "there and back" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("script", sorted(EXAMPLES.glob("[0-9]*.py"), key=str), ids=lambda path: path.stem)
 def test_example_opens_with_its_title_and_an_equation(script):
     opening = script.read_text(encoding="utf-8").partition("# %%\n")[0]

@@ -9,41 +9,13 @@ from baselines import LinearController, lqg
 from baselines.design.loop import closed_loop, spectral_radius
 from beamenv.plant.plant import sample
 from beamenv.task import resolve_task
+from tests.train.exports import EVERY, NOT_EXPORTED
 from tests.train.in_a_loop import STEPS, TOLERANCE, in_a_loop, in_double_precision, python_steps
 from train.controllers.named import discover
-from train.controllers.shipped import shipped
-from train.controllers.sources import Trained
 from train.export import exported
 from train.export.compiled import compiler, running, seconds_a_step
 
 needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
-
-NOT_EXPORTED = {
-    "clairvoyant": "what the truth of the episode is",
-    "informed-mpc": "quadratic program",
-    "lqr": "the blade's true state",
-    "lqr-load": "the blade's true state",
-    "mpc": "quadratic program",
-    "mpc-load": "quadratic program",
-    "run-up-lqg": "worked out on the way",
-}
-"""By name, with what its sentence says."""
-
-BIG = {"multiple-model-general"}  # 35 MB of C
-LAWS = [pytest.param(name, marks=[pytest.mark.slow] if name in BIG else []) for name in discover() if name not in NOT_EXPORTED]
-OTHERS = [  # laws that are otherwise in another scenario
-    ("multiple-model", "delay"),
-    pytest.param("multiple-model", "mid-failure", marks=pytest.mark.slow),
-    pytest.param("multiple-model", "failure", marks=pytest.mark.slow),
-    ("inverse-hysteresis", "hysteresis"),
-]
-QUICK = {"gradient", "residual", "belief", "sac", "optimised-linear"}
-SHIPPED = [
-    pytest.param(each, id=f"{each.agent}, {each.scenario}", marks=[] if each.agent in QUICK and home else [pytest.mark.slow])
-    for each in shipped()
-    for home in [each.scenario in ("generalist", "nominal")]
-    if each.seed == 0
-]
 
 
 def agrees(controller, plant, scenario):
@@ -71,25 +43,9 @@ def falls_apart(controller, plant):
 
 
 @needs_a_compiler
-@pytest.mark.parametrize("name", LAWS)
-def test_law_in_c_asks_for_the_voltages_of_the_law(name):
-    task = resolve_task(scenario="default")
-    agrees(discover()[name].build_for(task), task.design_plant, "default")
-
-
-@needs_a_compiler
-@pytest.mark.parametrize(("name", "scenario"), OTHERS)
-def test_law_of_a_scenario_in_c_asks_for_the_voltages_of_the_law(name, scenario):
-    task = resolve_task(scenario=scenario)
-    agrees(discover()[name].build_for(task), task.design_plant, scenario)
-
-
-@needs_a_compiler
-@pytest.mark.parametrize("each", SHIPPED)
-def test_agent_that_ships_in_c_asks_for_the_voltages_of_the_agent(each):
-    scenario = "default" if each.scenario == "generalist" else each.scenario
-    task = resolve_task(scenario=scenario)
-    agrees(Trained(each.folder).build(task), task.design_plant, scenario)
+@pytest.mark.parametrize(("build", "scenario"), EVERY)
+def test_controller_in_c_asks_for_the_voltages_of_the_controller(build, scenario):
+    agrees(build(), resolve_task(scenario=scenario).design_plant, scenario)
 
 
 @pytest.mark.parametrize("name", NOT_EXPORTED)

@@ -184,7 +184,7 @@ def signal(value: Any) -> Block:
     """The block itself, or numbers as a constant one."""
     if isinstance(value, Block):
         return value
-    numbers = np.atleast_1d(np.asarray(value, dtype=np.float64))
+    numbers = np.asarray(value, dtype=np.float64).ravel()
     return Constant(numbers.size, numbers)
 
 

@@ -32,6 +32,8 @@ class Exported:
     """Of functions, types and files."""
     controller: str
     """What tables and figures call it."""
+    source: Any
+    """The controller itself."""
     diagram: Diagram
     plant: Plant
     precision: str
@@ -78,9 +80,8 @@ def exported(controller: Any, plant: Plant, *, precision: str = "double", name: 
     """The controller as a diagram from what sensors show to voltages in V; ``ValueError`` says why one cannot be exported."""
     precision = checked("precision", precision, Choice(PRECISIONS))
     title = name_of(controller)
-    return Exported(
-        identifier(title) if name is None else _checked_name(name), title, diagram_of(controller, plant), plant, precision
-    )
+    own = identifier(title) if name is None else _checked_name(name)
+    return Exported(own, title, controller, diagram_of(controller, plant), plant, precision)
 
 
 def identifier(title: str) -> str:

@@ -11,9 +11,17 @@ from beamenv.configuration.writing import write_whole
 from beamenv.plant.plant import Plant
 from train.export.c_source import c_source
 from train.export.exported import Exported, exported
+from train.export.mat_file import mat_file
 from train.shared.files import as_path, check_file
 
-FORMATS: Mapping[str, Callable[[Exported], str | bytes]] = {"c": c_source}
+
+def _onnx(exported: Exported) -> bytes:
+    from train.export.onnx_model import onnx_model  # a package that few have
+
+    return onnx_model(exported)
+
+
+FORMATS: Mapping[str, Callable[[Exported], str | bytes]] = {"c": c_source, "onnx": _onnx, "mat": mat_file}
 """What writes them, by the ends of files' names."""
 
 
