@@ -221,9 +221,9 @@ def _derivatives(at: _Errors, model: InnovationModel, whitener: Array) -> NDArra
     """−∂ε (F p, k), whitened, in single precision: the direction of a step needs no more."""
     r, n, p = len(model.pairs), model.order, len(model.C)
     moving = (at.states @ model.A.T) * model.interval
-    S = at.sensitivity(whitener)
-    seen = (whitener - S @ model.K).astype(np.complex64)
-    S, states, driving = (each.astype(np.complex64) for each in (S, at.states, at.driving))
+    exact = at.sensitivity(whitener)
+    seen = (whitener - exact @ model.K).astype(np.complex64)
+    S, states, driving = (each.astype(np.complex64) for each in (exact, at.states, at.driving))
     shrinking, turning = S * moving[:, None, :], S[:, :, : 2 * r] * _turned(moving, r)[:, None, :]
     count, width = len(S), driving.shape[1]
     found = np.empty((count, p, n + n * width + p * n), dtype=np.complex64)
