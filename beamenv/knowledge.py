@@ -77,7 +77,7 @@ class Prior:
     @property
     def design(self) -> Design:
         """What a controller of tier 0 is told."""
-        return Design(self.design_blade.plant, self.design_blade.config)
+        return Design.of(self.design_blade)
 
     @cached_property
     def bank(self) -> Bank:

@@ -19,6 +19,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
 from beamenv.blade.held_load import under_reference
+from beamenv.blade.model_blade import ModelBlade, PlantArgument
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
 from beamenv.configuration.arrays import real_numbers
@@ -26,6 +27,8 @@ from beamenv.configuration.numbers import UNBOUNDED
 from beamenv.knowledge import TIERS, TRUTH, Prior, Truth, kept_for_judging, on_training_bank, without_faults
 from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
+from beamenv.plant.spread import Spread
+from beamenv.scenarios.of_models import check_scenario, design_model, true_model
 from beamenv.scenarios.sampling import check_frequencies, largest_speed
 from beamenv.scenarios.scenario import Scenario, with_load
 from beamenv.scenarios.scenario import scenario as as_scenario
@@ -37,11 +40,14 @@ from beamenv.simulation.strain_limit import FAILURE_STRAIN
 Array = NDArray[np.float64]
 
 BladeArgument = BladeConfig | Mapping[str, Any] | None
-DesignArgument = BladeConfig | Mapping[str, Any] | str | None
+DesignArgument = BladeConfig | Mapping[str, Any] | str | Path | Plant | None
 ScenarioArgument = Scenario | Mapping[str, Any] | str | Path | None
 
 DType = Literal["float32", "float64"]
 """Numbers of the spaces, and of what is in them; what is stepped has 64 bits always."""
+
+DURATION = 0.5
+"""s of an episode, of a model as much longer as its first mode is slower than the default blade's."""
 
 INFO = ("volts", "tip_displacement", "energy", "effort", "cost_increment")
 """What info holds of a ``Motion``."""
@@ -92,16 +98,23 @@ class Task:
     @property
     def design(self) -> Design:
         """What a controller of tier 0 may be built from (``beamenv.knowledge``)."""
-        return Design(self.design_plant, self.design_config)
+        return Design.of(self.design_blade)
 
     @cached_property
     def prior(self) -> Prior:
         """What a controller of tier 1 may be built from."""
         known = self.scenario if self.told_scenario is None else self.told_scenario
         if kept_for_judging(known):
-            own = _alive(_BLADES, Blade(self.design_config))  # the design blade may have a plant file's modes
+            own = self._as_designed
             return Prior(own, own, on_training_bank(without_faults(known)), self.steps)
         return Prior(self.blade, self.design_blade, on_training_bank(known), self.steps)
+
+    @property
+    def _as_designed(self) -> Blade:
+        """The design blade alone, which may have a plant file's modes."""
+        if isinstance(self.design_blade, ModelBlade):
+            return replace(self.design_blade, spread=Spread(), others=())
+        return _alive(_BLADES, Blade(self.design_config))
 
     @property
     def truth(self) -> Truth:
@@ -125,7 +138,12 @@ class Task:
     @property
     def note(self) -> str:
         """What is to be said of where the true blade's patches are; empty if nothing is."""
-        return clamp_note(self.config)
+        return "" if isinstance(self.blade, ModelBlade) else clamp_note(self.config)
+
+    @property
+    def identity(self) -> BladeConfig | str:
+        """What the true blade is, for comparisons: its configuration, or the fingerprints of a model of one's own."""
+        return self.blade.identity if isinstance(self.blade, ModelBlade) else self.config
 
     def action_space(self, dtype: DType = "float32") -> Box:
         """Voltages, normalised or in V."""
@@ -149,13 +167,21 @@ def resolve_task(
     blade: BladeArgument = None,
     design: DesignArgument = None,
     scenario: ScenarioArgument = None,
-    duration: float = 0.5,
+    duration: float | None = None,
     physical_units: bool = False,
+    plant: PlantArgument | None = None,
+    spread: Spread | Mapping[str, Any] | None = None,
 ) -> Task:
     """The task meant by the arguments of an environment; ValueError names the one that is wrong.
 
-    A task that some environment has already is shared with it, and so is a blade.
+    A task that some environment has already is shared with it, and so is a blade. ``plant``, a model of one's own, is in the place
+    of ``preset``, ``speed`` and ``blade``, and ``design`` is a model then, too.
     """
+    if plant is not None:
+        return _of_model(plant, preset, speed, blade, design, scenario, duration, physical_units, spread)
+    if spread is not None:
+        raise Refused("spread", spread, "None without a plant: what varies of a blade is in the scenario's plants")
+    duration = DURATION if duration is None else duration
     config = blade_config(preset, blade, speed)
     interval = config.control_interval
     duration = checked("duration", duration, Number(gt=interval / 2, le=UNBOUNDED * interval, unit="s"))
@@ -176,6 +202,39 @@ def resolve_task(
         scenario=chosen,
         steps=round(duration / interval),
         physical_units=physical_units,
+    )
+    return _alive(_TASKS, task)
+
+
+def _of_model(
+    plant: PlantArgument,
+    preset: str,
+    speed: float | None,
+    blade: BladeArgument,
+    design: Any,
+    scenario: ScenarioArgument,
+    duration: float | None,
+    physical_units: bool,
+    spread: Any,
+) -> Task:
+    for name, value, usual in (("preset", preset, "thesis"), ("speed", speed, None), ("blade", blade, None)):
+        if value != usual:
+            raise Refused(name, value, "left out with a plant of one's own, which is in the place of a blade")
+    chosen = as_scenario(scenario)
+    check_scenario(chosen)
+    true = true_model(plant, spread, chosen)
+    model = true.model
+    interval = model.control_interval
+    seconds = DURATION * model.time_scale if duration is None else duration
+    seconds = checked("duration", seconds, Number(gt=interval / 2, le=UNBOUNDED * interval, unit="s"))
+    _check_failures(chosen, model)
+    _check_loads(chosen, true)
+    task = Task(
+        blade=true,
+        design_blade=true if design is None else design_model(design, true, chosen),
+        scenario=chosen,
+        steps=round(seconds / interval),
+        physical_units=checked("physical_units", physical_units, Flag()),
     )
     return _alive(_TASKS, task)
 
@@ -219,7 +278,7 @@ def _with(config: BladeConfig, **modes: int | None) -> BladeConfig:
     return replace(config, **given) if given else config  # type: ignore[arg-type]
 
 
-def _design_config(preset: str, speed: float | None, design: BladeConfig | Mapping[str, Any] | str) -> BladeConfig:
+def _design_config(preset: str, speed: float | None, design: Any) -> BladeConfig:
     """A name is a preset; a dictionary changes ``preset`` at ``speed``, not the true blade's own changes to it."""
     if not isinstance(design, (BladeConfig, Mapping)):
         return blade_config(checked("design", design, Choice(PRESETS, BladeConfig)), None, speed)
@@ -304,9 +363,11 @@ def _initial_state(task: Task, value: Any, rows: int) -> Array:
     return state
 
 
-def steady_information(steady: Array, note: str | NDArray[Any]) -> dict[str, Any]:
-    """What a reset's info holds beside ``information``: of steady states (…, 4), as ``Bank`` has them, and a note (…)."""
-    return {**dict(zip(STEADY_INFO, np.moveaxis(steady, -1, 0), strict=True)), "note": note}
+def steady_information(steady: Array, note: Any, assumed: Any) -> dict[str, Any]:
+    """What a reset's info holds beside ``information``: of steady states (…, 4), as ``Bank`` has them, a note (…) and what was
+    ``assumed`` (…) of a model of one's own.
+    """
+    return {**dict(zip(STEADY_INFO, np.moveaxis(steady, -1, 0), strict=True)), "note": note, "assumed": assumed}
 
 
 def information(motion: Motion) -> dict[str, Any]:

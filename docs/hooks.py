@@ -15,6 +15,7 @@ sys.path.insert(0, str(ROOT))
 
 SCENARIOS = ROOT / "beamenv" / "scenarios" / "named"
 EXAMPLES = ROOT / "examples"
+BLADES = EXAMPLES / "blades"
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -55,6 +56,21 @@ def scenario_table() -> str:
         opening = [line.removeprefix("#").strip() for line in lines if line.startswith("#")]
         rows.append([f"`{file.stem}`", " ".join(opening), "<br>".join(settings(lines)) or "nothing: the default"])
     return markup_table(["scenario", "what is wrong", "what the file sets"], rows)
+
+
+def gallery() -> str:
+    """Each example of a blade: what its file opens with, the picture of its section, and the file."""
+    return "\n\n".join(map(blade_page, sorted(BLADES.glob("*.toml"))))
+
+
+def blade_page(file: Path) -> str:
+    """One of them."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    opening = [line.removeprefix("#").strip() for line in lines if line.startswith("#")]
+    content = "\n".join(line for line in lines if not line.startswith("#")).strip()
+    title = file.stem.replace("-", " ").capitalize()
+    picture = f"![The section at the root, with its patches and its centres](images/gallery/{file.stem}.png)"
+    return f"## {title}\n\n{' '.join(opening)}\n\n{picture}\n\n`examples/blades/{file.name}`:\n\n```toml\n{content}\n```"
 
 
 def settings(lines: list[str]) -> list[str]:
@@ -134,5 +150,6 @@ FILLED = {
     "recipes": recipe_table,
     "shipped agents": shipped_table,
     "command line": command_line,
+    "gallery": gallery,
 }
 """What a comment of that name is replaced by."""

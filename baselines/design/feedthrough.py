@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -11,13 +12,14 @@ from baselines.design.riccati import Array
 from beamenv.plant.plant import SampledPlant
 
 
-def with_feedthrough(held: SampledPlant) -> SampledPlant:
+def with_feedthrough(held: SampledPlant, felt: Any = None) -> SampledPlant:
     """The plant with state [x; ζ], ζ = D u of the interval before, of those sensors that have any, so that y = C x + ζ.
 
     A reading is taken before the next voltage is put on (``beamenv.plant.plant``), so this is the very plant, without a D. A plant
-    whose sensors feel no voltage is returned as it is.
+    whose sensors feel no voltage is returned as it is. ``felt`` (p,) of bools says which sensors may, where
+    none does for now.
     """
-    felt = held.D.any(axis=1)
+    felt = np.any(held.D, axis=1) if felt is None else felt
     if not felt.any():
         return held
     (n, m), k, p, q = held.B.shape, held.disturbance_input.shape[1], len(held.C), int(felt.sum())

@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from scipy.linalg import block_diag, solve_discrete_lyapunov
 
 from baselines.design.controller import Array
+from baselines.design.feedthrough import with_feedthrough
 from baselines.design.instruments import checked_plant
 from baselines.design.load_model import Load, LoadModel, checked_loads, model_of, with_load
-from baselines.design.loop import sampled
 from baselines.design.matrix import one_or_each
 from beamenv.configuration import Count, Flag, Number, Refused, checked
 from beamenv.configuration.read_only import ReadOnly, sealed
-from beamenv.plant.plant import Plant, SampledPlant
+from beamenv.plant.plant import Plant, SampledPlant, sample
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.scenarios.tables import STRONGEST
 
@@ -100,7 +100,7 @@ class Hypothesis(ReadOnly):
 
     def sampled(self, biased: bool) -> SampledPlant:
         """What a filter believes in: the faulty plant with states [x; ξ; b] of loads and, if ``biased``, of p sensors' biases."""
-        held, load = sampled(self.faulty_plant), self.foreseen
+        held, load = with_feedthrough(sample(self.faulty_plant), self.plant.D.any(axis=1)), self.foreseen
         held = held if load is None else with_load(held, load)
         return _with_bias(held, self._bias) if biased else held
 
@@ -110,7 +110,7 @@ class Hypothesis(ReadOnly):
         if self.deflection > 0.0:
             bent = self.deflection * static_deflection(self.plant, np.diag(self.plant.load_scale))
         parts = [bent.T @ bent]
-        if felt := int(self.faulty_plant.D.any(axis=1).sum()):
+        if felt := int(self.plant.D.any(axis=1).sum()):
             parts.append(np.zeros((felt, felt)))  # no voltage is on before the start
         if load is not None:
             parts.append(solve_discrete_lyapunov(load.transition, load.noise))

@@ -16,8 +16,10 @@ from beamenv.task import Task
 class Conditions:
     """Of the episodes of N seeds. What controllers are designed for is none of them: without control nobody knows it."""
 
-    blades: tuple[BladeConfig, ...]
-    """The true blade of each seed."""
+    blades: tuple[BladeConfig | str, ...]
+    """The true blade of each seed; of a model of one's own its fingerprints."""
+    interval: float
+    """s, of control."""
     scenario: Scenario
     steps: int
     """Control intervals in a whole episode."""
@@ -31,9 +33,8 @@ class Conditions:
         """``ValueError`` says in what those of a ``reference`` differ from these."""
         if reference is None:
             raise ValueError("reference is of an environment that does not tell its blade: leave it out.")
-        intervals = [tuple(dict.fromkeys(blade.control_interval for blade in each.blades)) for each in (reference, self)]
         for what, other, own in (
-            ("control intervals of (s)", *(each[0] if len(each) == 1 else each for each in intervals)),
+            ("control intervals of (s)", reference.interval, self.interval),
             ("control intervals in an episode", reference.steps, self.steps),
             ("physical_units", reference.physical_units, self.physical_units),
         ):
@@ -50,7 +51,8 @@ def conditions(env: Environment, seeds: int) -> Conditions | None:
     if not tasks:
         return None
     each = [tasks[row % len(tasks)] for row in range(seeds)]
-    return Conditions(tuple(task.config for task in each), tasks[0].scenario, steps(env), tasks[0].physical_units)
+    interval = tasks[0].plant.control_interval
+    return Conditions(tuple(task.identity for task in each), interval, tasks[0].scenario, steps(env), tasks[0].physical_units)
 
 
 def check_alike(env: Environment) -> None:
@@ -65,7 +67,7 @@ def check_alike(env: Environment) -> None:
         ("duration", [task.steps for task in tasks]),
         ("max_episode_steps", limits),
         ("physical_units", [task.physical_units for task in tasks]),
-        ("control_interval", [task.config.control_interval for task in tasks]),
+        ("control_interval", [task.plant.control_interval for task in tasks]),
         ("voltage_limits", [task.plant.voltage_limits.tolist() for task in tasks]),
     ):
         if other := next((k for k, value in enumerate(values) if value != values[0]), 0):

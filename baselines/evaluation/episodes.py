@@ -35,9 +35,9 @@ class Episodes:
     effort: Array
     """(T, N), J s: the actuators' share of them."""
     tip_displacement: Array
-    """(T, N, 2), m, at the end of each interval: lag, flap."""
+    """(T, N, q), m, at the end of each interval: lag, flap; of a model of one's own as many as it tells, or none."""
     load_response: Array
-    """(T, N, 2), m: the part of it that the load case caused, without the tremor under white load and sensor noise: the tip
+    """(T, N, q), m: the part of it that the load case caused, without the tremor under white load and sensor noise: the tip
     displacement less that of a second run on the same seed, in which the load case is absent."""
     voltages: Array
     """(T, N, m), V: as asked for, within the drive limits; what delay, hysteresis or failure make of them is not recorded."""
@@ -53,12 +53,12 @@ class Episodes:
     def __post_init__(self) -> None:
         """``ValueError`` for series whose shapes are not those of N seeds, T control intervals and m voltages."""
         seeds, intervals, actuators = len(self.seeds), len(np.atleast_1d(self.cost)), np.shape(self.voltage_limits)[-1:]
-        of_blades = (intervals, seeds)
+        of_blades, points = (intervals, seeds), (*np.shape(self.tip_displacement), 2, 2, 2)[2]
         for name, shape in (
             ("cost", of_blades),
             ("effort", of_blades),
-            ("tip_displacement", (*of_blades, 2)),
-            ("load_response", (*of_blades, 2)),
+            ("tip_displacement", (*of_blades, points)),
+            ("load_response", (*of_blades, points)),
             ("voltage_limits", (2, *actuators)),
             ("voltages", (*of_blades, *actuators)),
             ("failed", (seeds,)),
@@ -131,7 +131,7 @@ def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[i
 
 
 def of_series(seeds: tuple[int, ...], series: tuple[Array, ...], env: Environment, under: Conditions | None) -> Episodes:
-    """Episodes of what was ``recorded`` of these seeds, and of the tip (T, N, 2) without the load case behind it."""
+    """Episodes of what was ``recorded`` of these seeds, and of the tip (T, N, q) without the load case behind it."""
     length = max(steps(env), *(len(each) for each in series))
     cost, effort, tip, voltages, failed, tremor = (_continued(each, length) for each in series)
     plant = attribute(env, "plant")[0]
@@ -158,7 +158,7 @@ def recorded_to_the_end(series: Array) -> bool:
 def recorded(
     controller: Controller, env: Environment, seeds: tuple[int, ...], options: dict[str, Any] | None = None
 ) -> tuple[Array, ...]:
-    """Cost, effort (T, N), tip (T, N, 2), voltages (T, N, m) and failures (T, N) of one episode each, NaN once it is over."""
+    """Cost, effort (T, N), tip (T, N, q), voltages (T, N, m) and failures (T, N) of one episode each, NaN once it is over."""
     steps = []
     for instant in islice(instants(controller, env, seeds, options), 1, None):
         recorded, running = (*(instant.info[name] for name in INFO), instant.failed), instant.running

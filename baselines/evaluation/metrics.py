@@ -24,7 +24,7 @@ EPISODES = "Episodes, such as roll_out returns"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EpisodeMetrics:
-    """One array (N,) each, a blade a row."""
+    """One array (N,) each, a blade a row; NaN for what is said of the tip where an environment tells no displacement."""
 
     cost: Array
     """J, J s: vibration energy and actuator effort integrated over the episode; infinite if the blade failed."""
@@ -66,14 +66,15 @@ def measure(episodes: Episodes, band: Array) -> EpisodeMetrics:
     low, high = 0.999 * episodes.voltage_limits  # single precision and tanh come near a limit without touching it
     at_limit = np.where(np.isnan(magnitude), np.nan, (episodes.voltages >= high) | (episodes.voltages <= low))
     from_instant = np.where(episodes.failed, len(episodes.time), settled_from(_excursion(episodes), band))
-    settling_time = np.asarray(episodes.interval * from_instant, dtype=np.float64)
+    known = np.where(episodes.tip_displacement.shape[-1] > 0, 1.0, np.nan)  # nothing settles where no displacement is told
+    settling_time = np.asarray(known * episodes.interval * from_instant, dtype=np.float64)
     return EpisodeMetrics(
         cost=np.where(episodes.failed, np.inf, np.nansum(episodes.cost, axis=0)),
         effort=np.nansum(episodes.effort, axis=0),
         settling_time=settling_time,
-        settled=(settling_time <= (1.0 - REST) * episodes.time[-1]).astype(float),
-        peak_tip=np.nanmax(distance, axis=0),
-        rms_tip=np.sqrt(np.nanmean(distance**2, axis=0)),
+        settled=known * (settling_time <= (1.0 - REST) * episodes.time[-1]),
+        peak_tip=known * np.nanmax(distance, axis=0),
+        rms_tip=known * np.sqrt(np.nanmean(distance**2, axis=0)),
         peak_voltage=np.nanmax(magnitude, axis=(0, 2)),
         rms_voltage=np.sqrt(np.nanmean(magnitude**2, axis=(0, 2))),
         saturation=np.nanmean(at_limit, axis=(0, 2)),

@@ -15,6 +15,7 @@ from baselines.laws.detuned_lqg import Detuning, detuned_lqg
 from baselines.laws.detuning_search import LOST, TRIALS, coordinate_search, kept_detuning
 from baselines.laws.foreseen_load import foreseen_loads
 from beamenv.blade.files import departures
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration.cache import departing
 from beamenv.knowledge import Prior
 from beamenv.plant.fingerprint import fingerprint
@@ -93,6 +94,6 @@ def _depends_on(prior: Prior) -> tuple[Any, ...]:
     return (
         (VERSION, EPISODES, TRIALS, prior.steps),
         departing(prior.scenario.to_dict(), Scenario().to_dict()),
-        departures(prior.blade.config),
+        prior.blade.identity if isinstance(prior.blade, ModelBlade) else departures(prior.blade.config),
         fingerprint(prior.blade.truth),
     )

@@ -18,5 +18,5 @@ def informed_mpc(prior: Prior) -> PredictiveController:
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
     detuning, plant = chosen_detuning(prior), prior.blade.truth
-    design = detuned_design(plant, detuning, *foreseen_loads(prior.scenario, prior.blade.config.speed))
+    design = detuned_design(plant, detuning, *foreseen_loads(prior.scenario, prior.blade.config.speed, plant.loads))
     return predictive(plant, "informed MPC", design, detuning.delay)

@@ -22,12 +22,16 @@ from beamenv.blade.design import Design
 from beamenv.blade.files import departures
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant
+from beamenv.plant.spread import Spread, plants_within
 
 VERSION = 1
 """Of the rule: a new number discards what was kept."""
 
 PLANTS = 32
 """In the bank, beside the model itself."""
+
+OF_MODELS = Spread(frequency=0.05, damping=0.5, actuator=0.1, sensor=0.1)
+"""Within which the plants lie where the design is a model of one's own, of which no further mode is known."""
 
 SHIPPED = Path(__file__).with_name("robust_lqg.csv")
 """What the rule chose for the design blades of the scenarios that ship, each with its key."""
@@ -42,13 +46,22 @@ def robust_lqg(design: Design) -> LinearController:
     has been made for the design it is not made again. ``ValueError`` for what is no ``Design``.
     """
     design = instance("design", design, Design, "a beamenv.Design, such as env.unwrapped.task.design")
+    if design.config is None:
+        plant, key = design.full_plant, ((VERSION, PLANTS, TRIALS), repr(OF_MODELS), fingerprint(design.full_plant))
+        others = plants_within(plant, OF_MODELS, PLANTS, seed=0)
+        found = kept_detuning("robust-lqg", SHIPPED, key, lambda: _searched(plant, others)[0])
+        return _law(plant, found)
     blade = Blade(design.config)
     return _law(blade.truth, kept_detuning("robust-lqg", SHIPPED, _depends_on(blade), lambda: searched_detuning(blade)[0]))
 
 
 def searched_detuning(blade: Blade) -> tuple[Detuning, dict[Detuning, float]]:
     """The best of a coordinate search from the reference's weights on, and what each design that was tried costs, J / J₀."""
-    return coordinate_search(mean_cost(blade.truth, modelling_errors(blade, PLANTS)), Detuning(), True, TRIALS)
+    return _searched(blade.truth, modelling_errors(blade, PLANTS))
+
+
+def _searched(plant: Plant, others: list[Plant]) -> tuple[Detuning, dict[Detuning, float]]:
+    return coordinate_search(mean_cost(plant, others), Detuning(), True, TRIALS)
 
 
 def mean_cost(plant: Plant, others: list[Plant]) -> Callable[[Detuning], float]:

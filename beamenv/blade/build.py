@@ -162,7 +162,8 @@ class Blade:
         except OverflowError:
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}") from None
         parts = (getattr(plant, each.name) for each in fields(plant))
-        if not all(np.isfinite(part).all() for part in parts if isinstance(part, np.ndarray)):
+        finite = all(np.isfinite(part).all() for part in parts if isinstance(part, np.ndarray))
+        if not finite or np.any(plant.sensor_full_scale**2 == 0.0):  # squares of readings must be numbers
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}")
         return plant
 

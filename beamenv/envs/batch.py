@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
+from beamenv.blade.model_blade import PlantArgument
 from beamenv.configuration import Count, checked
 from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import batch_reset, chosen_mode, drawn_rows
@@ -21,10 +22,12 @@ from beamenv.envs.batch_blades import blades_of, masked, of_rows
 from beamenv.envs.seeds import SeededVectorEnv, Seeds
 from beamenv.envs.specification import Specified
 from beamenv.plant.plant import Plant
+from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.motion import Motion
 from beamenv.task import (
     STEADY_INFO,
+    DesignArgument,
     Task,
     checked_action,
     checked_dtype,
@@ -61,8 +64,8 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
 
     ```
 
-    The arguments ``preset``, ``speed``, ``blade``, ``design``, ``scenario``, ``duration``, ``physical_units`` and ``dtype`` are
-    those of ``RotatingBeamEnv``; the others are
+    The arguments ``preset``, ``speed``, ``blade``, ``design``, ``scenario``, ``duration``, ``physical_units``, ``dtype``, ``plant``
+    and ``spread`` are those of ``RotatingBeamEnv``; the others are
 
     - `num_envs`: how many blades, default 1.
     - `autoreset_mode`: an `AutoresetMode` or its value. `"NextStep"` (Gymnasium's own default): the step after the last one of an
@@ -93,11 +96,13 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
         preset: str = "thesis",
         speed: float | None = None,
         blade: BladeConfig | Mapping[str, Any] | None = None,
-        design: BladeConfig | Mapping[str, Any] | str | None = None,
+        design: DesignArgument = None,
         scenario: Scenario | Mapping[str, Any] | str | None = None,
-        duration: float = 0.5,
+        duration: float | None = None,
         physical_units: bool = False,
         dtype: Any = "float32",
+        plant: PlantArgument | None = None,
+        spread: Spread | Mapping[str, Any] | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         max_episode_steps: int | None = None,
         render_mode: str | None = None,
@@ -114,7 +119,7 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
         self._dtype = checked_dtype(dtype)
         self.autoreset_mode = chosen_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
-        self.set_task([resolve_task(preset, speed, blade, design, scenario, duration, physical_units)])
+        self.set_task([resolve_task(preset, speed, blade, design, scenario, duration, physical_units, plant, spread)])
 
     def set_task(self, tasks: Sequence[Task]) -> None:
         """Take on tasks, blade k that at k modulo their number, in place of those before; what comes next must be ``reset``.
@@ -125,7 +130,10 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
         tasks = [checked_task(task) for task in tasks]
         blades = blades_of(tasks, self.num_envs)  # what cannot be built is refused before anything has changed
         self.task, self.tasks, self._blades = tasks[0], tuple(tasks), blades
-        self._notes = np.resize(np.array([task.note for task in tasks], dtype=object), self.num_envs)
+        notes = np.empty((2, len(tasks)), dtype=object)
+        for k, task in enumerate(tasks):
+            notes[:, k] = task.note, task.plant.assumed
+        self._notes = notes[:, np.arange(self.num_envs) % len(tasks)]
         self.single_action_space = self.task.action_space(self._dtype)
         self.single_observation_space = self.task.observation_space(self._dtype)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
@@ -214,10 +222,10 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
 
     def _begun(self, rows: Rows) -> dict[str, Any]:
         """What info tells besides of ``rows`` whose episode begins, with Gymnasium's masks."""
-        steady, notes = np.zeros((self.num_envs, len(STEADY_INFO))), np.full(self.num_envs, None, dtype=object)
+        steady, notes = np.zeros((self.num_envs, len(STEADY_INFO))), np.full((2, self.num_envs), None, dtype=object)
         mask = np.zeros(self.num_envs, dtype=np.bool_)
-        steady[rows], notes[rows], mask[rows] = self._blades.steady(rows), self._notes[rows], True
-        told = steady_information(steady, notes)
+        steady[rows], notes[:, rows], mask[rows] = self._blades.steady(rows), self._notes[:, rows], True
+        told = steady_information(steady, *notes)
         return {**told, **{f"_{name}": mask.copy() for name in told}}
 
     def step(self, actions: Array) -> tuple[NDArray[Any], Array, Mask, Mask, dict[str, Any]]:

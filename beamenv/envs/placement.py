@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Drawn, Side, resolve, with_positions
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration import Count, Refused, Table, checked, checked_table
 from beamenv.envs.seeds import checked_seed, checked_seeds
 from beamenv.envs.specification import plain
@@ -195,6 +196,8 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
 def _unplaced(env: Any, of_batch: bool) -> Task:
     """The task of the environment within, which must not be placed by another such wrapper already."""
     task, inner = task_within(env, of_batch, ("observation", "action")), env
+    if isinstance(task.blade, ModelBlade):
+        raise Refused("env", env, "one with a blade, on which patches can be placed, and no model of one's own")
     while inner is not env.unwrapped:
         if isinstance(inner, (PlacementWrapper, VectorPlacementWrapper)):
             raise Refused("env", env, "one whose patches no other wrapper places")

@@ -11,13 +11,16 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
+from beamenv.blade.model_blade import PlantArgument
 from beamenv.envs.seeds import checked_seed
 from beamenv.envs.specification import Specified
 from beamenv.plant.plant import Plant
+from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.motion import Motion
 from beamenv.task import (
+    DesignArgument,
     Task,
     checked_action,
     checked_dtype,
@@ -29,7 +32,7 @@ from beamenv.task import (
 )
 
 if TYPE_CHECKING:
-    from beamenv.rendering import BladeRenderer, Instant
+    from beamenv.rendering import BladeRenderer, Instant, ModelRenderer
 
 Array = NDArray[np.float64]
 
@@ -188,6 +191,12 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
     - `dtype`: of both spaces and the observations, `"float32"` or `"float64"`; default `"float32"`, which agents' networks
       have. What is stepped, and info, has 64 bits always.
+    - `plant`: a model of one's own in the place of a blade: a `Plant`, the path of a `.npz`, `.mat` or `.json` file, a table of
+      matrices, or a list of several, one of which moves in each episode. Episodes last as many times longer as its first mode is
+      slower than the blade's, and loads and drive are scaled to it; pictures show its time histories alone. `design` is a model
+      then too.
+    - `spread`: of a `plant`, a table of relative half widths, "frequency", "damping", "actuator" and "sensor": each episode has one
+      of as many plants within it as `scenario`'s bank holds. Agents train on others than the ones they are judged on.
     - `render_mode`: None, `"rgb_array"` (pictures 540 × 960 from `render`) or `"human"` (a window that shows every step); both
       need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life.
 
@@ -221,6 +230,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     | `static_strain`    |      | the outer face's largest spanwise strain, with its sign                  |
     | `static_strain_at` | m    | where that is, from the root                                             |
     | `note`             |      | which patches begin nearer to the clamp than the section is deep, or ""  |
+    | `assumed`          |      | of a model of one's own, in words, what was taken to be so; else ()      |
 
     Next to the clamp a section keeps its shape and a beam is least a beam: the forces and readings of the default blade's first
     patches, mode by mode, differ from those of a solid of finite elements by up to 7 % (in the thesis' model 110 %).
@@ -231,25 +241,27 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 50}
-    _renderer: BladeRenderer | None = None
+    _renderer: BladeRenderer | ModelRenderer | None = None
 
     def __init__(
         self,
         preset: str = "thesis",
         speed: float | None = None,
         blade: BladeConfig | Mapping[str, Any] | None = None,
-        design: BladeConfig | Mapping[str, Any] | str | None = None,
+        design: DesignArgument = None,
         scenario: Scenario | Mapping[str, Any] | str | None = None,
-        duration: float = 0.5,
+        duration: float | None = None,
         physical_units: bool = False,
         dtype: Any = "float32",
         render_mode: str | None = None,
+        plant: PlantArgument | None = None,
+        spread: Spread | Mapping[str, Any] | None = None,
     ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
         self._dtype = checked_dtype(dtype)
-        self.set_task(resolve_task(preset, speed, blade, design, scenario, duration, physical_units))
+        self.set_task(resolve_task(preset, speed, blade, design, scenario, duration, physical_units, plant, spread))
 
     def set_task(self, task: Task) -> None:
         """Take on a task, and with it a blade, in place of the one before; what comes next must be ``reset``.
@@ -311,7 +323,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         motion = self._blade.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._renderer is not None:
             self._renderer.begin(self._instant(motion))
-        info = {**information(motion), **steady_information(self._blade.steady(), self.task.note)}
+        info = {**information(motion), **steady_information(self._blade.steady(), self.task.note, self.plant.assumed)}
         return motion.observation.astype(self._dtype), info
 
     def step(self, action: Array) -> tuple[NDArray[Any], float, bool, bool, dict[str, Any]]:
@@ -342,10 +354,10 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         if self._renderer is not None:
             self._renderer.close()
 
-    def _make_renderer(self) -> BladeRenderer:
-        from beamenv.rendering import BladeRenderer
+    def _make_renderer(self) -> BladeRenderer | ModelRenderer:
+        from beamenv.rendering import renderer_of
 
-        return BladeRenderer(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)
+        return renderer_of(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)
 
     def _instant(self, motion: Motion) -> Instant:
         from beamenv.rendering import Instant

@@ -11,12 +11,17 @@ from typing import Any
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
+from beamenv.plant.model_files import plant_table
+from beamenv.plant.plant import Plant
+
 
 def plain(value: Any) -> Any:
     """The value in types that JSON knows: arrays, ranges and tuples as lists, NumPy's numbers, paths and modes as what they say.
 
-    Dataclasses are left to ``EnvSpec.to_json``, which knows them.
+    Plants are tables of all their fields. Other dataclasses are left to ``EnvSpec.to_json``, which knows them.
     """
+    if isinstance(value, Plant):
+        return plant_table(value)
     if isinstance(value, Enum):
         return plain(value.value)
     if isinstance(value, (np.generic, np.ndarray)):

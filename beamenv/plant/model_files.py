@@ -6,6 +6,7 @@ import inspect
 import io
 import os
 from collections.abc import Mapping
+from dataclasses import MISSING, asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -15,28 +16,66 @@ from scipy.io import loadmat
 from beamenv.configuration.files import checked_path, content_of, of_file, parsed_arrays, read_table
 from beamenv.configuration.sentence import shown, unknown_field
 from beamenv.plant.plant import Plant
+from beamenv.plant.signals import Signal
 from beamenv.plant.state_space import plant_of_model
 
 ENDINGS = (".npz", ".mat", ".json")
 
 FIELDS = tuple(inspect.signature(plant_of_model).parameters)
 NEEDED = ("A", "B", "C")
+SIGNALS = ("disturbances", "sensors")
 NUMBERS = ("dt", "interval")
 WORDS = ("disturbance_names", "disturbance_units", "sensor_names", "sensor_units")
 BESIDE = ("origin",)
 """In words, where a model comes from: read by people alone."""
 
 
-def plant_from_file(path: str | os.PathLike[str]) -> Plant:
+def plant_from_file(path: str | os.PathLike[str], name: str = "plant") -> Plant:
     """The plant of the model in a file. ``A``, ``B`` and ``C`` must be there, what else ``state_space`` takes may.
 
     Raises ``ValueError`` of one sentence, with the file's name in it, for another ending, a file that cannot be read, a key that is
     missing or unknown, and whatever ``Plant.from_state_space`` refuses.
     """
-    place = checked_path("plant", path, ENDINGS)
+    place = checked_path(name, path, ENDINGS)
     content = _content(place)
     with of_file(place):
+        return plant_from_table(content)
+
+
+def plant_from_table(content: Mapping[str, Any]) -> Plant:
+    """The plant of a table of matrices: of a model, or with ``state_weight`` all fields of a ``Plant``, as ``plant_table`` tells
+    them. ``ValueError`` for a key that is missing or unknown.
+    """
+    if "state_weight" not in content:
         return plant_of_model(**fields_of(content))
+    known = [each.name for each in fields(Plant)]
+    for key in content:
+        if key not in known:
+            raise unknown_field("plant", key, known)
+    for each in fields(Plant):
+        if each.default is MISSING and each.name not in content:
+            raise ValueError(f"plant.{each.name} is missing.")
+    states = len(np.atleast_1d(content["A"]))
+    return Plant(**{key: _whole(key, value, states) for key, value in content.items()})
+
+
+def plant_table(plant: Plant) -> dict[str, Any]:
+    """Every field of a plant as JSON can hold it; ``plant_from_table`` takes it back, to the last bit."""
+    table = {}
+    for each in fields(Plant):
+        value = getattr(plant, each.name)
+        signals = each.name in SIGNALS
+        table[each.name] = [asdict(one) for one in value] if signals else value.tolist() if isinstance(value, np.ndarray) else value
+    return {**table, "assumed": list(plant.assumed)}
+
+
+def _whole(key: str, value: Any, states: int) -> Any:
+    """Signals of tables, and the shape that lists without entries have lost."""
+    if key in SIGNALS and isinstance(value, (list, tuple)):
+        return tuple(Signal(**each) if isinstance(each, Mapping) and set(each) == {"name", "unit"} else each for each in value)
+    if key in ("tip_displacement", "strain", "process_noise") and np.size(value) == 0:
+        return np.zeros((0, 0 if key == "process_noise" else states))
+    return value
 
 
 def fields_of(content: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.rendering.choice import renderer_of
 from beamenv.rendering.history import Instant
-from beamenv.rendering.renderer import BladeRenderer
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.simulation.motion import Motion
@@ -19,10 +19,10 @@ Rows = NDArray[np.int64]
 
 
 class BatchRenderer:
-    """A ``BladeRenderer`` for each row of the batch in ``tasks``; ``full_scale`` (p,): the observation that is full scale."""
+    """A renderer for each row of the batch in ``tasks``; ``full_scale`` (p,): the observation that is full scale."""
 
     def __init__(self, tasks: Mapping[int, Task], full_scale: NDArray[Any]) -> None:
-        self.renderers = {row: BladeRenderer(task) for row, task in tasks.items()}
+        self.renderers = {row: renderer_of(task) for row, task in tasks.items()}
         self._full_scale = full_scale
 
     def begin(self, blades: Blades | MixedBlades, motion: Motion, rows: Rows | None = None) -> None:

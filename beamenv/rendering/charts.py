@@ -19,12 +19,14 @@ QUARTERS = np.linspace(0.0, 1.0, 5)
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Curves over the last ``WINDOW`` seconds: where they are and what values they span."""
+    """Curves over the last seconds: where they are and what values they span."""
 
     title: str
     place: Frame
     low: float
     high: float
+    window: float = WINDOW
+    """s."""
 
     @property
     def moving(self) -> Frame:
@@ -50,7 +52,7 @@ class Chart:
             canvas.line([(place.left, y), (right, y)], FAINT, 0.5)
             canvas.write(f"{self.low + share * (self.high - self.low):g}", place.left - 6.0, y, QUIET, "tick", anchor=1.0)
             if dated:
-                canvas.write(f"{1e3 * WINDOW * (share - 1.0):g}", x, bottom + 10.0, QUIET, "tick", anchor=0.5)
+                canvas.write(f"{1e3 * self.window * (share - 1.0):.4g}", x, bottom + 10.0, QUIET, "tick", anchor=0.5)
         if dated:
             canvas.write("time before now, ms", place.left + 0.5 * place.width, bottom + 25.0, QUIET, "note", anchor=0.5)
         zero = bottom + place.height * self.low / (self.high - self.low)
@@ -60,7 +62,7 @@ class Chart:
         """Curves of values (k, c) at ages (k,) (s, 0 or less), and from the right a label of each in its colour."""
         place = self.place
         canvas.open(place)
-        x = place.left + place.width * (1.0 + ages / WINDOW)
+        x = place.left + place.width * (1.0 + ages / self.window)
         y = place.top + place.height * (self.high - values) / (self.high - self.low)
         for column, colour in zip(y.T, colours, strict=True):
             if len(x) > 1:

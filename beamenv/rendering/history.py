@@ -24,7 +24,7 @@ class Instant(NamedTuple):
     speed: float
     """rad/s."""
     tip_displacement: Array
-    """(2,), m: lag, flap."""
+    """(q,), m: lag, flap."""
     volts: Array
     """(m,), V, held over the interval."""
     reading: Array
@@ -34,11 +34,11 @@ class Instant(NamedTuple):
 
 
 class History:
-    """The instants of the last ``WINDOW`` seconds, sampled every ``interval`` (s). Recording one takes a microsecond."""
+    """The instants of the last ``window`` seconds, sampled every ``interval`` (s). Recording one takes a microsecond."""
 
-    def __init__(self, interval: float) -> None:
+    def __init__(self, interval: float, window: float = WINDOW) -> None:
         self._interval = interval
-        self._instants: deque[Instant] = deque(maxlen=round(WINDOW / interval) + 1)
+        self._instants: deque[Instant] = deque(maxlen=round(window / interval) + 1)
         self._costs: deque[float] = deque(maxlen=self._instants.maxlen)
         self._steps = 0
 
@@ -73,8 +73,13 @@ class History:
 
     @property
     def tips(self) -> Array:
-        """(k, 2), m: lag, flap."""
+        """(k, q), m: lag, flap."""
         return np.array([instant.tip_displacement for instant in self._instants])
+
+    @property
+    def readings(self) -> Array:
+        """(k, p), in full scales."""
+        return np.array([instant.reading for instant in self._instants])
 
     @property
     def volts(self) -> Array:

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
 from beamenv.patches.layout import SIDES
@@ -16,6 +15,7 @@ from beamenv.rendering.canvas import Canvas, Frame
 from beamenv.rendering.charts import Chart, draw_scale, round_above
 from beamenv.rendering.deformation import Deformation
 from beamenv.rendering.history import WINDOW, History, Instant
+from beamenv.rendering.installed import check_installed
 from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
 from beamenv.rendering.scene import Scene
 from beamenv.rendering.window import Window
@@ -41,7 +41,7 @@ class BladeRenderer:
     """
 
     def __init__(self, task: Task, rate: float | None = None) -> None:
-        _check_installed()
+        check_installed()
         self._task, self._rate = task, rate
         config, plant = task.config, task.plant
         self._scene = Scene(task.blade)
@@ -135,15 +135,6 @@ class BladeRenderer:
         self._canvas.open(CLOCK)
         self._canvas.write(f"t = {1e3 * history.time:.1f} ms    Ω = {last.speed:.0f} rad/s", 24.0, 28.0, INK, "title")
         self._canvas.develop(CLOCK)
-
-
-def _check_installed() -> None:
-    """What is drawn with must be there."""
-    try:
-        import matplotlib  # noqa: F401
-        import pygame  # noqa: F401
-    except ImportError as error:
-        raise DependencyNotInstalled(f'{error.name} is not installed, run `pip install "beamenv[render]"`') from error
 
 
 def _in_words(walls: Sequence[str]) -> str:

@@ -116,7 +116,8 @@ class RotatingBeam:
         """How the section is turned and scaled along the span."""
         twists = self.twist_table and tuple((share, float(np.radians(angle))) for share, angle in self.twist_table)
         even = float(np.radians(self.pretwist_deg)), float(np.radians(self.presetting_deg)), self.taper
-        return Planform(self.length, *even, twists, self.chord_table)
+        covered = max((inlay.start + inlay.length for inlay in self.inlays), default=0.0)
+        return Planform(self.length, *even, twists, self.chord_table, covered)
 
     @cached_property
     def space(self) -> TrialSpace:

@@ -19,8 +19,11 @@ SIZES = 9
 """Sizes at which the sections of a tapered blade are worked out; between them its properties, smooth functions of the size, follow
 a polynomial."""
 
-SIZES_OF_PIECE = 5
+SIZES_OF_PIECE = 7
 """The same of each of several pieces of the span."""
+
+LEAST_PIECE = 0.02
+"""Of the span."""
 
 TABLE = Points(least=2, most=100)
 """Pairs of a share of the span and what is there, from 0 to 1."""
@@ -51,6 +54,8 @@ class Planform:
     """Shares of the span and the pretwist (rad) there, straight in between; None: evenly to ``pretwist``."""
     chords: Steps | None = None
     """Shares of the span and the size there over that of the root, straight in between; None: evenly to 1/``taper``."""
+    covered: float = 0.0
+    """m: up to where inlays lie; a tapered blade is in two pieces there, for theirs need not fit further out."""
 
     def scale(self, z: Array) -> Array:
         """Size over that of the root (S,)."""
@@ -82,7 +87,11 @@ class Planform:
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """One where neither is by a table."""
-        shares = sorted({0.0, 1.0, *(share for table in (self.twists, self.chords) for share, _ in table or ())})
+        tapered = self.taper != 1.0 if self.chords is None else len({size for _, size in self.chords}) > 1
+        end, known = self.covered / self.length, {share for table in (self.twists, self.chords) for share, _ in table or ()}
+        near = any(-1e-9 <= share - end <= LEAST_PIECE for share in {1.0, *known})
+        split = {end} if tapered and end > LEAST_PIECE and not near else set()
+        shares = sorted({0.0, 1.0, *split, *known})
         several = len(shares) > 2
         return tuple(self._piece(low, high, several) for low, high in zip(shares[:-1], shares[1:], strict=True))
 

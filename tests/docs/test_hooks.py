@@ -18,6 +18,7 @@ HOOKS = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks.py"))
         ("recipes", "| `gradient` | "),
         ("shipped agents", "| `residual` | generalist | 0, 1, 2, 3, 4 | 1552 | 3302 |"),
         ("command line", "## beamenv frequencies"),
+        ("gallery", "## Two cell box"),
     ],
 )
 def test_a_page_is_filled_in_where_it_asks_for_it(name, row):

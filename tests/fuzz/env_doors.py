@@ -1,11 +1,16 @@
 """Doors that make environments."""
 
+from collections.abc import Mapping
+from pathlib import PurePath
+
 import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from hypothesis import strategies as st
 
 import beamenv
+from beamenv.plant.plant import Plant
+from beamenv.plant.spread import Spread
 from tests.fuzz import small
 from tests.fuzz.blade_doors import BLADE, BLADE_PARTS, SCENARIO, SCENARIO_PARTS
 from tests.fuzz.meaning import COUNT, COUNTS, FLAG, NOTHING, NUMBER, TEXT, Kind, maybe
@@ -29,15 +34,27 @@ DTYPE = Kind(
     lambda value: value if isinstance(value, (str, type, np.dtype)) else NOTHING,
     st.sampled_from(["float32", "float64", np.float32, np.dtype("f8"), "float16", int, "x", np.dtype(">f4")]),
 )
+PLANT = Kind(
+    "plant",
+    lambda value: value if isinstance(value, (str, PurePath, Mapping, list, tuple, Plant)) else NOTHING,
+    st.sampled_from(["x", "no.npz", "solid-blade", "", {}, {"A": 1.0}, [], [3], {"A": -1.0, "B": 1.0, "C": 1.0, "x": 1}]),
+)
+SPREAD = Kind(
+    "spread",
+    lambda value: value if isinstance(value, (Mapping, Spread)) else NOTHING,
+    st.sampled_from([{}, {"frequency": 0.1}, {"frequency": -1.0}, {"frequency": True}, {"x": 1.0}, Spread(damping=0.2)]),
+)
 SINGLE = {
     "preset": TEXT,
     "speed": maybe(NUMBER),
     "blade": maybe(BLADE),
     "design": maybe(DESIGN),
     "scenario": maybe(NAMED_SCENARIO),
-    "duration": NUMBER,
+    "duration": maybe(NUMBER),
     "physical_units": FLAG,
     "dtype": DTYPE,
+    "plant": maybe(PLANT),
+    "spread": maybe(SPREAD),
 }
 MODE = Kind(
     "mode",
@@ -56,6 +73,7 @@ SEEDS = Kind(
     lambda value: COUNT.means(value) if COUNT.means(value) is not NOTHING else COUNTS.means(value),
     st.one_of(COUNTS.near, COUNT.near),
 )
+MODEL = {"A": [[0.0, 300.0], [-300.0, -6.0]], "B": [0.0, 1.0], "C": [0.0, 1.0], "interval": 1e-3}
 SINGLE_WORDS = ("speed", "section", "file", "duration", "blade", "beam", "preset", "design", "inlay", "plant", "layup")
 
 
@@ -69,7 +87,14 @@ def arguments():
         "duration": small.DURATION,
         "physical_units": False,
         "dtype": "float64",
+        "plant": None,
+        "spread": None,
     }
+
+
+def of_model():
+    """Arguments of an environment with a model of one's own."""
+    return {"plant": dict(MODEL), "spread": {"frequency": 0.1}, "scenario": {"plants": {"bank": 2}}, "duration": 0.02}
 
 
 def lived(env, seed=3):
@@ -137,6 +162,16 @@ DOORS = [
         read,
         ("path", "file"),
         COPIABLE,
+    ),
+    Door(
+        "gym.make plant",
+        made(lambda **given: gym.make(beamenv.ENV_ID, disable_env_checker=True, **given)),
+        {name: SINGLE[name] for name in ("plant", "spread", "duration", "physical_units", "design")},
+        lambda: {**of_model(), "physical_units": False, "design": None},
+        None,
+        ("the model", "A", "B", "C", "field", "file", "fields", "duration"),
+        COPIABLE,
+        plain=False,
     ),
     Door(
         "gym.make_vec",

@@ -31,24 +31,32 @@ def written(**given):
 
 
 def told(found):
-    return {"plant": found.plant, "precision": found.precision, "name": found.name}
+    return {"plant": found.plant, "precision": found.precision, "name": found.name, "note": found.note}
 
 
-KINDS = {"controller": ANYTHING, "plant": instance(Plant), "precision": TEXT, "name": maybe(TEXT)}
+KINDS = {"controller": ANYTHING, "plant": instance(Plant), "precision": TEXT, "name": maybe(TEXT), "note": TEXT}
 
 DOORS = [
     Door(
         "exported",
         exported,
         KINDS,
-        lambda: {"controller": law(), "plant": plant(), "precision": "double", "name": "mine"},
+        lambda: {"controller": law(), "plant": plant(), "precision": "double", "name": "mine", "note": ""},
         told,
     ),
     Door(
         "export",
         written,
         {**KINDS, "path": PATH, "format": maybe(TEXT)},
-        lambda: {"controller": law(), "plant": plant(), "path": "mine.c", "format": "c", "precision": "double", "name": "mine"},
+        lambda: {
+            "controller": law(),
+            "plant": plant(),
+            "path": "mine.c",
+            "format": "c",
+            "precision": "double",
+            "name": "mine",
+            "note": "x",
+        },
         plain=False,
     ),
 ]

@@ -53,10 +53,10 @@ def python_steps(controller, plant):
     return step
 
 
-def in_a_loop(step, scenario, reads_speed=False, steps=STEPS, seed=1):
+def in_a_loop(step, scenario, reads_speed=False, steps=STEPS, seed=1, preset="thesis"):
     """What is measured (k, p) and the voltages (k, m) of a controller's own episode."""
-    duration = steps * 5e-4
-    env = gym.make(beamenv.ENV_ID, scenario=scenario, physical_units=True, duration=duration, dtype="float64")
+    duration = STEPS * 5e-4  # whatever part of it is run: a run-up is as long as the episode
+    env = gym.make(beamenv.ENV_ID, preset=preset, scenario=scenario, physical_units=True, duration=duration, dtype="float64")
     observation, _ = env.reset(seed=seed)
     measured, voltages = [], []
     for _ in range(steps):

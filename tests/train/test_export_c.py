@@ -8,38 +8,41 @@ import pytest
 from baselines import LinearController, lqg
 from baselines.design.loop import closed_loop, spectral_radius
 from beamenv.plant.plant import sample
+from beamenv.plant.signals import Signal
 from beamenv.task import resolve_task
 from tests.train.exports import EVERY, NOT_EXPORTED
 from tests.train.in_a_loop import STEPS, TOLERANCE, in_a_loop, in_double_precision, python_steps
 from train.controllers.named import discover
+from train.controllers.shipped import shipped
+from train.controllers.sources import Trained
 from train.export import exported
 from train.export.compiled import compiler, running, seconds_a_step
 
 needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 
 
-def agrees(controller, plant, scenario):
+def agrees(controller, plant, scenario, preset="thesis"):
     """Of both precisions with Python in double precision."""
     found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
     reads_speed = len(found["double"].diagram.inputs) > 1
     with in_double_precision(controller) as own:
-        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed)
+        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, preset=preset)
     assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
     for precision, each in found.items():
         with running(each) as step:
-            if falls_apart(controller, plant):
+            if falls_apart(controller, preset):
                 written = np.array([step(row) for row in measured])
             else:
-                _, written = in_a_loop(step, scenario, reads_speed)
+                _, written = in_a_loop(step, scenario, reads_speed, preset=preset)
         worst = np.abs(written - voltages).max() / np.abs(plant.voltage_limits).max()
         assert worst < TOLERANCE[precision], precision
 
 
-def falls_apart(controller, plant):
+def falls_apart(controller, preset):
     """Whether the loop with the full plant is unstable: rounding grows in it, and only what both are shown can be compared."""
     if not isinstance(controller, LinearController):
         return False
-    return spectral_radius(closed_loop(sample(resolve_task().design.full_plant), controller)[0]) > 1.0
+    return spectral_radius(closed_loop(sample(resolve_task(preset).design.full_plant), controller)[0]) > 1.0
 
 
 @needs_a_compiler
@@ -65,6 +68,42 @@ def test_law_of_another_clock_is_refused():
     slower = resolve_task(blade={"control_interval": 1e-3}).design_plant
     with pytest.raises(ValueError, match="plant has another interval than LQG was designed for: 0.001 in place of 0.0005"):
         exported(lqg(resolve_task().design_plant), slower)
+
+
+def test_agent_of_another_blade_is_refused():
+    (gradient,) = [each for each in shipped() if each.agent == "gradient" and each.seed == 0]
+    policy = Trained(gradient.folder).build(resolve_task())
+    with pytest.raises(ValueError, match="plant has 1 sensors and 1 voltages, which are not those that gradient"):
+        exported(policy, resolve_task(preset="aluminium-cantilever").design_plant)
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("name", ["lqg-load", "clipped-lqg", "multiple-model", "scheduled-lqg", "inverse-hysteresis"])
+def test_blade_with_fewer_voltages_than_sensors(name):
+    blade = {"patches": {"actuators": 2, "sensors": 3}}
+    task = resolve_task(blade=blade, scenario="hysteresis")
+    law, plant = discover()[name].build_for(task), task.design_plant
+    found = exported(law, plant)
+    full = plant.sensor_full_scale
+    rows = np.clip(0.3 * full * np.random.default_rng(0).standard_normal((200, 3)), -full, full)
+    rows = np.hstack([rows, *(np.full((200, each.size), 190.0) for each in found.diagram.inputs[1:])])
+    with running(found) as step, in_double_precision(law) as own:
+        here, limit = python_steps(own, plant), plant.voltage_limits.max()
+        for row in rows:
+            np.testing.assert_allclose(step(row), here(row), rtol=0.0, atol=1e-9 * limit)
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("name", ["velocity", "lqg", "clipped-lqg-load", "multiple-model"])
+def test_strip_with_one_patch_pair(name):
+    task = resolve_task(preset="aluminium-cantilever")
+    agrees(discover()[name].build_for(task), task.design_plant, "default", preset="aluminium-cantilever")
+
+
+def test_sensors_are_called_what_the_plant_calls_them():
+    plant = resolve_task(preset="aluminium-cantilever").design_plant
+    found = exported(lqg(plant), replace(plant, sensors=(Signal("tip", "m/s²"),)))
+    assert found.facts["sensors[0]"] == f"tip, m/s², clipped to ±{plant.sensor_full_scale[0]:.9g}"
 
 
 @needs_a_compiler

@@ -6,6 +6,7 @@ import json
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,13 @@ import numpy as np
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
+from beamenv.blade.model_blade import model_of
 from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
+from beamenv.plant.model_files import plant_table
+from beamenv.plant.spread import Spread
 from beamenv.scenarios.named import expanded
+from beamenv.scenarios.of_models import fits_models
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.task import resolve_task
 from train.benchmark.bench import Setting
@@ -33,7 +38,7 @@ from train.shared.versions import versions
 
 Progress = Callable[[int, int, Cell], None]
 
-ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units", "max_episode_steps")
+ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units", "max_episode_steps", "plant", "spread")
 """Of the environment, that all cells may share; the scenario is each cell's own."""
 
 
@@ -108,7 +113,7 @@ def of_listed(
     progress: Progress | None = None,
 ) -> BenchmarkTable:
     """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON."""
-    known, refused = read_scenarios(scenarios)
+    known, refused = read_scenarios(scenarios, of_models=json.loads(arguments).get("plant") is not None)
     settings = [Setting(name, each, seeds, arguments, validation) for name, each in known.items()]
     queue = [job for setting in settings for each in listed for job in jobs_of(each, setting)]
     check_paths(queue)
@@ -146,24 +151,39 @@ def environment_json(environment: Any) -> str:
     resolve_task(**{name: value for name, value in given.items() if name != "max_episode_steps"})
     if given.get("max_episode_steps") is not None:
         checked("environment.max_episode_steps", given["max_episode_steps"], Count())
+    for name in ("plant", "design") if given.get("plant") is not None else ():
+        given[name] = _held(given.get(name))  # what a file says now, whatever it will say later
     try:
         return json.dumps(given, sort_keys=True, default=_plain)
     except (TypeError, ValueError) as error:
         raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {error}.") from None
 
 
+def _held(plant: Any) -> Any:
+    """Models as tables."""
+    if plant is None:
+        return None
+    return [_held(each) for each in plant] if isinstance(plant, (list, tuple)) else plant_table(model_of(plant))
+
+
 def _plain(value: Any) -> Any:
     """What JSON does not know of itself: configurations, and NumPy's numbers and arrays."""
     if isinstance(value, BladeConfig):
         return to_dict(value)
+    if isinstance(value, Spread):
+        return asdict(value)
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
     raise TypeError(f"{shown(value)} is of type {type(value).__name__}")
 
 
-def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
-    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read; all of them if None."""
+def read_scenarios(names: Sequence[str] | None, of_models: bool = False) -> tuple[dict[str, Scenario], dict[str, str]]:
+    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read; all of them if None, or all
+    that can be of a model of one's own.
+    """
     read = {name: _read(name) for name in expanded(["all"] if names is None else names)}
+    if of_models and names is None:
+        read = {name: each for name, each in read.items() if isinstance(each, Scenario) and fits_models(each)}
     titles = {name: Path(name).stem if name.endswith(ENDINGS) else name for name in read}
     known = {checked("scenario", titles[name], FileName()): each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}

@@ -18,6 +18,7 @@ from train.cli.options import (
     RESUMES,
     BladeOption,
     JsonOption,
+    PlantOption,
     PresetOption,
     ScenarioOption,
     SpeedOption,
@@ -133,6 +134,7 @@ def evaluate(
     speed: SpeedOption = None,
     blade: BladeOption = None,
     scenario: ScenarioOption = "default",
+    plant: PlantOption = None,
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
     trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
     as_json: JsonOption = False,
@@ -149,7 +151,7 @@ def evaluate(
         from train.shared.held_out import SEEDS, held_out
 
         seeds = checked("seeds", seeds, SEEDS)
-        arguments = {**environment_arguments(preset, speed, blade), "scenario": scenario}
+        arguments = {**environment_arguments(preset, speed, blade, plant), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
         found: dict[str, baselines.Evaluation] = {}
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():

@@ -14,7 +14,7 @@ from rich.console import Console
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.named import GROUPS
 from train.cli.benchmark_table import finite_row, show_entry, show_table
-from train.cli.options import RESUMES, JsonOption, one_sentence, print_json
+from train.cli.options import RESUMES, JsonOption, PlantOption, one_sentence, print_json
 from train.cli.quick import QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
 from train.shared.digests import digest
 from train.shared.files import check_folder
@@ -67,6 +67,7 @@ def benchmark(
     tier: Annotated[int | None, typer.Option(help="Of the entry: 0, 1 or 2; what it says of itself, or 1, if left out.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace another entry of the same name.")] = False,
     jobs: Annotated[int, typer.Option(min=1, help="Processes at work side by side.")] = 2,
+    plant: PlantOption = None,
     docs: Annotated[
         Path | None,
         typer.Option(help="Folder that gets benchmark.md and its heat map; with --submit that of the leaderboard, else results."),
@@ -79,7 +80,15 @@ def benchmark(
     measured is reported in one sentence each, the rest is measured, and the status is then 1.
     """
     with one_sentence(RESUMES):
-        chosen = {"scenario": scenario, "controller": controller, "seeds": seeds, "runs": runs, "model": model, "quick": quick}
+        chosen = {
+            "scenario": scenario,
+            "controller": controller,
+            "seeds": seeds,
+            "runs": runs,
+            "model": model,
+            "quick": quick,
+            "plant": plant,
+        }
         if submit is not None:
             entered(submit, chosen, folder, docs, as_json, tier=tier, trusted=trust, overwrite=overwrite, jobs=jobs)
             return
@@ -89,7 +98,8 @@ def benchmark(
         if docs is not None:
             check_folder(docs, "docs")
         episodes = seeds or (QUICK_SEEDS if quick else SEEDS)
-        usual = default_folder(scenario or (), controller or (), episodes, model or (), quick=quick, runs=runs)
+        those = model or ([] if plant is None else [plant])
+        usual = default_folder(scenario or (), controller or (), episodes, those, quick=quick, runs=runs)
         home = usual if folder is None else folder
         table = _measured(
             scenarios=scenario or (QUICK_SCENARIOS if quick else None),
@@ -100,6 +110,7 @@ def benchmark(
             models=model or (),
             trusted=trust,
             jobs=jobs,
+            environment={} if plant is None else {"plant": str(plant)},
         )
         if docs is not None:
             from train.benchmark.showing.docs import write_docs

@@ -11,6 +11,7 @@ from rich.console import Console
 from train.cli.options import (
     BladeOption,
     JsonOption,
+    PlantOption,
     PresetOption,
     ScenarioOption,
     SpeedOption,
@@ -40,6 +41,7 @@ def export(
     speed: SpeedOption = None,
     blade: BladeOption = None,
     scenario: ScenarioOption = "default",
+    plant: PlantOption = None,
     trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
     as_json: JsonOption = False,
@@ -56,14 +58,16 @@ def export(
         checked("format", format, Choice(tuple(FORMATS)))
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
-        task = resolve_task(**environment_arguments(preset, speed, blade), scenario=scenario)
+        task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
         called = identifier(Path(controller).name) if name is None else name
         path = output or Path(f"{called}.{format}")
         check_file(path, "output")
         law = chosen(controller, task, scenario, trained_seed)
-        found = exported(law, task.design_plant, precision=precision, name=called)
+        note = f"{controller}, blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}, scenario {scenario}"
+        more: dict[str, Any] = {"precision": precision, "name": called, "note": note}
+        found = exported(law, task.design_plant, **more)
         seconds = _measured(found) if measure else None
-        export(law, task.design_plant, path, format=format, precision=precision, name=called)
+        export(law, task.design_plant, path, format=format, **more)
     if as_json:
         print_json({"file": str(path), "format": format, "name": found.name, **found.facts, "seconds_a_step": seconds})
     else:

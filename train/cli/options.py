@@ -24,15 +24,21 @@ RESUMES = "what was finished is kept, and the same command resumes"
 PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
 SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
 BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
+PlantOption = Annotated[
+    Path | None,
+    typer.Option(help="A model of your own in the place of a blade: .npz, .mat or .json, with A, B, C and what is known."),
+]
 ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 
-def environment_arguments(preset: str, speed: float | None, blade: Path | None) -> dict[str, Any]:
+def environment_arguments(preset: str, speed: float | None, blade: Path | None, plant: Path | None = None) -> dict[str, Any]:
     """Keyword arguments of the environment that the options stand for."""
     from beamenv.blade.files import load_config, to_dict
 
     arguments: dict[str, Any] = {"preset": preset}
+    if plant is not None:
+        arguments["plant"] = str(plant)
     if speed is not None:
         arguments["speed"] = speed
     if blade is not None:

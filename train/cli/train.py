@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 
 from beamenv.configuration import FileName, checked
-from train.cli.options import BladeOption, PresetOption, SpeedOption, environment_arguments, one_sentence
+from train.cli.options import BladeOption, PlantOption, PresetOption, SpeedOption, environment_arguments, one_sentence
 from train.learning.recipes import NAMES
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def train(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
+    plant: PlantOption = None,
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
@@ -57,7 +58,7 @@ def train(
         chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
         chosen = chosen if device is None else chosen.on(device)
         budget = _budget(minutes, updates, chosen.updates)
-        environment = environment_arguments(preset, speed, blade)
+        environment = environment_arguments(preset, speed, blade, plant)
         home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
         job = Job(agent, chosen, scenario, seed, budget, environment, start)
         total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")

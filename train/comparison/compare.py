@@ -16,6 +16,7 @@ import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from baselines.design.objects import instance, optional_instance
 from beamenv.blade.files import to_dict
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
 from beamenv.task import Task
 from train.comparison.figures import write_figures
@@ -120,6 +121,10 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
     envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **{"dtype": "float64", **comparison.environment})
     try:
         plant = envs.unwrapped.plant
+        if isinstance(envs.unwrapped.task.blade, ModelBlade):
+            raise ValueError(
+                "plant is a model without a shape, which a comparison cannot draw: put it through the benchmark instead."
+            )
         content = described(comparison, envs.unwrapped.task)
         check_claim(folder, content)
         laws: dict[str, Any] = {name: named(name).build_for(envs.unwrapped.task) for name in CLASSICAL}

@@ -9,8 +9,10 @@ from functools import lru_cache
 from baselines import Hypothesis, MultipleModel, multiple_model
 from baselines.laws.detuned_lqg import CAUTIOUS, detuned_lqg
 from beamenv.blade.build import Blade
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.knowledge import Prior, on_training_bank
 from beamenv.scenarios.named import NAMES, UNSEEN
+from beamenv.scenarios.of_models import fits_models
 from beamenv.scenarios.scenario import SCENARIOS
 from train.controllers.hypotheses import BETWEEN, MOST, hypotheses_of, varies
 
@@ -24,10 +26,11 @@ def general_hypotheses(blade: Blade) -> list[Hypothesis]:
     All delays and faults of the scenarios where the plant is the blade's own; scenarios of other plants share the rest evenly. Two
     that differ in the deflection at the start alone are one. A reading that is shown again exactly may be a lost one in any.
     """
-    told = [Prior(blade, blade, on_training_bank(SCENARIOS[name]), steps=1) for name in SEEN]
-    own = _unlike(each for prior in told if not varies(prior.scenario) for each in hypotheses_of(prior))
-    others = [prior for prior in told if varies(prior.scenario)]
-    share = max(2, (MOST - len(own)) // len(others))
+    seen = [name for name in SEEN if not isinstance(blade, ModelBlade) or fits_models(SCENARIOS[name])]
+    told = [Prior(blade, blade, on_training_bank(SCENARIOS[name]), steps=1) for name in seen]
+    own = _unlike(each for prior in told if not varies(prior) for each in hypotheses_of(prior))
+    others = [prior for prior in told if varies(prior)]
+    share = max(2, (MOST - len(own)) // max(len(others), 1))
     those = [*own, *(each for prior in others for each in hypotheses_of(prior, share))]
     return sorted(_unlike(those), key=lambda each: len(each.loads))
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product, repeat
+from itertools import cycle, islice, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from baselines import Hypothesis
 from baselines.laws.foreseen_load import foreseen_loads, mean_square
-from beamenv.blade.build import Blade
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.knowledge import Prior
+from beamenv.plant.plant import Plant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.scenarios.tables import Failures, PlantVariation
 from beamenv.simulation.plants.banks import varied_blades
@@ -55,19 +56,23 @@ def hypotheses_of(prior: Prior, plants: int | None = None) -> list[Hypothesis]:
     scenario, faults = prior.scenario, _faults_of(prior)
     if are_drawn(prior, plants):
         return _drawn(prior, plants or MOST)
-    blades = _blades(prior, _how_many_plants(scenario, plants))
-    return [_hypothesis(scenario, blade, delay, fault) for blade, delay, fault in product(blades, _delays(scenario), faults)]
+    known = _plants(prior, _how_many_plants(prior, plants))
+    return [_hypothesis(scenario, *each, delay, fault) for each, delay, fault in product(known, _delays(scenario), faults)]
 
 
 def are_drawn(prior: Prior, plants: int | None = None) -> bool:
     """Whether there is more that may be the case than hypotheses: most of what happens lies between them then."""
-    number = _how_many_plants(prior.scenario, plants)
+    number = _how_many_plants(prior, plants)
     return len(_delays(prior.scenario)) * len(_faults_of(prior)) * number > MOST
 
 
-def varies(scenario: Scenario) -> bool:
+def varies(prior: Prior) -> bool:
     """Whether there are other plants than the blade's own."""
-    return scenario.plants.varies or scenario.plants.spin_up is not None
+    return _drawn_plants(prior) or prior.scenario.plants.spin_up is not None
+
+
+def _drawn_plants(prior: Prior) -> bool:
+    return prior.blade.varies if isinstance(prior.blade, ModelBlade) else prior.scenario.plants.varies
 
 
 def switches(prior: Prior, hypotheses: Sequence[Hypothesis]) -> Array | None:
@@ -85,15 +90,15 @@ def switches(prior: Prior, hypotheses: Sequence[Hypothesis]) -> Array | None:
     return matrix
 
 
-def _hypothesis(scenario: Scenario, blade: Blade, delay: int, fault: Fault) -> Hypothesis:
+def _hypothesis(scenario: Scenario, plant: Plant, speed: float, delay: int, fault: Fault) -> Hypothesis:
     return Hypothesis(
-        blade.truth,
+        plant,
         delay=delay,
         actuator_gain=fault.actuator_gain,
         sensor_gain=fault.sensor_gain,
         sensor_bias=fault.sensor_bias,
-        load=foreseen_loads(scenario, blade.config.speed),
-        deflection=float(np.sqrt(0.5 * scenario.deflection * mean_square(scenario.magnitude))),
+        load=foreseen_loads(scenario, speed, plant.loads),
+        deflection=float(np.sqrt(scenario.deflection * mean_square(scenario.magnitude) / max(plant.loads, 1))),
         holds_lost_readings=scenario.acquisition.dropout > 0.0,
         prior=fault.share,
     )
@@ -103,19 +108,25 @@ def _delays(scenario: Scenario) -> range:
     return range(scenario.drive.delay[0], scenario.drive.delay[1] + 1)
 
 
-def _how_many_plants(scenario: Scenario, wanted: int | None) -> int:
-    usual = PLANTS if scenario.plants.varies else SPEEDS if scenario.plants.spin_up is not None else 1
+def _how_many_plants(prior: Prior, wanted: int | None) -> int:
+    usual = PLANTS if _drawn_plants(prior) else SPEEDS if prior.scenario.plants.spin_up is not None else 1
     return min(wanted or usual, usual)
 
 
-def _blades(prior: Prior, count: int) -> list[Blade]:
-    plants = prior.scenario.plants
+def _plants(prior: Prior, count: int) -> list[tuple[Plant, float]]:
+    """Each with the rotor's speed, rad/s."""
+    plants, blade = prior.scenario.plants, prior.blade
+    if isinstance(blade, ModelBlade):
+        those = blade.varied(count, plants.seed)[:count] if blade.varies else [blade.truth]
+        return [(each, 0.0) for each in those]
     if plants.varies:
-        return list(varied_blades(prior.blade, replace(plants, bank=count)))
-    if plants.spin_up is None:
-        return [prior.blade]
-    of = prior.blade.with_fixed_range().with_fixed_order()
-    return [of.changed(replace(of.config, speed=float(speed))) for speed in np.linspace(*plants.spin_up, count)]
+        blades = list(varied_blades(blade, replace(plants, bank=count)))
+    elif plants.spin_up is None:
+        blades = [blade]
+    else:
+        of = blade.with_fixed_range().with_fixed_order()
+        blades = [of.changed(replace(of.config, speed=float(speed))) for speed in np.linspace(*plants.spin_up, count)]
+    return [(each.truth, each.config.speed) for each in blades]
 
 
 def _faults_of(prior: Prior) -> list[Fault]:
@@ -155,11 +166,10 @@ def _drawn(prior: Prior, count: int) -> list[Hypothesis]:
     """Faults of the first episodes of tuning, each with a plant of a Latin hypercube of as many."""
     scenario = prior.scenario
     faults = replace(prior, scenario=replace(scenario, plants=PlantVariation())).hypotheses(count).faults
-    varied = (
-        varied_blades(prior.blade, replace(scenario.plants, bank=count)) if scenario.plants.varies else repeat(prior.blade, count)
-    )
+    plants = _plants(prior, count) if _drawn_plants(prior) else [(prior.blade.truth, prior.blade.config.speed)]
+    varied = islice(cycle(plants), count)
     each = zip(faults.delay, faults.actuator_gain, faults.sensor_gain, np.abs(faults.sensor_bias), strict=True)
     return [
-        _hypothesis(scenario, blade, int(delay), Fault(actuators, sensors, bias, 1.0))
-        for blade, (delay, actuators, sensors, bias) in zip(varied, each, strict=True)
+        _hypothesis(scenario, *plant, int(delay), Fault(actuators, sensors, bias, 1.0))
+        for plant, (delay, actuators, sensors, bias) in zip(varied, each, strict=True)
     ]

@@ -180,6 +180,15 @@ class Reduce(Block):
         return (self.of,)
 
 
+class Misfit(ValueError):
+    """Signals and tables that do not go together."""
+
+
+def _check(what: str, size: int, of: Block) -> None:
+    if size != of.size:
+        raise Misfit(f"a signal of {of.size} numbers does not go with {what} {size}.")
+
+
 def signal(value: Any) -> Block:
     """The block itself, or numbers as a constant one."""
     if isinstance(value, Block):
@@ -192,6 +201,7 @@ def affine(matrix: ArrayLike, of: Block, bias: ArrayLike | None = None, label: s
     """The product of a matrix (r, c) and a signal, and a bias (r,) added; of no numbers, the bias or zero."""
     numbers = np.asarray(matrix, dtype=np.float64)
     offset = None if bias is None else np.asarray(bias, dtype=np.float64)
+    _check("a matrix of", numbers.shape[1], of)
     if of.size == 0:
         return signal(np.zeros(len(numbers)) if offset is None else offset)
     return Affine(len(numbers), numbers, of, offset, label=label)
@@ -201,6 +211,7 @@ def products(matrices: ArrayLike, of: Block, step: Block | None = None, label: s
     """Parts of a signal through matrices (G, r, c), or (K, G, r, c) of the ``step``; those that are equal are kept once."""
     numbers = np.asarray(matrices, dtype=np.float64)
     numbers = numbers if numbers.ndim == 4 else numbers[None]
+    _check("matrices of", numbers.shape[1] * numbers.shape[3], of)
     first: dict[bytes, int] = {}
     which = [first.setdefault(np.ascontiguousarray(numbers[:, g]).tobytes(), g) for g in range(numbers.shape[1])]
     kept = list(first.values())
@@ -216,6 +227,8 @@ def function(name: str, of: Block, label: str = "") -> Block:
 def pair(name: str, left: Any, right: Any, label: str = "") -> Block:
     """One of ``PAIRS`` of signals, numbers or arrays."""
     one, other = signal(left), signal(right)
+    if 1 not in (one.size, other.size):
+        _check("another signal of", one.size, other)
     return Pair(max(one.size, other.size), name, one, other, label=label)
 
 

@@ -14,7 +14,7 @@ from baselines.laws.time_varying_lqg import TimeVaryingLQG
 from beamenv.plant.plant import Plant
 from train.controllers.models_policy import ModelsPolicy
 from train.export.agents import AGENTS, weighing_models
-from train.export.blocks import Block
+from train.export.blocks import Block, Misfit
 from train.export.diagram import Diagram
 from train.export.hysteresis import inverse_hysteresis
 from train.export.laws import clipped_lqg, linear_law, scheduled_law
@@ -44,11 +44,14 @@ def diagram_of(controller: Any, plant: Plant) -> Diagram:
     Raises ``ValueError`` of one sentence for what cannot be drawn, and for a law of other instruments than the plant's.
     """
     sensors, readings = sensors_of(checked_plant(plant))
-    if isinstance(controller, Law):
-        _check_instruments(controller, plant)
-    drawn = _drawn(controller, readings, Scales.of(plant))
-    _check_counts(controller, drawn, plant)
-    return behind_instruments(sensors, drawn, plant)
+    for law in (controller, getattr(controller, "law", None)):
+        if isinstance(law, Law):
+            _check_instruments(law, plant)
+    try:
+        return behind_instruments(sensors, _drawn(controller, readings, Scales.of(plant)), plant)
+    except Misfit:
+        counts = f"{len(plant.C)} sensors and {plant.B.shape[1]} voltages"
+        raise ValueError(f"plant has {counts}, which are not those that {name_of(controller)} was made for.") from None
 
 
 def _drawn(controller: Any, readings: Block, scales: Scales) -> Drawn:
@@ -88,8 +91,3 @@ def _check_instruments(law: Law, plant: Plant) -> None:
 
 def _shown(value: Any) -> str:
     return " ".join(str(np.asarray(value).tolist()).split())
-
-
-def _check_counts(controller: Any, drawn: Drawn, plant: Plant) -> None:
-    if drawn.action.size != plant.B.shape[1]:
-        raise ValueError(f"plant has {plant.B.shape[1]} voltages, but {name_of(controller)} gives {drawn.action.size}.")

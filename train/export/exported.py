@@ -11,7 +11,7 @@ import numpy as np
 
 import beamenv
 from baselines.design.controller import name_of
-from beamenv.configuration import Choice, Refused, checked
+from beamenv.configuration import Choice, Refused, Text, checked
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant
 from train.export.c_words import C_WORDS
@@ -37,12 +37,15 @@ class Exported:
     diagram: Diagram
     plant: Plant
     precision: str
+    note: str = ""
+    """What else its reader is told."""
 
     @property
     def facts(self) -> dict[str, str]:
         """What stands in every file, in its order."""
         return {
             "controller": self.controller,
+            **({"note": self.note} if self.note else {}),
             "design plant": f"fingerprint {fingerprint(self.plant)}",
             "interval": f"{self.plant.control_interval!r} s",
             **self._measured,
@@ -76,12 +79,12 @@ class Exported:
                     )
 
 
-def exported(controller: Any, plant: Plant, *, precision: str = "double", name: str | None = None) -> Exported:
+def exported(controller: Any, plant: Plant, *, precision: str = "double", name: str | None = None, note: str = "") -> Exported:
     """The controller as a diagram from what sensors show to voltages in V; ``ValueError`` says why one cannot be exported."""
-    precision = checked("precision", precision, Choice(PRECISIONS))
+    precision, note = checked("precision", precision, Choice(PRECISIONS)), checked("note", note, Text())
     title = name_of(controller)
     own = identifier(title) if name is None else _checked_name(name)
-    return Exported(own, title, controller, diagram_of(controller, plant), plant, precision)
+    return Exported(own, title, controller, diagram_of(controller, plant), plant, precision, note)
 
 
 def identifier(title: str) -> str:

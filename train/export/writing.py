@@ -33,12 +33,14 @@ def export(
     format: str | None = None,
     precision: str = "double",
     name: str | None = None,
+    note: str = "",
 ) -> Exported:
     """Write a controller to ``path``: from what sensors show, A in general, to voltages, V, as in an environment around ``plant``.
 
     ``format`` is "c", a self-contained C99 file, or "onnx" or "mat"; None: what the file's name ends in. ``precision`` is "double"
     or "single", and ``name`` what functions and types are called; None: the controller's own. ``plant`` is that of the design,
-    such as ``env.unwrapped.design_plant``: it has the full scale of the sensors, the limits of the drive and the interval.
+    such as ``env.unwrapped.design_plant``: it has the full scale of the sensors, the limits of the drive and the interval. ``note``
+    stands in the file.
 
     Raises ``ValueError`` of one sentence for a controller that cannot be exported, and why: one that needs the true state or a
     solver, or that is a function of which nobody knows what it does.
@@ -47,6 +49,6 @@ def export(
     ending = path.suffix.removeprefix(".") if format is None else format
     ending = checked("format", ending, Choice(tuple(FORMATS)))
     check_file(path, "path")
-    found = exported(controller, plant, precision=precision, name=name)
+    found = exported(controller, plant, precision=precision, name=name, note=note)
     write_whole(path, FORMATS[ending](found))
     return found

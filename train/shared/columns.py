@@ -43,7 +43,9 @@ EVALUATION = (
 
 
 def number(value: float, form: str) -> str:
-    """Three digits at most where it is large; ∞ for a blade that broke."""
+    """Three digits at most where it is large; ∞ for a blade that broke, a dash for what is not known."""
+    if value != value:  # NaN
+        return "–"
     if abs(value) == float("inf"):
         return "∞" if value > 0 else "−∞"
     return f"{value:.3g}" if abs(value) >= 1e3 and form != "{:.0f}" else form.format(value)

@@ -11,9 +11,11 @@ from scipy.linalg import block_diag
 
 from beamenv.blade.build import Blade, changed_blade
 from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
+from beamenv.simulation.plants.model_bank import model_bank
 from beamenv.simulation.plants.run_up import Cycloid
 from beamenv.simulation.plants.run_ups import run_up_of
 from beamenv.simulation.plants.spin_up import spin_up_bank
@@ -33,6 +35,8 @@ def build_bank(blade: Blade, design: Blade, variation: PlantVariation, steps: in
 
 def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
     """The bank that each episode draws its plant from; of one plant where nothing varies."""
+    if isinstance(blade, ModelBlade):
+        return model_bank(blade, design, variation)
     if not variation.varies:
         return about_steady_states(Bank.single(blade.truth, blade.config.speed, seen_from(blade, design)), [blade])
     blades = list(varied_blades(blade, variation))

@@ -143,7 +143,9 @@ def _solid_sections(
 ) -> SolidSections:
     sizes = np.concatenate([piece.sizes for piece in planform.pieces])
     rates = np.concatenate([np.full(len(piece.sizes), piece.rate) for piece in planform.pieces])
-    elements = mesh(section.placed_chains, np.tile(sizes, len(codes)), strips)
+    fitting = np.concatenate([np.full(len(piece.sizes), piece.start < planform.covered) for piece in planform.pieces])
+    needed = fitting if fitting.any() else ~fitting
+    elements = mesh(section.placed_chains, np.tile(sizes, len(codes)), strips, np.tile(needed, len(codes)))
     laminates = dict[Laminate, int]()
     which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
     for row, code in enumerate(codes.tolist()):

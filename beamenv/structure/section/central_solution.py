@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lu_factor, lu_solve
 
 from beamenv.configuration import Refused
 from beamenv.structure.section.element_sums import ElementSums
 from beamenv.structure.section.elements import RIGID
+from beamenv.structure.section.equations import Factors, assembled, diagonal_of
 from beamenv.structure.section.lines import PER_LINE
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Factorised:
     """(V, K, i, i): inverse of the inside of each element; zero where that stays."""
     coupling: Array
     """(V, K, i, b + 6): between the inside, and the two ends of the element and the beam strain."""
-    factors: tuple[tuple[Array, NDArray[np.int32]], ...]
+    factors: tuple[Factors, ...]
     scale: Array
     """(V, 12 L + 6): units of displacements on lines and of beam strain, in which every equation has 1 on its diagonal."""
     held: Array
@@ -89,11 +89,11 @@ class Factorised:
         bordered[..., len(ends) :, : len(ends)] = sums.beam_strain[..., ends, :].swapaxes(-1, -2)
         bordered[..., len(ends) :, len(ends) :] = sums.beam
         bordered -= coupling.swapaxes(-1, -2) @ inner @ coupling
-        systems = [_assembled(sums, v, each) for v, each in enumerate(bordered)]
-        scale = np.stack([_unit(sums, system) for system in systems])
+        systems = [assembled(sums, v, each) for v, each in enumerate(bordered)]
+        scale = np.stack([_unit(sums, diagonal_of(system)) for system in systems])
         held = sums.rigid_lines * scale[:, :-RIGID, None]
         held /= np.linalg.norm(held, axis=1, keepdims=True)
-        factors = tuple(_factors(*each) for each in zip(systems, scale, held, strict=True))
+        factors = tuple(Factors.of(*each) for each in zip(systems, scale, held, strict=True))
         return cls(sums, inner, coupling, factors, scale, held)
 
     @property
@@ -139,7 +139,7 @@ class Factorised:
         count, columns = on_lines.shape[1], loads.shape[-1]
         right = self.scale[..., None] * np.concatenate([on_lines, strain_loads], axis=1)
         right[:, :count] -= self.held @ rigid
-        scaled = np.stack([lu_solve(factor, each, check_finite=False) for factor, each in zip(self.factors, right, strict=True)])
+        scaled = np.stack([factor.solve(each) for factor, each in zip(self.factors, right, strict=True)])
         solved = self.scale[..., None] * scaled
         strain = solved[:, count:]
         found = np.zeros((len(loads), lines.free, PER_LINE, columns))
@@ -164,9 +164,8 @@ def _too_thin(sums: ElementSums) -> ValueError:
     return Refused("thickness", sums.thickness, allowed)
 
 
-def _unit(sums: ElementSums, system: Array) -> Array:
-    """(…, n): 1/√ of the diagonals of systems (…, n, n)."""
-    diagonal = np.diagonal(system, axis1=-2, axis2=-1)
+def _unit(sums: ElementSums, diagonal: Array) -> Array:
+    """(…, n): 1/√ of diagonals (…, n)."""
     if not np.all(diagonal > 0.0):
         raise _too_thin(sums)
     return np.asarray(1.0 / np.sqrt(diagonal))
@@ -174,7 +173,7 @@ def _unit(sums: ElementSums, system: Array) -> Array:
 
 def _inverse(sums: ElementSums, stiffness: Array) -> Array:
     """Of symmetric matrices (…, n, n) whose rows differ in scale."""
-    unit = _unit(sums, stiffness)
+    unit = _unit(sums, np.diagonal(stiffness, axis1=-2, axis2=-1))
     return np.asarray(unit[..., None] * np.linalg.inv(unit[..., None] * stiffness * unit[..., None, :]) * unit[..., None, :])
 
 
@@ -191,46 +190,6 @@ def _on_lines(sums: ElementSums, on_ends: Array, inside: Array) -> Array:
     total[:, own] += inside.reshape(sections, *own.shape, PER_LINE, columns)
     flat = total.reshape(sections, -1, columns)
     return np.asarray(flat[:, : count * PER_LINE] + lines.follow.T @ flat[:, count * PER_LINE :])
-
-
-def _assembled(sums: ElementSums, section: int, bordered: Array) -> Array:
-    """One system of lines and beam strain from elements (K, 24 + 6, 24 + 6), and of hosts their whole."""
-    lines = sums.lines
-    count, places = len(lines.solved), lines.places
-    every = count + len(lines.faces)
-    blocks, border = np.zeros((every, PER_LINE, every, PER_LINE)), np.zeros((every, PER_LINE, RIGID))
-    rest = np.delete(np.arange(len(bordered)), lines.hosts)
-    first, last, strain = slice(0, PER_LINE), slice(PER_LINE, 2 * PER_LINE), slice(2 * PER_LINE, None)
-    here, there = places[lines.of_elements[rest, 0]], places[lines.of_elements[rest, -1]]
-    for rows, row in ((here, first), (there, last)):
-        for columns, column in ((here, first), (there, last)):
-            blocks[rows, :, columns] += bordered[rest, row, column]
-        border[rows] += bordered[rest, row, strain]
-    for host in lines.hosts:
-        own = places[lines.of_elements[host]]
-        shape = (len(own), PER_LINE)
-        blocks[own[:, None], :, own] += sums.warping[section, host].reshape(*shape, *shape).swapaxes(1, 2)
-        border[own] += sums.beam_strain[section, host].reshape(*shape, RIGID)
-    size = count * PER_LINE
-    square, side = blocks.reshape(every * PER_LINE, -1), border.reshape(-1, RIGID)
-    whole = np.zeros((size + RIGID, size + RIGID))
-    whole[:size, :size], whole[:size, size:] = square[:size, :size], side[:size]
-    if len(lines.faces):
-        follow = lines.follow
-        crossed = square[:size, size:] @ follow
-        whole[:size, :size] += crossed + crossed.T + follow.T @ square[size:, size:] @ follow
-        whole[:size, size:] += follow.T @ side[size:]
-    whole[size:, :size] = whole[:size, size:].T
-    whole[size:, size:] = bordered[:, strain, strain].sum(axis=0)
-    return whole
-
-
-def _factors(system: Array, scale: Array, held: Array) -> tuple[Array, NDArray[np.int32]]:
-    """Of a system in its units, with rigid motion of its lines (12 K, 6) held."""
-    scaled = scale[:, None] * system * scale
-    scaled[: len(held), : len(held)] += held @ held.T
-    factors, pivots = lu_factor(scaled, check_finite=False)
-    return factors, pivots
 
 
 @dataclass(frozen=True, slots=True, eq=False)

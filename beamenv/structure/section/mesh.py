@@ -92,12 +92,13 @@ class Mesh(Sealed):
         return np.flatnonzero(self.opens)
 
 
-def mesh(chains: Sequence[Chain], sizes: Array, strips: Sequence[Strip] = ()) -> Mesh:
-    """The elements of walls at sizes (S,), cut where strips of them begin and end.
+def mesh(chains: Sequence[Chain], sizes: Array, strips: Sequence[Strip] = (), needed: NDArray[np.bool_] | None = None) -> Mesh:
+    """The elements of walls at sizes (S,), cut where strips of them begin and end; where not ``needed`` (S,) they need not fit.
 
     Raises ``ValueError`` where a wall is too short for its thickness at the corners, and where one cannot end on another.
     """
-    cut = [cut_for(path, sizes, strips) for path in paths(chains, sizes)]
+    fitting = np.ones(len(sizes), dtype=bool) if needed is None else needed
+    cut = [cut_for(path, sizes, strips, fitting) for path in paths(chains, sizes)]
     laid = [path for path, _ in cut]
     shapes = [_Shape.of(path) for path in laid]
     shapes = [shape.ended(path, laid, shapes) for shape, path in zip(shapes, laid, strict=True)]

@@ -40,11 +40,11 @@ class _Mark:
     """(S,), m from the start of the wall."""
 
 
-def cut_for(path: Path, sizes: Array, strips: Sequence[Strip]) -> tuple[Path, list[list[Cut]]]:
+def cut_for(path: Path, sizes: Array, strips: Sequence[Strip], needed: NDArray[np.bool_]) -> tuple[Path, list[list[Cut]]]:
     """The path, and for each of its pieces the cuts, ascending; the first, at its start, tells what strips the piece begins in.
 
     A strip keeps its width at every size. The corners of a smooth wall follow its edges, along the wall's own line, so that the
-    same corners lie between them at every size.
+    same corners lie between them at every size. Where it is not ``needed`` (S,) and does not fit, it is narrower as the section is.
     """
     found = [[Cut(np.zeros(len(sizes)), frozenset())] for _ in path.walls]
     for wall in dict.fromkeys(strip.wall for strip in strips if strip.wall in path.walls):
@@ -52,16 +52,19 @@ def cut_for(path: Path, sizes: Array, strips: Sequence[Strip]) -> tuple[Path, li
         if pieces[-1] - pieces[0] + 1 != len(pieces):
             raise Refused("wall", wall, "a wall of one part, for patches to lie on")
         own = sorted({strip for strip in strips if strip.wall == wall}, key=lambda strip: (strip.width, strip.offset))
-        path = _divide(found, path, pieces, sizes, own)
+        path = _divide(found, path, pieces, sizes, own, needed)
     return path, found
 
 
-def _divide(found: list[list[Cut]], path: Path, pieces: list[int], sizes: Array, strips: Sequence[Strip]) -> Path:
+def _divide(
+    found: list[list[Cut]], path: Path, pieces: list[int], sizes: Array, strips: Sequence[Strip], needed: NDArray[np.bool_]
+) -> Path:
     """Put the cuts of one wall's strips where they belong; the path with corners that follow."""
     ends = _ends(path, pieces)
     total = ends[:, -1]
     marks = sorted((mark for strip in strips for mark in _marks(total, sizes, strip)), key=lambda mark: float(mark.level[0]))
     if len(sizes) > 1 and len(pieces) > 1 and marks:
+        marks = _fitted(path, pieces, ends, marks, needed)
         path, ends, marks = _following(path, pieces, ends, marks)
     under = frozenset(strip for strip in strips if _reaches_start(total, sizes, strip))
     near = WHOLE * total[0]
@@ -111,14 +114,26 @@ def _margins(total: Array, sizes: Array, strip: Strip) -> tuple[Array, Array]:
     return 0.5 * total - half + offset, 0.5 * total - half - offset
 
 
+def _fitted(path: Path, pieces: list[int], ends: Array, marks: list[_Mark], needed: NDArray[np.bool_]) -> list[_Mark]:
+    """Marks where what is fixed along a wall leaves them room; ``ValueError`` where it does not at a size that is ``needed``."""
+    fixed = ends[:, _fixed(path, pieces)]
+    levels = np.stack([mark.level for mark in marks], axis=1)
+    order = np.argsort(np.concatenate([fixed, levels], axis=1)[0], kind="stable")
+    steps = np.diff(np.concatenate([fixed, levels], axis=1)[:, order], axis=1)
+    tight = np.any(steps < -WHOLE * ends[:, -1:], axis=1)
+    if np.any(tight & needed):
+        raise _refused(marks[0], path.walls[pieces[0]])
+    for row in np.flatnonzero(tight):
+        levels[row] = np.interp(levels[0], fixed[0], fixed[row])
+    return [replace(mark, level=level) for mark, level in zip(marks, levels.T, strict=True)]
+
+
 def _following(path: Path, pieces: list[int], ends: Array, marks: list[_Mark]) -> tuple[Path, Array, list[_Mark]]:
     """The path with smooth corners moved along one wall as the strips' edges move, and the edges' places along it."""
     fixed = _fixed(path, pieces)
     knots = np.concatenate([ends[:, fixed], np.stack([mark.level for mark in marks], axis=1)], axis=1)
     order = np.argsort(knots[0], kind="stable")
     knots = knots[:, order]
-    if np.any(np.diff(knots, axis=1) < -WHOLE * ends[:, -1:]):
-        raise _refused(marks[0], path.walls[pieces[0]])
     moved = np.stack([np.interp(ends[0], knots[0], row) for row in knots])
     moved[:, fixed] = ends[:, fixed]
     points = path.points.copy()

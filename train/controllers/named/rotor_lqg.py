@@ -9,5 +9,5 @@ TIER = 0
 
 def build(design: Design) -> Controller:
     """Tuned to the speed of the design; the lasting load also takes up what is slow in turbulence."""
-    loads = (RotorHarmonics(design.config.speed), PersistentLoad())
+    loads = (RotorHarmonics(design.blade_config("rotor-lqg").speed), PersistentLoad())
     return reference_lqg(design.full_plant, load=loads, name="LQG with rotor harmonics")

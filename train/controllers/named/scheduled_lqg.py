@@ -16,5 +16,5 @@ speed's own optimum at most."""
 
 def build(prior: Prior) -> Controller:
     """An LQG of all that is known of the blade for each of seven speeds, mixed in between."""
-    config = prior.design.config
+    config = prior.design.blade_config("scheduled-lqg")
     return scheduled_lqg_for(config, RANGE * config.speed, full=True, rate_weight=RATE_WEIGHT)

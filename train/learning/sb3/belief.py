@@ -25,6 +25,7 @@ from beamenv.configuration import Refused
 from beamenv.plant.hold import hold
 from beamenv.plant.plant import Plant, drive_limit
 from train.controllers.belief_policy import FILTER, corrected
+from train.learning.sb3.typical import shown_states
 
 Array = NDArray[Any]
 
@@ -47,16 +48,17 @@ class Belief(NamedTuple):
 def design_belief(design: Design, modes: int) -> Belief:
     """Of the design blade's full plant under white loads and ``PersistentLoad()``, the slowest ``modes`` of it shown.
 
-    ``ValueError`` where the plant has no such filter, and for more modes than it has.
+    Of a model in coordinates of its own all states are shown. ``ValueError`` where the plant has no such filter, and for more modes
+    than it has.
     """
     plant, load = design.full_plant, PersistentLoad()
     held = sampled_with_loads(plant, load)
     full_scale, modal, n = plant.sensor_full_scale, plant.blade_states, len(held.A)
-    if modes > modal // 2:
+    if plant.in_energy_coordinates and modes > modal // 2:
         raise Refused("modes", modes, f"at most the {modal // 2} of the design")
     noise = held.disturbance_input @ held.process_noise @ held.disturbance_input.T
     size = np.sqrt(np.diag(solve_discrete_lyapunov(held.A, noise))[:modal].mean())
-    kept = [*range(modes), *range(modal // 2, modal // 2 + modes), n - 2, n - 1]
+    kept = [*shown_states(plant, modes), *range(n - plant.loads, n)]
     shown = np.diag(np.repeat([1.0 / size, 1.0 / load.magnitude], [modal, n - modal]))[:, kept]
     gain = optimal_filter(plant, held).gain * full_scale
     parts = held.A.T, (held.B * drive_limit(plant)).T, gain.T, held.C.T / full_scale, shown
@@ -78,7 +80,7 @@ def oscillator_bank(plant: Plant) -> Belief:
     Nothing of the blade is in it. ẋ₁ = 2ζω (y − x₁) − ω x₂, ẋ₂ = ω x₁; the newest reading is held over the interval that it ends.
     """
     p, m = len(plant.C), plant.B.shape[1]
-    omega = 2.0 * np.pi * np.array(OSCILLATORS)
+    omega = 2.0 * np.pi * np.array(OSCILLATORS) / plant.time_scale
     blocks = [np.array([[-2.0 * OSCILLATOR_DAMPING * w, -w], [w, 0.0]]) for w in omega]
     held, driven = hold(
         block_diag(*blocks), np.ravel([(2.0 * OSCILLATOR_DAMPING * w, 0.0) for w in omega])[:, None], plant.control_interval

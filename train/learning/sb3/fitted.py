@@ -18,7 +18,7 @@ from beamenv.plant.hold import hold
 from beamenv.plant.plant import Plant
 from beamenv.task import Task
 from train.learning.sb3.belief import OSCILLATOR_DAMPING, Belief
-from train.learning.sb3.typical import LOAD_UNIT, typical_state
+from train.learning.sb3.typical import load_unit, shown_states, typical_state
 
 Array = NDArray[Any]
 
@@ -33,15 +33,15 @@ RIDGE = 1e-5
 
 
 def two_sided_bank(plant: Plant, modes: int) -> Belief:
-    """Oscillators for readings and voltages alike, n of them, of which nothing is shown yet: (n, 2 ``modes`` + 2) zeros."""
+    """Oscillators for readings and voltages alike, n of them, of which nothing is shown yet: (n, f) zeros of modes and loads."""
     p, m = len(plant.C), plant.B.shape[1]
-    omega = 2.0 * np.pi * np.array(FREQUENCIES)
+    omega = 2.0 * np.pi * np.array(FREQUENCIES) / plant.time_scale
     blocks = [np.array([[-2.0 * OSCILLATOR_DAMPING * w, -w], [w, 0.0]]) for w in omega]
     entries = np.ravel([(2.0 * OSCILLATOR_DAMPING * w, 0.0) for w in omega])[:, None]
     held, driven = hold(block_diag(*blocks), entries, plant.control_interval)
     each = np.kron(np.eye(p + m), driven.T)
-    n = each.shape[1]
-    parts = np.kron(np.eye(p + m), held).T, each[p:], each[:p], np.zeros((n, p)), np.zeros((n, 2 * modes + 2))
+    n, shown = each.shape[1], len(shown_states(plant, modes)) + plant.disturbance_input.shape[1]
+    parts = np.kron(np.eye(p + m), held).T, each[p:], each[:p], np.zeros((n, p)), np.zeros((n, shown))
     return Belief(*(np.ascontiguousarray(part, dtype=np.float32) for part in parts))
 
 
@@ -49,15 +49,14 @@ class Regression:
     """Sums over a batch from which the estimate is fitted: displacements and velocities of the slowest ``modes``, and the load."""
 
     def __init__(self, task: Task, modes: int) -> None:
-        half = task.plant.blade_states // 2
-        self._columns = [*range(modes), *range(half, half + modes)]
+        self._columns = shown_states(task.plant, modes)
         size = np.sqrt((typical_state(task)[self._columns] ** 2).mean())
-        self._unit = np.repeat([size, float(LOAD_UNIT)], [2 * modes, 2])
+        self._unit = np.concatenate([np.full(len(self._columns), size), load_unit(task.plant).astype(np.float64)])
         self._latest: list[Array] = []
         self._sums: list[Array] = []
 
     def add(self, oscillators: Array, state: Array, loads: Array) -> None:
-        """One instant of N blades: (N, n) oscillators, (N, …) true states, (N, 2) coming loads."""
+        """One instant of N blades: (N, n) oscillators, (N, …) true states, (N, k) coming loads."""
         numbers, targets = oscillators.astype(np.float64), np.hstack([state[:, self._columns], loads]) / self._unit
         parts = [numbers.T @ numbers, numbers.T @ targets]
         self._latest = [old + new for old, new in zip(self._latest, parts, strict=True)] if self._latest else parts

@@ -31,7 +31,7 @@ class SideBySide(VecEnv):
         """Whether observations have the state."""
         plants = [batch.blades.plant for batch in self.batches if self._told]
         self._half = max((plant.blade_states // 2 for plant in plants), default=0)
-        electronic = max((plant.electronic_states for plant in plants), default=0)
+        electronic = max((len(plant.A) - 2 * (plant.blade_states // 2) for plant in plants), default=0)
         self._last = self.seen + 2 * self._half + electronic
         width = self._last + len(self.batches)
         count = sum(batch.num_envs for batch in self.batches)

@@ -16,7 +16,7 @@ from beamenv.task import Task
 from train.learning.sb3.belief import Belief, VectorBelief
 from train.learning.sb3.fitted import Regression
 from train.learning.sb3.twins import Twins
-from train.learning.sb3.typical import LOAD_UNIT, typical_state
+from train.learning.sb3.typical import load_unit, typical_state
 
 Array = NDArray[Any]
 
@@ -37,7 +37,7 @@ class TrainingVecEnv(BladeVecEnv):
     the readings, which are currents, less than jumps do.
 
     With ``shows_state`` the true state follows in each observation, in units of what is typical, for a critic; with ``shows_loads``
-    the line loads (2) of the coming interval after it, in units of ``LOAD_UNIT``.
+    the loads (k) of the coming interval after it, in units of ``load_unit``.
 
     ``reference``, J s, is the cost of an episode without control. If it is given, rewards are in its units, so that those of
     scenarios of very different loads have one size, and ``relative_cost`` is known.
@@ -81,7 +81,8 @@ class TrainingVecEnv(BladeVecEnv):
         self._regression = Regression(self.blades.task, fitted) if fitted else None
         self._limits = normalised(self.blades.plant).voltage_limits
         self._voltages: Array = np.zeros((count, *(actions.shape or ())))
-        width = self.seen + (0 if self._state_gain is None else len(self._state_gain) + 2 * shows_loads)
+        self._load_unit = load_unit(self.blades.plant)
+        width = self.seen + (0 if self._state_gain is None else len(self._state_gain) + len(self._load_unit) * shows_loads)
         self.observation_space = Box(-np.inf, np.inf, (width,), np.float32)
         self.action_space = Box(-1.0, 1.0, actions.shape, np.float32)
         self._scale = reward_scale(self.blades.plant)
@@ -147,7 +148,7 @@ class TrainingVecEnv(BladeVecEnv):
             return windows
         self._states = (self.blades.state * self._state_gain).astype(np.float32)
         if self._shows_loads:
-            self._states = np.hstack([self._states, self.blades.coming_loads.astype(np.float32) / LOAD_UNIT])
+            self._states = np.hstack([self._states, self.blades.coming_loads.astype(np.float32) / self._load_unit])
         return np.concatenate([windows, self._states], axis=1)
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:

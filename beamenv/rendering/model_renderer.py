@@ -1,0 +1,108 @@
+"""Draws an episode of a model of one's own, which has no shape: its time histories."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.plant.plant import drive_limit
+from beamenv.rendering.canvas import Canvas, Frame
+from beamenv.rendering.charts import Chart, round_above
+from beamenv.rendering.history import WINDOW, History, Instant
+from beamenv.rendering.installed import check_installed
+from beamenv.rendering.palette import INK, QUIET, line_colours
+from beamenv.rendering.window import Window
+from beamenv.simulation.blades import reward_scale
+from beamenv.task import Task
+
+READINGS = Chart("sensor readings, full scale", Frame(60.0, 84.0, 400.0, 170.0), -1.0, 1.0)
+DISPLACEMENTS = Chart("displacement, m", Frame(60.0, 310.0, 400.0, 170.0), -1.0, 1.0)
+VOLTAGES = Chart("voltage, V", Frame(540.0, 84.0, 400.0, 170.0), -1.0, 1.0)
+COST = Chart("running cost J", Frame(540.0, 310.0, 400.0, 170.0), 0.0, 1.0)
+CLOCK = Frame(20.0, 14.0, 400.0, 26.0)
+POINTS = 401
+"""A curve is drawn through so many instants at most: more than it has pixels."""
+
+
+class ModelRenderer:
+    """Draws a model's episode as ``BladeRenderer`` does a blade's: ``begin``, ``record`` after every step, ``draw``, ``close``."""
+
+    def __init__(self, task: Task, rate: float | None = None) -> None:
+        check_installed()
+        self._task, self._rate = task, rate
+        plant = task.plant
+        window = float(f"{WINDOW * plant.time_scale:.1g}")
+        usual_cost = 0.1 * window / plant.control_interval * reward_scale(plant)
+        self._history = History(plant.control_interval, window)
+        self._stride = -(-(round(window / plant.control_interval) + 1) // POINTS)
+        readings, displacements, voltages, cost = (
+            replace(each, window=window) for each in (READINGS, DISPLACEMENTS, VOLTAGES, COST)
+        )
+        self._charts = [readings, voltages.up_to(float(drive_limit(plant).max())), cost.up_to(round_above(usual_cost))]
+        self._charts += [displacements.up_to(1e-12)] if len(plant.tip_displacement) else []
+        self._titles = [each.name for each in plant.sensors]
+        self._canvas = Canvas()
+        self._window = None if rate is None else Window("beamenv", rate)
+        self._lay_out()
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        return self._task, self._rate, self._history
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        """Surfaces and windows are made anew: they cannot be copied."""
+        task, rate, history = state
+        self.__init__(task, rate)  # type: ignore[misc]
+        self._history = history
+
+    def begin(self, first: Instant) -> None:
+        """Start an episode."""
+        self._history.begin(first)
+        self._show()
+
+    def record(self, instant: Instant) -> None:
+        """Take down what one control interval brought."""
+        self._history.record(instant)
+        self._show()
+
+    def draw(self) -> NDArray[np.uint8]:
+        """The picture of the last instant recorded: (540, 960, 3)."""
+        self._paint()
+        return self._canvas.pixels()
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+
+    def _show(self) -> None:
+        if self._window is not None:
+            self._paint()
+            self._window.show(self._canvas.picture)
+
+    def _lay_out(self) -> None:
+        self._canvas.clear()
+        self._canvas.write(f"sensors: {', '.join(self._titles)}", 24.0, 52.0, QUIET, "note")
+        for chart in self._charts:
+            chart.draw_axes(self._canvas, dated=chart.place.top > VOLTAGES.place.top or len(self._charts) == 3)
+        self._canvas.keep()
+
+    def _paint(self) -> None:
+        history, newest_first = self._history, slice(None, None, -self._stride)
+        series = [history.readings, history.volts, history.costs[:, None], history.tips]
+        shown = [each[newest_first] for each in series[: len(self._charts)]]
+        charts = [
+            chart.reaching(1.02 * float(np.abs(each).max(initial=0.0))) for chart, each in zip(self._charts, shown, strict=True)
+        ]
+        if charts != self._charts:
+            self._charts = charts
+            self._lay_out()
+        for chart, values in zip(self._charts, shown, strict=True):
+            colours = line_colours(values.shape[1]) if values.shape[1] > 1 else [INK]
+            labels = [f"{k + 1}" for k in range(values.shape[1])] if values.shape[1] > 1 else [f"{values[0, 0]:.3g}"]
+            chart.draw(self._canvas, history.ages[newest_first], values, colours, labels)
+        self._canvas.open(CLOCK)
+        self._canvas.write(f"t = {history.time:.4g} s", 24.0, 28.0, INK, "title")
+        self._canvas.develop(CLOCK)
