@@ -31,6 +31,8 @@ BLOCKS = 50
 """Into which those rows are cut for the standard error, long against what a row remembers."""
 STEPS = 4
 """Of prediction error after a pole was taken away."""
+LAST_STEPS, LAST_GAIN = 15, 0.002
+"""Of prediction error once the order is chosen: ten times as far as while it is sought."""
 REFUSALS = 6
 """How many poles in turn must be missed before the search ends."""
 
@@ -117,6 +119,14 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
         else:
             passed += 1
     return Choice(now, tuple(tried))
+
+
+def settled(choice: Choice, spectra: Spectra, everything: Measurement, learned: int) -> Choice:
+    """The choice with its model refined further, unless rows held back are certainly predicted worse by that."""
+    now = choice.refined
+    further = refined(spectra, now.model, now.start, steps=LAST_STEPS, enough=LAST_GAIN)
+    before, after = (_losses(each.model, everything, learned)[0] for each in (now, further))
+    return replace(choice, refined=further) if _in_standard_errors(after - before) < CERTAIN else choice
 
 
 def _next(found: Refined, least: int, passed: int, together: int) -> list[int]:
