@@ -16,7 +16,7 @@ from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.scenarios.tables import Acquisition, Drive, Failures, PlantVariation, Rotor
-from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection, RotatingBeam
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.section.section import Section
 from tests.fuzz import small
 from tests.fuzz.meaning import (
@@ -136,13 +136,6 @@ DOORS = [
         {"default": maybe(instance(tuple)), "walls": instance(dict)},
         lambda: {"default": LAYUP.default, "walls": {}},
         plain=False,
-    ),
-    constructor(BoxSection, {"width": 0.254, "depth": 0.0508, "thickness": 0.01016}, ("thickness",)),
-    constructor(
-        PolygonSection,
-        {"corners": [[0.0, 0.0], [0.2, 0.0], [0.1, 0.1]], "edge_walls": ["a", "b", "c"], "thickness": 0.001},
-        ("corners", "edge_walls"),
-        corners=CORNERS,
     ),
     constructor(
         RotatingBeam,
