@@ -19,6 +19,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
 from beamenv.blade.held_load import under_reference
+from beamenv.blade.instruments import in_range
 from beamenv.blade.model_blade import ModelBlade, PlantArgument
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
@@ -196,6 +197,7 @@ def resolve_task(
     true = _alive(_BLADES, true)
     _check_failures(chosen, true.plant)
     _check_loads(chosen, true)
+    _check_sensors(chosen, config)
     task = Task(
         blade=true,
         design_blade=true if designed == config else _alive(_BLADES, _same_electronics(designed, true)),
@@ -260,6 +262,13 @@ def _check_failures(chosen: Scenario, plant: Plant) -> None:
             raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
 
 
+def _check_sensors(chosen: Scenario, config: BladeConfig) -> None:
+    """``ValueError`` for a run-up of a blade with sensors that are listed."""
+    if chosen.plants.spin_up is not None and config.sensors:
+        kinds = [each.kind for each in config.sensors]
+        raise Refused("blade.sensors", kinds, "empty, the currents of patches, where the rotor runs up")
+
+
 def _check_loads(chosen: Scenario, true: Blade, path: str = "scenario") -> None:
     """``ValueError`` for loads that cannot be shown at the blade's control interval."""
     interval, lowest = true.config.control_interval, float(true.plant.natural_frequencies[0])
@@ -290,8 +299,8 @@ def _same_electronics(design: BladeConfig, true: Blade) -> Blade:
     for name in ("control_interval", "voltage_limits"):
         if getattr(design, name) != getattr(true.config, name):
             raise Refused(f"design.{name}", getattr(design, name), f"the true blade's, {getattr(true.config, name)!r}")
-    if design.sensor_full_scale is None:
-        design = replace(design, sensor_full_scale=float(true.plant.sensor_full_scale[0]))
+    if design.sensors == true.config.sensors and (design.sensors or design.sensor_full_scale is None):
+        design = in_range(design, true.plant.sensor_full_scale)
     if design.reference_load is None:
         design = under_reference(design, true.reference_load)
     designed = true.as_beam.changed(design)

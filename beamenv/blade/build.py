@@ -11,13 +11,16 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.blade.held_load import own_reference, reference_of, under_reference
+from beamenv.blade.instruments import in_range
 from beamenv.configuration import Count, Instance, Refused, checked
 from beamenv.configuration.read_only import sealed_property
-from beamenv.patches import PatchResponse, local_response
+from beamenv.patches import PatchResponse, actuation, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
 from beamenv.plant.signals import REFERENCE_LOAD
+from beamenv.sensors.readings import load_feedthrough, rate_residual, with_readings
+from beamenv.sensors.rows import OnBlade, SensorRows, sensor_rows
 from beamenv.structure import RotatingBeam
 from beamenv.structure.scale import OUT_OF_SCALE
 
@@ -71,12 +74,12 @@ class Blade:
     def reference_load(self) -> float:
         """N/m: what stands for 30 N/m of a scenario."""
         known = own_reference(self.config)
-        return reference_of(self._reduced(self.modal, 1.0, REFERENCE_LOAD)) if known is None else known
+        return reference_of(self._currents(self.modal, 1.0, REFERENCE_LOAD)) if known is None else known
 
     @sealed_property
     def plant(self) -> Plant:
         """Its reduced plant, that controllers are designed for: ``modes`` modes, voltages and currents as they are."""
-        return self._reduced(self.modal, self.config.sensor_full_scale)
+        return self._reduced(self.modal)
 
     @sealed_property
     def true_modal(self) -> ModalModel:
@@ -100,7 +103,7 @@ class Blade:
         config, plant = self.config, self.plant
         if _is_thesis(config) and config.truth_modes in (None, config.modes):
             return plant
-        return self._behind_electronics(self._reduced(self.true_modal, float(plant.sensor_full_scale[0])))
+        return self._behind_electronics(self._reduced(self.true_modal, plant.sensor_full_scale))
 
     def _behind_electronics(self, bare: Plant) -> Plant:
         """The plant behind amplifiers and filters, with the static share of modes that it leaves out; none of it in the thesis."""
@@ -108,14 +111,15 @@ class Blade:
         if _is_thesis(config):
             return bare
         electronics, rate = config.electronics, 2.0 * np.pi / config.control_interval
-        bandwidth, cutoff = electronics.amplifier_bandwidth, electronics.filter_cutoff
+        bandwidth, cutoff, rows = electronics.amplifier_bandwidth, electronics.filter_cutoff, self.sensor_rows
         return behind_electronics(
             bare,
-            charge_residual=self._charge_residual(),
+            charge_residual=self._charge_residual() if rows is None else rate_residual(rows, self.true_modal, self.full.forces),
             tip_residual=self._residual(self.full.tip),
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
             filter_cutoff=None if cutoff is None else cutoff * rate,
+            load_feedthrough=None if rows is None else load_feedthrough(rows, self.true_modal, self.full.line_load),
         )
 
     @sealed_property
@@ -143,13 +147,42 @@ class Blade:
         shapes = modal.mode_shapes
         return static_residual(static, rows @ shapes, shapes.T @ self.full.forces, modal.natural_frequencies)
 
-    def _reduced(self, modal: ModalModel, sensor_full_scale: float | None, reference_load: float | None = None) -> Plant:
-        config = self.config
-        reference = self.reference_load if reference_load is None else reference_load
+    @sealed_property
+    def sensor_rows(self) -> SensorRows | None:
+        """What the sensors that are listed feel; None where the currents of all patches are read."""
+        config, beam = self.config, self.beam
+        if not config.sensors:
+            return None
+        share: Array = np.linalg.solve(beam.at(0.0).stiffness, actuation(beam, config.patches)).astype(np.float64)
+        charges = self.full.charges, self._static_charges()
+        return sensor_rows(OnBlade(beam, config.patches, config.speed, *charges, self._static, share), config.sensors)
+
+    def _reduced(self, modal: ModalModel, full_scale: Array | None = None) -> Plant:
+        """With what is read; ``full_scale`` (p,) where it is known already, as that of the design plant."""
+        config, rows = self.config, self.sensor_rows
+        if rows is None:
+            return self._currents(modal, config.sensor_full_scale if full_scale is None else full_scale, self.reference_load)
+        return with_readings(
+            self._currents(modal, 1.0, self.reference_load),
+            rows,
+            modal,
+            sensors=config.sensors,
+            forces=self.full.forces,
+            line_load=self.full.line_load,
+            noise=config.sensor_noise_fraction,
+            current_range=config.sensor_full_scale,
+            full_scale=full_scale,
+            filtered=full_scale is not None,
+        )
+
+    def _currents(self, modal: ModalModel, sensor_full_scale: float | Array | None, reference_load: float) -> Plant:
+        config, full = self.config, self.full
+        if not len(full.charges):  # a plant shows something, which sensors that are listed replace
+            full = replace(full, charges=np.zeros((1, full.charges.shape[1])))
         try:
             plant = reduced_plant(
                 modal,
-                self.full,
+                full,
                 damping_ratio=config.damping_ratio,
                 effort_weight=config.effort_weight,
                 white_load=config.white_load,
@@ -157,7 +190,7 @@ class Blade:
                 sensor_full_scale=sensor_full_scale,
                 voltage_limits=config.voltage_limits,
                 control_interval=config.control_interval,
-                reference_load=reference,
+                reference_load=reference_load,
             )
         except OverflowError:
             raise ValueError(f"blade cannot be computed: {OUT_OF_SCALE}") from None
@@ -182,7 +215,7 @@ class Blade:
 
     def with_fixed_range(self) -> Blade:
         """The blade behind the data acquisition and under the loads that fit it now: one made of its configuration keeps them."""
-        config = replace(self.config, sensor_full_scale=float(self.plant.sensor_full_scale[0]))
+        config = in_range(self.config, self.plant.sensor_full_scale)
         return self.changed(under_reference(config, self.reference_load))
 
     def with_fixed_order(self) -> Blade:
@@ -214,6 +247,7 @@ _MADE_OF = {
     "modal": (*_BEAM, "speed", "modes", "gyroscopic"),
     "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
     "full": (*_BEAM, "speed"),
+    "sensor_rows": (*_BEAM, "speed", "sensors"),
 }
 """The fields of a configuration that each part depends on."""
 

@@ -10,11 +10,25 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
-from beamenv.configuration import Choice, Count, Flag, Instance, Number, Positive, Refused, Variant, Whole, checked, configuration
+from beamenv.configuration import (
+    Choice,
+    Count,
+    Flag,
+    Instance,
+    Number,
+    Positive,
+    Refused,
+    Variant,
+    Variants,
+    Whole,
+    checked,
+    configuration,
+)
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
 from beamenv.plant.limits import VOLTAGES
+from beamenv.sensors.kinds import SENSORS, Accelerometer, Sensor
 from beamenv.structure import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
@@ -174,6 +188,9 @@ class BladeConfig:
     the blade's largest current after a sudden reference load."""
     voltage_limits: Annotated[tuple[float, float], VOLTAGES] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
+    sensors: Annotated[tuple[Sensor, ...], Variants("kind", SENSORS)] = ()
+    """What is read, in this order: tables with a ``kind`` and its fields (``beamenv.sensors.kinds``). Empty: the currents of all
+    sensor patches."""
     electronics: ElectronicsConfig = field(default_factory=ElectronicsConfig)
     truth_modes: Annotated[int | None, Count()] = None
     """Modes of the plant that moves; None: every one up to the Nyquist frequency π/``control_interval``, and no fewer than
@@ -186,3 +203,11 @@ class BladeConfig:
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")
+        if self.sensors and self.model == "thesis":
+            raise Refused(
+                "sensors", [each.kind for each in self.sensors], "empty with model = 'thesis', which reads currents alone"
+            )
+        if not self.sensors and not self.patches.groups("sensors"):
+            raise Refused("sensors", [], "a list of one or more where no patches are sensors")
+        if any(isinstance(each, Accelerometer) for each in self.sensors) and self.electronics.filter_cutoff is None:
+            raise Refused("electronics.filter_cutoff", None, "a number where accelerometers, which feel loads at once, are read")

@@ -128,6 +128,8 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
     there = len(model.natural_frequencies)
     if modes is not None and modes > there:
         raise Refused("scenario.plants.modes", modes, f"None or at most the {there} that the plant {source!r} has")
+    if config.sensors:
+        raise Refused("blade.sensors", [each.kind for each in config.sensors], f"empty: the plant {source!r} has currents alone")
     patches = config.patches
     wanted = patches.channels("actuators"), patches.channels("sensors")
     has = model.actuation.shape[1], len(model.charges)

@@ -14,7 +14,7 @@ The rules, the same for every argument, dictionary and file:
 - What is refused raises a ``ValueError`` of one sentence: the argument with its path, its value, what is allowed.
 """
 
-from beamenv.configuration.composite import Items, Variant
+from beamenv.configuration.composite import Items, Variant, Variants
 from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
@@ -42,6 +42,7 @@ __all__ = [
     "Text",
     "Texts",
     "Variant",
+    "Variants",
     "Whole",
     "checked",
     "checked_table",

@@ -1,4 +1,4 @@
-"""Arguments made of objects: one of several kinds of object, told apart by a field, and lists of objects of a kind."""
+"""Arguments made of objects: one of several kinds of object, told apart by a field, and lists of objects."""
 
 from __future__ import annotations
 
@@ -37,6 +37,26 @@ class Variant(Kind):
         tables = [_whole(name, each, self.key, handler) for name, each in self.classes.items()]
         optional = schema["type"] == "custom-error" and schema["schema"]["type"] == "nullable"
         return {"anyOf": [*tables, {"type": "null"}] if optional else tables}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Variants(Variant):
+    """A list of objects, each of one of several classes; tables may stand for them, told apart by ``key``."""
+
+    @property
+    def allowed(self) -> str:
+        """A list."""
+        return f"a list, each of it {Variant.allowed.fget(self)}"  # type: ignore[attr-defined]
+
+    def core(self) -> CoreSchema:
+        """A tuple of them."""
+        each = core_schema.union_schema([core_schema.is_instance_schema(each) for each in self.classes.values()])
+        several = core_schema.tuple_variable_schema(each, strict=True)
+        return core_schema.no_info_before_validator_function(_as_tuple, several)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
+        tables = [_whole(name, each, self.key, handler) for name, each in self.classes.items()]
+        return {"type": "array", "items": {"anyOf": tables}}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from pydantic.dataclasses import dataclass
 from pydantic_core import ArgsKwargs, SchemaValidator, ValidationError
 from typing_extensions import dataclass_transform
 
-from beamenv.configuration.composite import Items, Variant
+from beamenv.configuration.composite import Items, Variant, Variants
 from beamenv.configuration.kinds import Choice, Kind, Table
 from beamenv.configuration.sentence import Refused, an, sentence, unknown_field
 
@@ -95,7 +95,7 @@ def made(cls: type[T], given: Any, path: str) -> T:
 def _read_field(cls: Any, name: str, before: Any, value: Any, path: str) -> Any:
     """What a field is to be, given a value or a table in its place."""
     kind = next((kind for kind in cls.__pydantic_fields__[name].metadata if isinstance(kind, (Variant, Items))), None)
-    if isinstance(kind, Items):
+    if isinstance(kind, (Items, Variants)):
         return _items(kind, value, path)
     if isinstance(kind, Variant):
         return _variant(kind, before, value, path) if isinstance(value, Mapping) else value
@@ -104,12 +104,18 @@ def _read_field(cls: Any, name: str, before: Any, value: Any, path: str) -> Any:
     return read(stood, value, path) if table and is_dataclass(stood) else value
 
 
-def _items(kind: Items, value: Any, path: str) -> Any:
+def _items(kind: Items | Variants, value: Any, path: str) -> Any:
     """A list with objects in place of tables; one table is a list of it."""
     listed = [value] if isinstance(value, Mapping) else value
     if not isinstance(listed, (list, tuple)) or not any(isinstance(each, Mapping) for each in listed):
         return value
-    return [made(kind.of, each, f"{path}[{k}]") for k, each in enumerate(listed)]
+    return [_item(kind, each, f"{path}[{k}]") for k, each in enumerate(listed)]
+
+
+def _item(kind: Items | Variants, value: Any, path: str) -> Any:
+    if isinstance(kind, Items):
+        return made(kind.of, value, path)
+    return _variant(kind, None, value, path) if isinstance(value, Mapping) else value
 
 
 def _variant(kind: Variant, before: Any, table: Mapping[str, Any], path: str) -> Any:

@@ -32,6 +32,9 @@ Groups = tuple[PatchGroup, ...]
 class PatchesOrGroups(Items):
     """A number of patches, their positions, or groups of patches."""
 
+    least: int = 1
+    """How many groups."""
+
     @property
     def allowed(self) -> str:
         """All three."""
@@ -39,7 +42,7 @@ class PatchesOrGroups(Items):
 
     def core(self) -> CoreSchema:
         """An integer, a tuple of floats, or one of groups."""
-        several = core_schema.tuple_variable_schema(core_schema.is_instance_schema(self.of), min_length=1, strict=True)
+        several = core_schema.tuple_variable_schema(core_schema.is_instance_schema(self.of), min_length=self.least, strict=True)
         groups = core_schema.no_info_before_validator_function(_as_groups, several)
         return core_schema.union_schema([groups, Patches().core()], mode="left_to_right")
 
@@ -48,7 +51,7 @@ class PatchesOrGroups(Items):
         return {"anyOf": [Patches().json(), {"type": "array", "items": {"type": "object"}}]}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> JsonSchema:
-        groups = {**Items.__get_pydantic_json_schema__(self, schema, handler), "minItems": 1}
+        groups = {**Items.__get_pydantic_json_schema__(self, schema, handler), "minItems": self.least}
         return {"anyOf": [Patches().json(), groups, groups["items"]]}
 
 
@@ -64,8 +67,8 @@ class PatchLayout:
 
     actuators: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup)] = 4
     """Root-side edges in m from the root, or a number of patches to be spaced equally over 0 … 0.7 L, or groups."""
-    sensors: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup)] = 4
-    """Likewise."""
+    sensors: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup, 0)] = 4
+    """Likewise; an empty list: none."""
     material: Annotated[str | PatchMaterial, Choice(PATCH_MATERIALS, PatchMaterial)] = "MFC"
     """Of patches that are in no group, as is what follows."""
     length: Annotated[float, Number(gt=0.0, unit="m")] = 0.085
@@ -80,7 +83,7 @@ class PatchLayout:
     def groups(self, side: Side) -> Groups:
         """The groups of one side."""
         given = self.actuators if side == "actuators" else self.sensors
-        if isinstance(given, tuple) and isinstance(given[0], PatchGroup):
+        if given == () or (isinstance(given, tuple) and isinstance(given[0], PatchGroup)):
             return given
         return (
             PatchGroup(
@@ -108,7 +111,7 @@ class PatchLayout:
     def only(self, side: Side) -> PatchGroup:
         """The one group of a side; ``ValueError`` where there are several."""
         groups = self.groups(side)
-        if len(groups) > 1:
+        if len(groups) != 1:
             raise ValueError(f"blade.patches.{side} has {len(groups)} groups, but must have one where patches are to be placed.")
         return groups[0]
 
@@ -142,7 +145,7 @@ class PatchLayout:
         """The layout with the patches of one side elsewhere (m): of several groups as many as those have, in their order."""
         own: Any = self.actuators if side == "actuators" else self.sensors
         given: Any = patches
-        if isinstance(own, tuple) and isinstance(own[0], PatchGroup):
+        if own == () or (isinstance(own, tuple) and isinstance(own[0], PatchGroup)):
             given = _moved(side, own, patches)
         return replace(self, actuators=given) if side == "actuators" else replace(self, sensors=given)
 

@@ -105,7 +105,8 @@ def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Arra
     """C_s: charge (C) of each sensor per generalised coordinate, (sensors, N); times q̇ it is the sensed current (Eq. 4.38)."""
     _check_parts(beam, layout)
     forces = [(group, _by_channel(_forces(beam, group, "sensors", speed), group)) for group in layout.groups("sensors")]
-    return np.vstack([group.patch.charge_per_reaction * force.T for group, force in forces])
+    charges = [group.patch.charge_per_reaction * force.T for group, force in forces]
+    return np.vstack([np.zeros((0, beam.space.size)), *charges])
 
 
 def _forces(beam: RotatingBeam, group: PatchGroup, side: Side, speed: float) -> Array:

@@ -54,14 +54,17 @@ def behind_electronics(
     amplifier: float | None,
     filter_order: int,
     filter_cutoff: float | None,
+    load_feedthrough: Array | None = None,
 ) -> Plant:
     """The plant of a blade alone with its amplifiers of the pole ``amplifier`` (rad/s) and its anti-aliasing filters, −3 dB at
-    ``filter_cutoff`` (rad/s); None leaves either out. Residuals (p, m), C per V, and (2, m), m per V.
+    ``filter_cutoff`` (rad/s); None leaves either out. Residuals (p, m), C per V, and (2, m), m per V. ``load_feedthrough`` (p, k)
+    is what enters the filters of loads at once, of accelerometers; without filters it is not shown.
     """
+    through = np.zeros((len(plant.C), plant.disturbance_input.shape[1])) if load_feedthrough is None else load_feedthrough
     residual = np.zeros_like(charge_residual) if filter_cutoff is None or amplifier is None else amplifier * charge_residual
     if amplifier is not None:
         plant = _behind_amplifiers(plant, residual, tip_residual, amplifier)
-    return plant if filter_cutoff is None else _behind_filters(plant, residual, *butterworth(filter_order, filter_cutoff))
+    return plant if filter_cutoff is None else _behind_filters(plant, residual, through, *butterworth(filter_order, filter_cutoff))
 
 
 def _behind_amplifiers(plant: Plant, residual: Array, tip_residual: Array, pole: float) -> Plant:
@@ -74,10 +77,11 @@ def _behind_amplifiers(plant: Plant, residual: Array, tip_residual: Array, pole:
         inputs=np.vstack([np.zeros_like(plant.B), pole * np.diag(1.0 / drive)]),
         outputs=np.hstack([plant.C, (plant.D - residual) * drive]),
         tip=tip_residual * drive,
+        loads=np.zeros((m, plant.disturbance_input.shape[1])),
     )
 
 
-def _behind_filters(plant: Plant, residual: Array, dynamics: Array, gain: Array) -> Plant:
+def _behind_filters(plant: Plant, residual: Array, through: Array, dynamics: Array, gain: Array) -> Plant:
     n, p, order, b = len(plant.A), len(plant.C), len(gain), plant.blade_states
     full_scale = plant.sensor_full_scale
     entered = np.kron(np.diag(1.0 / full_scale), gain[:, None])
@@ -91,11 +95,14 @@ def _behind_filters(plant: Plant, residual: Array, dynamics: Array, gain: Array)
         inputs=np.vstack([plant.B, entered @ (plant.D + residual)])[lying],
         outputs=np.hstack([np.zeros_like(plant.C), shown])[:, lying],
         tip=np.zeros((len(plant.tip_displacement), p * order)),
+        loads=entered @ through,
     )
 
 
-def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs: Array, tip: Array) -> Plant:
-    """The plant with further states, put before its own state ``at``, that are ``tip`` (2, k) displaced by and have no cost."""
+def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs: Array, tip: Array, loads: Array) -> Plant:
+    """The plant with further states, put before its own state ``at``, that ``tip`` (2, k) is displaced by, that ``loads``
+    drive and that have no cost.
+    """
     more, b = len(dynamics) - len(plant.A), plant.blade_states
     weight = np.zeros_like(dynamics)
     weight[:b, :b] = plant.state_weight[:b, :b]
@@ -103,14 +110,14 @@ def _enlarged(plant: Plant, at: int, *, dynamics: Array, inputs: Array, outputs:
     def widened(rows: Array, by: Array) -> Array:
         return sealed(np.hstack([rows[:, :at], by, rows[:, at:]]))
 
-    loads = plant.disturbance_input
+    own = plant.disturbance_input
     return replace(
         plant,
         A=sealed(dynamics),
         B=sealed(inputs),
         C=sealed(outputs),
         D=sealed(np.zeros_like(plant.D)),
-        disturbance_input=sealed(np.vstack([loads[:at], np.zeros((more, loads.shape[1])), loads[at:]])),
+        disturbance_input=sealed(np.vstack([own[:at], loads, own[at:]])),
         tip_displacement=widened(plant.tip_displacement, tip),
         strain=widened(plant.strain, np.zeros((len(plant.strain), more))),
         state_weight=sealed(weight),

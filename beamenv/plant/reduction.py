@@ -189,7 +189,7 @@ def reduced_plant(
     effort_weight: float,
     white_load: float,
     sensor_noise_fraction: float,
-    sensor_full_scale: float | None,
+    sensor_full_scale: float | Array | None,
     voltage_limits: tuple[float, float],
     control_interval: float,
     reference_load: float = REFERENCE_LOAD,
@@ -210,7 +210,7 @@ def reduced_plant(
     )
     if sensor_full_scale is None:
         sensor_full_scale = largest_current(blade, control_interval, reference_load)
-    full_scale = np.full(len(blade.output), sensor_full_scale)
+    full_scale = np.broadcast_to(np.asarray(sensor_full_scale, dtype=np.float64), (len(blade.output),)).copy()
     return Plant(
         A=blade.dynamics,
         B=blade.input,

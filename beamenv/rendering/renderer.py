@@ -19,6 +19,7 @@ from beamenv.rendering.installed import check_installed
 from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
 from beamenv.rendering.scene import Scene
 from beamenv.rendering.window import Window
+from beamenv.sensors.kinds import PatchSensor, Sensor
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 
@@ -48,6 +49,7 @@ class BladeRenderer:
         self._deformation = Deformation(task, self._scene.solid.stations)
         self._actuators = len(config.patches.actuator_positions(config.beam.length))
         self._walls = {side: _in_words([group.wall for group in config.patches.groups(side)]) for side in SIDES}
+        self._others = "; diamonds: " + _in_kinds(config.sensors) if self._scene.solid.places.points else ""
         self._limit = float(drive_limit(plant).max())
         self._colours = line_colours(plant.B.shape[1])
         usual_cost = 0.1 * WINDOW / config.control_interval * reward_scale(plant)
@@ -102,8 +104,9 @@ class BladeRenderer:
         canvas.clear()
         magnified = self._scene.solid.magnification
         canvas.write(f"deflection × {magnified:,.0f}   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
+        sensors = f"; sensors lie in {self._walls['sensors']} and are drawn below it" if self._walls["sensors"] else ""
         canvas.write(
-            f"actuators lie in {self._walls['actuators']}; sensors lie in {self._walls['sensors']} and are drawn below it",
+            f"actuators lie in {self._walls['actuators']}{sensors}{self._others}",
             24.0,
             68.0,
             QUIET,
@@ -137,7 +140,12 @@ class BladeRenderer:
         self._canvas.develop(CLOCK)
 
 
+def _in_kinds(sensors: Sequence[Sensor]) -> str:
+    """Say, strain-gauge, velocity."""
+    return ", ".join(dict.fromkeys(each.kind for each in sensors if not isinstance(each, PatchSensor)))
+
+
 def _in_words(walls: Sequence[str]) -> str:
-    """Say, the top wall."""
+    """Say, the top wall; nothing where there are none."""
     names = list(dict.fromkeys(walls))
-    return f"the {' and '.join(names)} wall{'s' if len(names) > 1 else ''}"
+    return "" if not names else f"the {' and '.join(names)} wall{'s' if len(names) > 1 else ''}"

@@ -39,6 +39,9 @@ HUB_LENGTH = 0.1
 """Share of the span that the hub is long, at most."""
 DARK = 0.7
 """Values of the colour scales beyond which white letters are read better."""
+POINT = 5.0
+"""Half width, px, of the diamond that is a sensor at a point."""
+DIAMOND = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 NARROW = 8.0
 """Height, px, below which a patch has no room for its number."""
 
@@ -100,11 +103,27 @@ class Scene:
         canvas.open(PLACE)
         pose = self.solid.pose(displacement)
         self._draw_leaders(canvas, pose)
-        self._draw_patches(canvas, pose.sensors[:, ::-1] + self._drop, colours_of(self._output_colours, outputs), outputs)
+        patches, points = self._read_by_patches(outputs), outputs[self.solid.places.of_points]
+        self._draw_patches(canvas, pose.sensors[:, ::-1] + self._drop, colours_of(self._output_colours, patches), patches)
         _draw_faces(canvas, [face for body in pose.bodies for face in self._seen([sides(body), body[-1:]], BODY, body.shape[1])])
         self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts)
+        self._draw_points(canvas, pose.points, colours_of(self._output_colours, points))
         _draw_faces(canvas, self._hub)
         canvas.develop(PLACE)
+
+    def _read_by_patches(self, outputs: Array) -> Array:
+        """(s,): 0 of a patch that is not read."""
+        channels = self.solid.places.of_patches
+        return np.where(channels < 0, 0.0, outputs[channels])
+
+    def _draw_points(self, canvas: Canvas, points: Array, colours: list[list[int]]) -> None:
+        """Diamonds where sensors sit that are no patches, seen through the blade."""
+        if not len(points):
+            return
+        middles, _ = self._camera.project(points)
+        for middle, colour in zip(middles, colours, strict=True):
+            canvas.polygon(middle + POINT * DIAMOND, colour)
+            canvas.line(middle + POINT * DIAMOND, INK, closed=True)
 
     def _draw_leaders(self, canvas: Canvas, pose: Pose) -> None:
         """From where sensors lie to where they are drawn."""
@@ -139,7 +158,8 @@ class Scene:
 
     def _shades(self, faces: Array, shade: Array, lit: Array) -> list[list[int]]:
         normals = np.cross(faces, np.roll(faces, -1, axis=1)).sum(axis=1)
-        brightness = 0.5 + 0.5 * (normals @ self._light) / np.linalg.norm(normals, axis=-1)
+        size = np.maximum(np.linalg.norm(normals, axis=-1), np.finfo(np.float64).tiny)  # of nothing between stations all but one
+        brightness = 0.5 + 0.5 * (normals @ self._light) / size
         colours: list[list[int]] = np.rint(shade + brightness[:, None] * (lit - shade)).astype(int).tolist()
         return colours
 

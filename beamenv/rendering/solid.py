@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
+from beamenv.blade.sensor_places import SensorPlaces
 from beamenv.blade.shape import bodies, magnification, patch, quadrilaterals
 from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import Plant
@@ -38,6 +39,8 @@ class Pose:
     """(a, 4, 3): corners, counter-clockwise from outside."""
     sensors: Array
     """(s, 4, 3), likewise."""
+    points: Array
+    """(k, 3): the sensors that are no patches."""
 
 
 class BladeSolid:
@@ -51,9 +54,12 @@ class BladeSolid:
         self.reference_deflection = reference_deflection(blade.plant)
         self.magnification = magnification(self.reference_deflection, SHOWN_DEFLECTION * beam.length)
         inlays = [[each for group in patches.groups(side) for each in group.inlays(side, beam.length)] for side in SIDES]
-        spans = [np.array([[each.start, each.start + each.length] for each in side]) for side in inlays]
+        spans = [np.array([[each.start, each.start + each.length] for each in side]).reshape(-1, 2) for side in inlays]
+        self.places = SensorPlaces.on(blade)
         even = np.linspace(0.0, beam.length, STATIONS)
-        self.stations = np.unique(np.concatenate([even, *(each.ravel() for each in spans)]))
+        self.stations = np.unique(
+            np.concatenate([even, *(each.ravel() for each in spans), *(each.span for each in self.places.points)])
+        )
         self.even = np.searchsorted(self.stations, even)
         self._bodies = bodies(beam, self.stations)
         self._actuators, self._sensors = (
@@ -61,11 +67,14 @@ class BladeSolid:
             for side, span in zip(inlays, spans, strict=True)
         )
 
+        self._points = [(skin, np.searchsorted(self.stations, skin.span)) for skin in self.places.points]
+
     def pose(self, displacement: Array) -> Pose:
         """The blade displaced by lag, flap (m) and twist (rad) at its stations, (3, stations)."""
         drawn = self.magnification * displacement
         actuators, sensors = (
-            np.concatenate([quadrilaterals(skin.displaced(drawn[:, ends])[None]) for skin, ends in side])
+            np.concatenate([np.zeros((0, 4, 3)), *(quadrilaterals(skin.displaced(drawn[:, ends])[None]) for skin, ends in side)])
             for side in (self._actuators, self._sensors)
         )
-        return Pose(tuple(skin.displaced(drawn) for skin in self._bodies), actuators, sensors)
+        points = np.concatenate([np.zeros((0, 3)), *(skin.displaced(drawn[:, at])[0] for skin, at in self._points)])
+        return Pose(tuple(skin.displaced(drawn) for skin in self._bodies), actuators, sensors, points)

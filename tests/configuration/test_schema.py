@@ -170,7 +170,8 @@ def places(cls, path=()):
 )
 def test_editor_and_reader_agree_on_every_value_of_every_field_alone(cls, schema, reader):
     """Both refuse it or neither, but for what ties numbers together, which a schema cannot say: then the sentence names both."""
-    root, tied = schema(), ("that do not add up", "smaller in magnitude than sqrt", "None where other plants are drawn")
+    root = schema()
+    tied = "that do not add up", "smaller in magnitude than sqrt", "None where other plants are drawn", "where no patches are"
     for path in places(cls):
         for value in VALUES:
             table = value

@@ -78,7 +78,7 @@ REFUSED = {
     "unknown material": (placed(material="PVDF"), "blade.patches.material is 'PVDF', but must be one of MFC, PZT"),
     "none": (placed(actuators=0), "blade.patches.actuators is 0, but must be a number of patches, at least one"),
     "minus one": (placed(sensors=-1), "blade.patches.sensors is -1, but must be a number of patches, at least one"),
-    "empty list": (placed(sensors=()), r"blade.patches.sensors is \(\), but must be .* one or more finite positions"),
+    "empty list": (placed(actuators=()), r"blade.patches.actuators is \(\), but must be .* one or more finite positions"),
     "not a number": (
         placed(actuators=(0.1, math.nan)),
         r"blade.patches.actuators is \(0\.1, nan\), but must be .* one or more finite positions",

@@ -83,6 +83,8 @@ class PlacementProblem:
         """
         checked("config", config, Instance(BladeConfig))
         checked("side", side, Choice(SIDES))
+        if config.sensors:
+            raise Refused("config.sensors", [each.kind for each in config.sensors], "empty: patches are placed by their currents")
         if side == "sensors":
             check_noise(config)
         number = config.patches.only(side).count if count is None else count
