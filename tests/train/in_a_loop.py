@@ -2,6 +2,7 @@
 
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 
 import gymnasium as gym
 import numpy as np
@@ -51,6 +52,13 @@ def python_steps(controller, plant):
         return action[0] * drive
 
     return step
+
+
+@lru_cache(maxsize=64)
+def by_python(controller, plant, scenario, reads_speed, steps=STEPS, preset="thesis"):
+    """What is measured and the voltages of the controller in Python's double precision."""
+    with in_double_precision(controller) as own:
+        return in_a_loop(python_steps(own, plant), scenario, reads_speed, steps, preset=preset)
 
 
 def in_a_loop(step, scenario, reads_speed=False, steps=STEPS, seed=1, preset="thesis"):

@@ -1,5 +1,7 @@
 """C files of controllers do in the loop what the controllers themselves do there."""
 
+import re
+import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +13,12 @@ from beamenv.plant.plant import sample
 from beamenv.plant.signals import Signal
 from beamenv.task import resolve_task
 from tests.train.exports import EVERY, NOT_EXPORTED
-from tests.train.in_a_loop import STEPS, TOLERANCE, in_a_loop, in_double_precision, python_steps
+from tests.train.in_a_loop import STEPS, TOLERANCE, by_python, in_a_loop, in_double_precision, python_steps
 from train.controllers.named import discover
 from train.controllers.shipped import shipped
 from train.controllers.sources import Trained
-from train.export import exported
-from train.export.compiled import compiler, running, seconds_a_step
+from train.export import export, exported
+from train.export.compiled import FLAGS, compiler, running, seconds_a_step
 
 needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 
@@ -25,8 +27,7 @@ def agrees(controller, plant, scenario, preset="thesis"):
     """Of both precisions with Python in double precision."""
     found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
     reads_speed = len(found["double"].diagram.inputs) > 1
-    with in_double_precision(controller) as own:
-        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, preset=preset)
+    measured, voltages = by_python(controller, plant, scenario, reads_speed, preset=preset)
     assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
     for precision, each in found.items():
         with running(each) as step:
@@ -48,7 +49,7 @@ def falls_apart(controller, preset):
 @needs_a_compiler
 @pytest.mark.parametrize(("build", "scenario"), EVERY)
 def test_controller_in_c_asks_for_the_voltages_of_the_controller(build, scenario):
-    agrees(build(), resolve_task(scenario=scenario).design_plant, scenario)
+    agrees(build(scenario), resolve_task(scenario=scenario).design_plant, scenario)
 
 
 @pytest.mark.parametrize("name", NOT_EXPORTED)
@@ -127,6 +128,29 @@ def test_measurement_that_is_no_number_is_answered_with_status_one(bad):
     plant = resolve_task().design_plant
     with running(exported(lqg(plant), plant)) as step, pytest.raises(ValueError, match="ended with status 3"):
         step([0.0, bad, 0.0, 0.0])
+
+
+ASKS_FOR_THE_SIZE = """\
+#include <stdio.h>
+#define OWN_DECLARATIONS
+#include "own.c"
+int main(void) { return !printf("%lu", (unsigned long)sizeof(own_state)); }
+"""
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("precision", TOLERANCE)
+@pytest.mark.parametrize("name", ["velocity", "lqg", "scheduled-lqg"])  # no memory, signals on the stack, signals in the state
+def test_file_is_clean_to_stricter_compilers_and_tells_its_size(name, precision, tmp_path):
+    task = resolve_task()
+    export(discover()[name].build_for(task), task.design_plant, tmp_path / "own.c", precision=precision, name="own")
+    (tmp_path / "main.c").write_text(ASKS_FOR_THE_SIZE)
+    strict = ("-Wconversion", "-Wshadow", "-Wdouble-promotion", "-Wcast-qual", "-Wno-unused-const-variable")
+    command = [compiler(), *FLAGS, *strict, "main.c", "own.c", "-o", "main", "-lm"]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, text=True).stderr == ""
+    size = int(subprocess.run([str(tmp_path / "main")], capture_output=True, text=True).stdout)
+    (told,) = re.findall(r"a state (\d+), signals", (tmp_path / "own.c").read_text(encoding="utf-8"))
+    assert int(told) == size
 
 
 @needs_a_compiler
