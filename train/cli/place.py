@@ -31,7 +31,7 @@ def place(
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
-        typer.Option("--leave-unreached", help="Leave modes that no patch moves to their own damping, and place for the others."),
+        typer.Option("--leave-unreached", help="Leave modes that no patch moves to their own damping."),
     ] = False,
     picture: Annotated[Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span.")] = None,
     as_json: JsonOption = False,
