@@ -19,6 +19,7 @@ from beamenv.configuration.read_only import sealed
 from beamenv.patches import PatchResponse
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.model_files import plant_from_file, plant_from_table
+from beamenv.plant.model_rules import priced_alike
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel
 from beamenv.plant.spread import Spread, plants_within
@@ -30,6 +31,11 @@ PlantArgument = Plant | Mapping[str, Any] | str | Path | Sequence[Any]
 
 INTERVAL = Number(ge=1e-6, le=1.0, unit="s")
 """As that of blades."""
+
+PLANT, ENSEMBLE = "plant.npz", "ensemble"
+"""In the folder of an identification: the plant, and the folder of those within its spread."""
+
+_THE_SAME = ("sensor_full_scale", "sensor_noise", "process_noise", "reference_load", "input_weight", "time_scale")
 
 DRIVE = 1500.0
 """V, the default blade's: what a scenario says of the drive is of it."""
@@ -144,7 +150,9 @@ def model_of(given: Any, name: str = "plant") -> Plant:
 
 
 def models_of(given: Any) -> tuple[Plant, ...]:
-    """One or several, behind the same instruments; ``ValueError`` where they are not."""
+    """One or several, behind the same instruments, or those in a folder; ``ValueError`` where they are not."""
+    if isinstance(given, (str, Path)) and Path(given).is_dir():
+        given = _in_folder(Path(given))
     several = isinstance(given, (list, tuple))
     if several and not given:
         raise Refused("plant", given, "one model, or a list of them")
@@ -154,11 +162,17 @@ def models_of(given: Any) -> tuple[Plant, ...]:
     return _behind_the_same(models)
 
 
+def _in_folder(folder: Path) -> list[Path]:
+    """The plant that an identification leaves in its folder, and those within its spread."""
+    return [folder / PLANT, *sorted((folder / ENSEMBLE).glob("*.npz"))]
+
+
 def _behind_the_same(models: tuple[Plant, ...]) -> tuple[Plant, ...]:
-    """Noise, ranges and price are the first one's, as far as the others may not differ in them."""
+    """Noise, ranges and prices are the first one's: it is the plants that differ, not what is asked of them."""
     first = models[0]
-    same = {name: getattr(first, name) for name in ("sensor_full_scale", "sensor_noise", "process_noise", "reference_load")}
-    return (first, *(replace(each, **same) for each in models[1:]))
+    same = {name: getattr(first, name) for name in _THE_SAME}
+    others = tuple(replace(each, **same) for each in models[1:])
+    return (first, *(others if first.energy_known else (priced_alike(each, first) for each in others)))
 
 
 def check_like(name: str, plant: Plant, first: Plant, alike: Sequence[str] = ()) -> None:

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 ANGLE = 1.4
 """rad between two samples of the fastest mode, as on the default blade."""
 
+OUTPUTS = "the cost is of outputs, each over the most that one full voltage makes of it, for no energy is known"
+
 OSCILLATES = 0.5
 """Damping ratio below which a mode counts as one."""
 
@@ -69,18 +71,34 @@ def with_cost(plant: Plant, energy: ArrayLike | None, output_weight: ArrayLike |
     if energy is not None and output_weight is None:
         return plant
     if output_weight is None:
-        reach = np.maximum(
-            after_sudden(plant, plant.B * drive_limit(plant)).outputs, np.abs(plant.D * drive_limit(plant)).max(axis=1)
-        )
-        output_weight = 1.0 / np.where(reach > 0.0, reach, 1.0) ** 2
-        assumed.append("the cost is of outputs, each over the most that one full voltage makes of it, for no energy is known")
+        output_weight = usual_output_weight(plant)
+        assumed.append(OUTPUTS)
     W = checked_weight("output_weight", output_weight, len(plant.C), "sensor")
+    return of_outputs(plant, W)
+
+
+def usual_output_weight(plant: Plant) -> Array:
+    """(p,): of each output over the most that one full voltage makes of it."""
+    drive = drive_limit(plant)
+    reach = np.maximum(after_sudden(plant, plant.B * drive).outputs, np.abs(plant.D * drive).max(axis=1))
+    return np.asarray(1.0 / np.where(reach > 0.0, reach, 1.0) ** 2)
+
+
+def of_outputs(plant: Plant, weight: Array) -> Plant:
+    """The plant with the cost yᵀWy of its outputs, W = ``weight`` (p, p)."""
     return replace(
         plant,
-        state_weight=sealed(plant.C.T @ W @ plant.C),
-        cross_weight=sealed(plant.C.T @ W @ plant.D),
-        input_weight=sealed(plant.D.T @ W @ plant.D),
+        state_weight=sealed(plant.C.T @ weight @ plant.C),
+        cross_weight=sealed(plant.C.T @ weight @ plant.D),
+        input_weight=sealed(plant.D.T @ weight @ plant.D),
     )
+
+
+def priced_alike(plant: Plant, first: Plant) -> Plant:
+    """The plant with the cost of outputs that the first one has by the rules; as it is where that was said otherwise."""
+    if OUTPUTS not in first.assumed:
+        return plant
+    return replace(of_outputs(plant, np.diag(usual_output_weight(first))), input_weight=first.input_weight)
 
 
 def with_scales(

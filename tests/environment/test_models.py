@@ -175,6 +175,21 @@ def test_one_of_the_plants_of_a_list_moves_in_each_episode(plant):
         resolve_task(plant=[plant, Plant.from_state_space(A, B, C[:1], interval=0.01)])
 
 
+def test_a_folder_of_an_identification_is_its_plant_and_those_within_its_spread(tmp_path):
+    (tmp_path / "ensemble").mkdir()
+    for name, factor in (("plant", 1.0), ("ensemble/000", 0.97), ("ensemble/001", 1.03)):
+        np.savez(tmp_path / f"{name}.npz", A=factor * A, B=factor * B, C=C, interval=0.01)
+    task = resolve_task(plant=tmp_path)
+    assert len(task.bank) == 3
+    np.testing.assert_array_equal(task.design_plant.A, A)
+    first, *others = task.blade.others
+    for each in others:  # what is asked of them is the same: the same outputs cost the same
+        np.testing.assert_allclose(each.state_weight, first.state_weight, rtol=1e-12)
+        np.testing.assert_array_equal(each.sensor_full_scale, first.sensor_full_scale)
+    with pytest.raises(ValueError, match=r"^file '.*plant.npz' cannot be read: No such file"):
+        resolve_task(plant=tmp_path / "ensemble")
+
+
 def test_controllers_are_designed_for_another_model_where_one_is_given(plant):
     stiffer = Plant.from_state_space(1.05 * A, B, C, interval=0.01)
     task = resolve_task(plant=plant, design=stiffer)

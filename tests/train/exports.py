@@ -1,5 +1,7 @@
 """Which controllers the tests export: all laws by their registry, so that a new one takes part by itself, and all agents."""
 
+from functools import lru_cache
+
 import numpy as np
 import pytest
 
@@ -29,12 +31,17 @@ def _case(name, build, scenario, slow):
     return pytest.param(build, scenario, id=f"{name}, {scenario}", marks=[pytest.mark.slow] if slow else [])
 
 
-def _law(name, scenario):
-    return lambda: discover()[name].build_for(resolve_task(scenario=scenario))
+def _once(build):
+    """What builds a controller, for all tests of a process."""
+    return lru_cache(maxsize=1)(build)
 
 
-def _agent(folder, scenario):
-    return lambda: Trained(folder).build(resolve_task(scenario=scenario))
+def _law(name):
+    return _once(lambda scenario: discover()[name].build_for(resolve_task(scenario=scenario)))
+
+
+def _agent(folder):
+    return _once(lambda scenario: Trained(folder).build(resolve_task(scenario=scenario)))
 
 
 def _agents():
@@ -42,15 +49,15 @@ def _agents():
         if each.seed == 0:
             scenario = "default" if each.scenario == "generalist" else each.scenario
             slow = each.agent not in QUICK or each.scenario not in ("generalist", "nominal")
-            yield _case(each.agent, _agent(each.folder, scenario), scenario, slow)
+            yield _case(each.agent, _agent(each.folder), scenario, slow)
 
 
 LAWS = [
-    *(_case(name, _law(name, "default"), "default", name in BIG) for name in discover() if name not in NOT_EXPORTED),
-    _case("multiple-model", _law("multiple-model", "delay"), "delay", False),  # otherwise made than in the default scenario
-    _case("multiple-model", _law("multiple-model", "mid-failure"), "mid-failure", True),
-    _case("multiple-model", _law("multiple-model", "failure"), "failure", True),
-    _case("inverse-hysteresis", _law("inverse-hysteresis", "hysteresis"), "hysteresis", True),
+    *(_case(name, _law(name), "default", name in BIG) for name in discover() if name not in NOT_EXPORTED),
+    _case("multiple-model", _law("multiple-model"), "delay", False),  # otherwise made than in the default scenario
+    _case("multiple-model", _law("multiple-model"), "mid-failure", True),
+    _case("multiple-model", _law("multiple-model"), "failure", True),
+    _case("inverse-hysteresis", _law("inverse-hysteresis"), "hysteresis", True),
 ]
 
 
@@ -63,14 +70,14 @@ def _random(**shapes):
 def _history(**settings):
     weights = _random(weight0=(6, 24), bias0=(6,), weight1=(6, 6), bias1=(6,), weight2=(4, 6), bias2=(4,))
     weights["weight2"] *= 0.05  # so small that the loop with the blade is stable
-    return lambda: HistoryPolicy("history", weights, {"input_gain": 4.0, **settings}, -ONES, ONES)
+    return _once(lambda scenario: HistoryPolicy("history", weights, {"input_gain": 4.0, **settings}, -ONES, ONES))
 
 
 def _lstm(held):
     gates = {"weight_ih": (20, 24), "weight_hh": (20, 5), "bias_ih": (20,), "bias_hh": (20,)}
     weights = _random(**gates, weight_out=(4, 5), bias_out=(4,))
     weights["weight_out"] *= 0.05
-    return lambda: LSTMPolicy("lstm", weights, {"input_gain": 4.0, "held": held}, -0.5 * ONES, ONES)
+    return _once(lambda scenario: LSTMPolicy("lstm", weights, {"input_gain": 4.0, "held": held}, -0.5 * ONES, ONES))
 
 
 ONES = np.ones(4, np.float32)

@@ -1,5 +1,7 @@
 """C files of controllers do in the loop what the controllers themselves do there."""
 
+import re
+import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -15,40 +17,40 @@ from tests.train.in_a_loop import STEPS, TOLERANCE, in_a_loop, in_double_precisi
 from train.controllers.named import discover
 from train.controllers.shipped import shipped
 from train.controllers.sources import Trained
-from train.export import exported
-from train.export.compiled import compiler, running, seconds_a_step
+from train.export import export, exported
+from train.export.compiled import FLAGS, compiler, running, seconds_a_step
 
 needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 
 
-def agrees(controller, plant, scenario, preset="thesis"):
+def agrees(controller, plant, scenario, **blade):
     """Of both precisions with Python in double precision."""
     found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
     reads_speed = len(found["double"].diagram.inputs) > 1
     with in_double_precision(controller) as own:
-        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, preset=preset)
+        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, **blade)
     assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
     for precision, each in found.items():
         with running(each) as step:
-            if falls_apart(controller, preset):
+            if falls_apart(controller, blade):
                 written = np.array([step(row) for row in measured])
             else:
-                _, written = in_a_loop(step, scenario, reads_speed, preset=preset)
+                _, written = in_a_loop(step, scenario, reads_speed, **blade)
         worst = np.abs(written - voltages).max() / np.abs(plant.voltage_limits).max()
         assert worst < TOLERANCE[precision], precision
 
 
-def falls_apart(controller, preset):
+def falls_apart(controller, blade):
     """Whether the loop with the full plant is unstable: rounding grows in it, and only what both are shown can be compared."""
     if not isinstance(controller, LinearController):
         return False
-    return spectral_radius(closed_loop(sample(resolve_task(preset).design.full_plant), controller)[0]) > 1.0
+    return spectral_radius(closed_loop(sample(resolve_task(**blade).design.full_plant), controller)[0]) > 1.0
 
 
 @needs_a_compiler
 @pytest.mark.parametrize(("build", "scenario"), EVERY)
 def test_controller_in_c_asks_for_the_voltages_of_the_controller(build, scenario):
-    agrees(build(), resolve_task(scenario=scenario).design_plant, scenario)
+    agrees(build(scenario), resolve_task(scenario=scenario).design_plant, scenario)
 
 
 @pytest.mark.parametrize("name", NOT_EXPORTED)
@@ -100,6 +102,16 @@ def test_strip_with_one_patch_pair(name):
     agrees(discover()[name].build_for(task), task.design_plant, "default", preset="aluminium-cantilever")
 
 
+@needs_a_compiler
+@pytest.mark.parametrize("name", ["lqg-load", "multiple-model"])
+def test_accelerometer_that_feels_the_voltages(name):
+    blade = {"sensors": [{"kind": "accelerometer"}, {"kind": "velocity", "position": 0.2}]}
+    task = resolve_task(preset="aluminium-cantilever", blade=blade)
+    law, plant = discover()[name].build_for(task), task.design_plant
+    assert plant.D[0].any()
+    agrees(law, plant, "default", preset="aluminium-cantilever", blade=blade)
+
+
 def test_sensors_are_called_what_the_plant_calls_them():
     plant = resolve_task(preset="aluminium-cantilever").design_plant
     found = exported(lqg(plant), replace(plant, sensors=(Signal("tip", "m/s²"),)))
@@ -127,6 +139,29 @@ def test_measurement_that_is_no_number_is_answered_with_status_one(bad):
     plant = resolve_task().design_plant
     with running(exported(lqg(plant), plant)) as step, pytest.raises(ValueError, match="ended with status 3"):
         step([0.0, bad, 0.0, 0.0])
+
+
+ASKS_FOR_THE_SIZE = """\
+#include <stdio.h>
+#define OWN_DECLARATIONS
+#include "own.c"
+int main(void) { return !printf("%lu", (unsigned long)sizeof(own_state)); }
+"""
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("precision", TOLERANCE)
+@pytest.mark.parametrize("name", ["velocity", "lqg", "scheduled-lqg"])  # no memory, signals on the stack, signals in the state
+def test_file_is_clean_to_stricter_compilers_and_tells_its_size(name, precision, tmp_path):
+    task = resolve_task()
+    export(discover()[name].build_for(task), task.design_plant, tmp_path / "own.c", precision=precision, name="own")
+    (tmp_path / "main.c").write_text(ASKS_FOR_THE_SIZE)
+    strict = ("-Wconversion", "-Wshadow", "-Wdouble-promotion", "-Wcast-qual", "-Wno-unused-const-variable")
+    command = [compiler(), *FLAGS, *strict, "main.c", "own.c", "-o", "main", "-lm"]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, text=True).stderr == ""
+    size = int(subprocess.run([str(tmp_path / "main")], capture_output=True, text=True).stdout)
+    (told,) = re.findall(r"a state (\d+), signals", (tmp_path / "own.c").read_text(encoding="utf-8"))
+    assert int(told) == size
 
 
 @needs_a_compiler

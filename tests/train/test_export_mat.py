@@ -7,7 +7,7 @@ from scipy.io import loadmat
 from baselines import LinearController, lqg
 from beamenv.task import resolve_task
 from tests.train.exports import EVERY, LAWS
-from tests.train.in_a_loop import TOLERANCE, in_a_loop, in_double_precision, python_steps
+from tests.train.in_a_loop import TOLERANCE, by_python, in_a_loop, python_steps
 from train.export import export
 
 STEPS = 100
@@ -70,18 +70,17 @@ def mat_steps(path):
 
 @pytest.mark.parametrize(("build", "scenario"), EVERY)
 def test_blocks_of_the_file_ask_for_the_voltages_of_the_controller(build, scenario, tmp_path):
-    controller, plant = build(), resolve_task(scenario=scenario).design_plant
+    controller, plant = build(scenario), resolve_task(scenario=scenario).design_plant
     found = export(controller, plant, tmp_path / "mine.mat")
     reads_speed = len(found.diagram.inputs) > 1
-    with in_double_precision(controller) as own:
-        _, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, STEPS)
+    _, voltages = by_python(controller, plant, scenario, reads_speed, STEPS)
     _, written = in_a_loop(mat_steps(tmp_path / "mine.mat"), scenario, reads_speed, STEPS)
     assert np.abs(written - voltages).max() < TOLERANCE["double"] * np.abs(plant.voltage_limits).max()
 
 
 @pytest.mark.parametrize(("build", "scenario"), LAWS)
 def test_linear_laws_and_no_others_have_the_matrices_of_python_control(build, scenario, tmp_path):
-    law, plant = build(), resolve_task(scenario=scenario).design_plant
+    law, plant = build(scenario), resolve_task(scenario=scenario).design_plant
     export(law, plant, tmp_path / "mine.mat")
     file = read(tmp_path / "mine.mat")
     if not isinstance(law, LinearController):

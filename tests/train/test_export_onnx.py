@@ -10,7 +10,7 @@ import pytest
 from baselines import lqg
 from beamenv.task import resolve_task
 from tests.train.exports import EVERY
-from tests.train.in_a_loop import TOLERANCE, in_a_loop, in_double_precision, python_steps
+from tests.train.in_a_loop import TOLERANCE, by_python, in_a_loop
 from train.export import export, exported
 
 STEPS = 100  # the reference takes a millisecond a step
@@ -43,11 +43,10 @@ def onnx_steps(found):
 @pytest.mark.parametrize(("build", "scenario"), EVERY)
 def test_controller_in_onnx_asks_for_the_voltages_of_the_controller(build, scenario):
     pytest.importorskip("onnx")
-    controller, plant = build(), resolve_task(scenario=scenario).design_plant
+    controller, plant = build(scenario), resolve_task(scenario=scenario).design_plant
     found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
     reads_speed = len(found["double"].diagram.inputs) > 1
-    with in_double_precision(controller) as own:
-        _, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, STEPS)
+    _, voltages = by_python(controller, plant, scenario, reads_speed, STEPS)
     for precision, each in found.items():
         _, written = in_a_loop(onnx_steps(each), scenario, reads_speed, STEPS)
         worst = np.abs(written - voltages).max() / np.abs(plant.voltage_limits).max()

@@ -51,6 +51,8 @@ class Body:
     signals: dict[str, int] = field(default_factory=dict)
     """Names and sizes of those that are filled."""
     tables: list[str] = field(default_factory=list)
+    table_bytes: int = 0
+    """Of them all, where int has four."""
     helpers: set[str] = field(default_factory=set)
     _taken: set[str] = field(default_factory=set)
     _kept: dict[bytes, str] = field(default_factory=dict)
@@ -103,6 +105,7 @@ class Body:
             kind = "int" if values.dtype.kind == "i" else self.words.real
             own = f"{self.words.name}_{name}_{len(self._kept) + 1}"
             self.tables.append(f"static const {kind} {own}[{values.size}] = {{\n{literals(values, self.words)}\n}};\n")
+            self.table_bytes += values.size * (4 if kind == "int" else self.words.bytes)
             self._kept[key] = own
         return self._kept[key]
 

@@ -20,8 +20,8 @@ $facts
  *
  * Call ${name}_init once, and ${name}_step at every interval with what the sensors show: it fills in the voltages that are to
  * be held until the next one, and returns 0. Of a measurement that is no number, or beyond 1e30, it returns 1, and state and
- * voltages stay as they were. No memory is allocated, and of the library only math.h is used: link with -lm. A step keeps $stack
- * bytes of signals on the stack. Every controller with a state of its own is independent of others.
+ * voltages stay as they were. No memory is allocated, and of the library only math.h is used: link with -lm. Every controller
+ * with a state of its own is independent of others. In bytes: tables $tables, a state $state, signals on the stack $stack.
  *
  * Other files get the declarations alone by: #define ${guard}_DECLARATIONS, then #include this file.
  */
@@ -40,8 +40,14 @@ typedef struct {
 $members
 } ${name}_state;
 
+#ifdef __cplusplus
+extern "C" {
+#endif
 void ${name}_init(${name}_state *state);
 int ${name}_step(${name}_state *state, $arguments, $real volts_out[$voltages]);
+#ifdef __cplusplus
+}
+#endif
 
 #endif
 
@@ -99,17 +105,20 @@ def _filled(text: str, parts: dict[str, str]) -> str:
 
 def _parts(exported: Exported, body: Body) -> dict[str, str]:
     """What the text is filled with."""
-    diagram, real = exported.diagram, body.words.real
+    diagram, real, f = exported.diagram, body.words.real, body.words.suffix
     held = {body.names[each].removeprefix("state->"): each.size for each in diagram.following}
     signals = [f"{real} {name}[{size}];" for name, size in body.signals.items()]
     work = ["struct {", *(f"    {each}" for each in signals), "} work; /* of one step */"] if body.where else []
+    signalled = sum(body.signals.values())
     members = [*(f"{real} {name}[{size}];" for name, size in held.items()), *work]
     return {
         "title": _in_a_comment(f"{exported.controller}: from sensors to voltages, in C99."),
         "facts": "\n".join(_in_a_comment(f" * {name + ':':<13} {fact}") for name, fact in exported.facts.items()),
         "name": exported.name,
         "guard": exported.name.upper(),
-        "stack": str(0 if body.where else (8 if real == "double" else 4) * sum(body.signals.values())),
+        "tables": str(body.table_bytes),
+        "state": str(body.words.bytes * (sum(held.values()) + (signalled if body.where else 0)) or 1),
+        "stack": str(0 if body.where else body.words.bytes * signalled),
         "sensors": str(diagram.inputs[0].size),
         "voltages": str(diagram.output.size),
         "interval": repr(float(exported.plant.control_interval)),
@@ -121,7 +130,7 @@ def _parts(exported: Exported, body: Body) -> dict[str, str]:
         ),
         "signals": "" if body.where else _lines(signals),
         "checks": _lines(
-            f"for (int i = 0; i < {each.size}; ++i) if (!(fabs({body.names[each]}[i]) <= 1e30)) return 1;"
+            f"for (int i = 0; i < {each.size}; ++i) if (!(fabs{f}({body.names[each]}[i]) <= 1e30{f})) return 1;"
             for each in diagram.inputs
         ),
         "output": body.name(diagram.output),

@@ -33,6 +33,11 @@ class Words(NamedTuple):
         return "double" if self.precision == "double" else "float"
 
     @property
+    def bytes(self) -> int:
+        """Of one of them."""
+        return 8 if self.precision == "double" else 4
+
+    @property
     def suffix(self) -> str:
         """What stands behind literals of this type, and behind the names of math.h."""
         return "" if self.precision == "double" else "f"
