@@ -66,9 +66,8 @@ def test_a_force_bends_a_cantilever_as_handbooks_say():
 
 
 def test_a_line_load_over_all_the_span_is_the_uniform_one():
-    differing = (
-        {}, {"direction": [2.0, 0.0, 0.0]}, {"profile": [1.0, 0.0]}, {"profile": [0.0, 1.0]}, {"span": [0.0, 0.1]}, {"span": [0.1, 0.3]}
-    )  # fmt: skip
+    whole = {}, {"direction": [2.0, 0.0, 0.0]}
+    differing = *whole, {"profile": [1.0, 0.0]}, {"profile": [0.0, 1.0]}, {"span": [0.0, 0.1]}, {"span": [0.1, 0.3]}
     plant = under(*({"shape": "line", **each} for each in differing))
     lag, flap, all_over, edgewise, falling, rising, inner, outer = plant.disturbance_input.T
     scale = np.abs(flap).max()
