@@ -152,7 +152,7 @@ COMMANDS = {
             "--seed": "0",
             "--drive-limit": "100",
         },
-        ("--json",),
+        ("--json", "--before"),
         ("baselines.identification.identify.observer",),
     ),
     "place": (
@@ -167,7 +167,7 @@ COMMANDS = {
             "--seed": "0",
             "--picture": None,
         },
-        ("--json", "--no-passive"),
+        ("--json", "--no-passive", "--leave-unreached"),
         ("baselines.placement.place",),
     ),
     "export": (

@@ -5,7 +5,7 @@ from functools import cache
 from baselines import placement
 from beamenv.blade import BladeConfig
 from tests.fuzz import small
-from tests.fuzz.meaning import COUNT, NUMBERS, TEXT, choice, instance, maybe
+from tests.fuzz.meaning import COUNT, FLAG, NUMBERS, TEXT, choice, instance, maybe
 from tests.fuzz.oracle import Door
 
 
@@ -31,8 +31,9 @@ DOORS = [
             "method": TEXT,
             "seed": COUNT,
             "start": maybe(NUMBERS),
+            "leave_unreached": FLAG,
         },
-        lambda: {"problem": problem(), "method": "sqp", "seed": 0, "start": [0.1, 0.6]},
+        lambda: {"problem": problem(), "method": "sqp", "seed": 0, "start": [0.1, 0.6], "leave_unreached": False},
         told=("positions", "actuators"),
     ),
     Door(

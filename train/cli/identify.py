@@ -28,6 +28,7 @@ def identify(
     ] = None,
     time: Annotated[str | None, typer.Option(help="Column of the time, s; time or t if left out.")] = None,
     interval: Annotated[float | None, typer.Option(help="s between rows, where no column tells.")] = None,
+    before: Annotated[bool, typer.Option("--before", help="The voltages of a row were on before its readings were taken.")] = False,
     held_back: Annotated[float, typer.Option(help="Share of the rows, the last, that the model is judged by.")] = 0.25,
     collocated: Annotated[
         float | None,
@@ -50,7 +51,7 @@ def identify(
         check_folder(folder)
         members, seed = checked("ensemble", ensemble, Count(0, 1000)), checked("seed", seed, Count(0, 2**63 - 1))
         about = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
-        measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval)
+        measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval, before=before)
         with bar() as report:
             found = run(measurement, _order(order), held_back=held_back, collocated=collocated, progress=report)
         from train.identification.files import write_all

@@ -29,6 +29,10 @@ def place(
         str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
     ] = "multistart",
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
+    leave_unreached: Annotated[
+        bool,
+        typer.Option("--leave-unreached", help="Leave modes that no patch moves to their own damping."),
+    ] = False,
     picture: Annotated[Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span.")] = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -49,7 +53,7 @@ def place(
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
         with bars(counts) as report:
-            sides = place_sides(config, counts, method, seed, report)
+            sides = place_sides(config, counts, method, seed, report, leave_unreached)
         if as_json:
             print_json([side.to_dict() for side in sides])
         else:

@@ -64,7 +64,7 @@ def _readings(about: dict[str, Any]) -> str:
 
 def _orders(about: dict[str, Any]) -> str:
     rows = [
-        [str(each["order"]), f"{each['loss']:.5f}", f"{each['missed']:.1f}", "yes" if each["kept"] else "no"]
+        [str(each["order"]), _shown(each["loss"], 5), _shown(each["missed"], 1), "yes" if each["kept"] else "no"]
         for each in about["orders_tried"]
     ]
     words = "## Orders tried\n\nEach against the one kept before it, in standard errors of the difference."
@@ -73,3 +73,7 @@ def _orders(about: dict[str, Any]) -> str:
 
 def _figures() -> str:
     return escaped("Figures:") + " ![stabilisation diagram](stabilisation.png) ![fit](fit.png)"
+
+
+def _shown(value: float | None, digits: int) -> str:
+    return "∞" if value is None else f"{value:.{digits}f}"

@@ -60,7 +60,12 @@ class PlacedSide:
 
 
 def place_sides(
-    config: Any, counts: dict[Any, int], method: str, seed: int, progress: Callable[[str, float, float], None] | None = None
+    config: Any,
+    counts: dict[Any, int],
+    method: str,
+    seed: int,
+    progress: Callable[[str, float, float], None] | None = None,
+    leave_unreached: bool = False,
 ) -> list[PlacedSide]:
     """Place the sides that ``counts`` names, actuators first, then the sensors of the blade with its actuators placed."""
     from baselines.placement import PlacementProblem, place
@@ -77,7 +82,7 @@ def place_sides(
             continue
         problem = PlacementProblem.of(config, side)
         report = None if progress is None else lambda done, cost, side=side: progress(side, done, cost)
-        found = place(problem, method, seed, progress=report)
+        found = place(problem, method, seed, progress=report, leave_unreached=leave_unreached)
         config = with_positions(config, {side: found.positions})
         sides.append(placed_side(problem, found))
     return sides

@@ -49,7 +49,7 @@ def check_reach(problem: PlacementProblem, positions: ArrayLike) -> None:
     given = ", ".join(f"{position:.4g}" for position in np.asarray(positions))
     raise ValueError(
         f"{problem.side} = ({given}) m cannot {verb} mode {mode + 1} ({family(config, mode)}, {frequency:.4g} rad/s): "
-        f"choose positions, a lay-up or a pretwist that couple it to the patches."
+        f"choose positions, a lay-up or a pretwist that couple it to the patches, or leave_unreached."
     )
 
 

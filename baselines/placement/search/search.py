@@ -18,7 +18,7 @@ from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
 from baselines.placement.search.placement import Placement, Progress, Recorder
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
-from beamenv.configuration import Count, Instance, Refused, checked
+from beamenv.configuration import Count, Flag, Instance, Refused, checked
 
 Array = NDArray[np.float64]
 
@@ -77,11 +77,13 @@ def place(
     seed: int = 0,
     start: ArrayLike | None = None,
     progress: Progress | None = None,
+    leave_unreached: bool = False,
 ) -> Placement:
     """Positions of least cost that a method finds, never dearer than its start; the same seed gives the same positions.
 
     ``start`` (count,), m, is uniform unless given. Raises ``ValueError`` for an unknown method, a start that is not feasible, or
-    a blade with a mode that the patches cannot move (or sense).
+    a blade with a mode that the patches cannot move (or sense), unless ``leave_unreached`` leaves such modes to their own damping:
+    a strip with patches on its faces has them, and they cost the same wherever the patches are.
     """
     checked("problem", problem, Instance(PlacementProblem))
     if not (method in METHODS if isinstance(method, str) else is_search(method)):
@@ -89,6 +91,7 @@ def place(
     seed = checked("seed", seed, Count(0, 2**63 - 1))
     if not (progress is None or callable(progress)):
         raise Refused("progress", progress, "None or a function of the share done and the least cost")
+    leave_unreached = checked("leave_unreached", leave_unreached, Flag())
     chosen = METHODS[method] if isinstance(method, str) else method
     begin = problem.bounds.uniform() if start is None else problem.bounds.checked(start)
     clock = time.perf_counter()
@@ -96,7 +99,8 @@ def place(
     start_cost = float(recorder.costs(begin[None])[0])
     recorder.note(0.0)
     chosen.run(recorder, begin, np.random.default_rng(seed))
-    check_reach(problem, recorder.positions)
+    if not leave_unreached:
+        check_reach(problem, recorder.positions)
     return Placement(
         side=problem.side,
         method=method if isinstance(method, str) else type(method).__name__,
