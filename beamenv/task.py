@@ -30,6 +30,7 @@ from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.of_models import check_scenario, design_model, true_model
+from beamenv.scenarios.own_loads import of_blade
 from beamenv.scenarios.sampling import check_frequencies, largest_speed
 from beamenv.scenarios.scenario import Scenario, with_load
 from beamenv.scenarios.scenario import scenario as as_scenario
@@ -189,6 +190,7 @@ def resolve_task(
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
     truth, modes = chosen.plants.truth, chosen.plants.modes
+    config = replace(config, loads=tuple(load.place for load in chosen.loads)) if chosen.loads else config
     own = _driven(config if design is None else _design_config(preset, speed, design), chosen)
     config = _with(_driven(config, chosen), truth_modes=modes if truth is None else None)
     known = chosen.plants.design_modes
@@ -198,6 +200,7 @@ def resolve_task(
     _check_failures(chosen, true.plant)
     _check_loads(chosen, true)
     _check_sensors(chosen, config)
+    chosen = _with_own_loads(chosen, true)
     task = Task(
         blade=true,
         design_blade=true if designed == config else _alive(_BLADES, _same_electronics(designed, true)),
@@ -260,6 +263,16 @@ def _check_failures(chosen: Scenario, plant: Plant) -> None:
     ):
         if broken > there:
             raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
+
+
+def _with_own_loads(chosen: Scenario, true: Blade) -> Scenario:
+    """The scenario with what its own loads leave to the blade; ``ValueError`` where none can act."""
+    if not chosen.loads:
+        return chosen
+    if chosen.plants.spin_up is not None or chosen.plants.truth is not None:
+        shapes = [load.shape for load in chosen.loads]
+        raise Refused("scenario.loads", shapes, "empty where the rotor runs up or a plant file says what moves")
+    return replace(chosen, loads=of_blade(chosen.loads, true.beam, true.reference_load))
 
 
 def _check_sensors(chosen: Scenario, config: BladeConfig) -> None:

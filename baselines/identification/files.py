@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.identification.measurement import Measurement
-from beamenv.configuration import Number, Refused, Texts, checked
+from beamenv.configuration import Flag, Number, Refused, Texts, checked
 from beamenv.configuration.files import checked_path, content_of, of_file
 from beamenv.configuration.sentence import shown, unknown_field
 
@@ -33,11 +33,13 @@ def read_measurement(
     readings: Sequence[str] | None = None,
     time: str | None = None,
     interval: float | None = None,
+    before: bool = False,
 ) -> Measurement:
     """The measurement in a CSV file whose first line names its columns, each perhaps with its unit: ``y1 [A]``.
 
     ``voltages`` and ``readings`` are names of columns; left out, those that begin with u and with y. The rate is that of the column
-    ``time`` (s), left out ``time`` or ``t``, or is given by ``interval`` (s) where there is none. Raises ``ValueError`` of one
+    ``time`` (s), left out ``time`` or ``t``, or is given by ``interval`` (s) where there is none. With ``before`` the voltages of a
+    row were on before its readings were taken, as where both are sampled together. Raises ``ValueError`` of one
     sentence with the file's name, and with the line where there is one, for a file that cannot be read, columns that are not there,
     cells that hold no number, rows that are missing or not at one rate, a rate that is not the ``interval`` given, and what
     ``Measurement`` refuses.
@@ -45,6 +47,7 @@ def read_measurement(
     place = checked_path("data", path, (ENDING,))
     asked = {name: None if each is None else checked(name, each, Texts()) for name, each in _asked(voltages, readings).items()}
     interval = None if interval is None else checked("interval", interval, Number(gt=0.0, unit="s"))
+    later = int(checked("before", before, Flag()))
     text = _decoded(content_of(place), str(place))
     with of_file(place):
         names, units, cells = _table(text)
@@ -55,8 +58,8 @@ def read_measurement(
         values = _numbers(cells, names, [*chosen["voltages"], *chosen["readings"], *clock])
         m, both_count = len(chosen["voltages"]), len(chosen["voltages"]) + len(chosen["readings"])
         return Measurement(
-            voltages=values[:, :m],
-            readings=values[:, m:both_count],
+            voltages=values[later:, :m],
+            readings=values[: len(values) - later, m:both_count],
             interval=_rate(values[:, both_count:], interval),
             voltage_names=tuple(names[k] for k in chosen["voltages"]),
             reading_names=tuple(names[k] for k in chosen["readings"]),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import os
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,8 +19,14 @@ from baselines.identification.realisation import Stabilisation
 from baselines.identification.state_space import StateSpace, continuous
 from baselines.identification.white_noise import WhiteNoise
 from beamenv.configuration import Count, checked
+from beamenv.configuration.files import checked_path
+from beamenv.configuration.writing import write_whole
+from beamenv.plant.plant import Plant
 
 Array = NDArray[np.float64]
+
+ENDING = ".npz"
+MODE = ("frequency", "frequency_spread", "damping_ratio", "damping_spread", "certainty")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -29,14 +37,10 @@ class Identified:
     """What was measured, all of it."""
     learned: int
     """Rows that the model was learned from, the first; the others were held back."""
-    scaled: InnovationModel
-    """For voltages and readings of unit standard deviation."""
-    parameters: Array
-    """Covariance of its parameters, as ``prediction_error.moved`` takes steps."""
+    choice: Choice
+    """The model, and which orders were tried."""
     noise: WhiteNoise
     """Of ``scaled``."""
-    choice: Choice
-    """Which orders were tried."""
     balanced: dict[int, float]
     """Loss on the rows held back, as ``Tried`` has it, of the balanced model of each order, among which the search began."""
     stabilisation: Stabilisation
@@ -50,6 +54,16 @@ class Identified:
         return f"Identified({self.model.order} states, {len(modes)} modes, free-run fit {fits})"
 
     @property
+    def scaled(self) -> InnovationModel:
+        """For voltages and readings of unit standard deviation."""
+        return self.choice.refined.model
+
+    @property
+    def parameters(self) -> Array:
+        """Covariance (k, k) of its parameters, as ``prediction_error.moved`` takes steps."""
+        return self.choice.refined.parameters
+
+    @property
     def model(self) -> InnovationModel:
         """In V and the sensors' units."""
         return self._in_units(self.scaled)
@@ -60,7 +74,7 @@ class Identified:
     @property
     def modes(self) -> Modes:
         """Frequencies and dampings with their spread."""
-        return modes_of(self.scaled, self.parameters)
+        return modes_of(self.choice.refined)
 
     @property
     def sensor_noise(self) -> Array:
@@ -95,6 +109,19 @@ class Identified:
         }
         return {name: value for name, value in {**known, **about}.items() if value is not None}
 
+    def plant(self, **about: Any) -> Plant:
+        """The plant that controllers are built from and environments run (``Plant.from_state_space`` of ``arrays``)."""
+        return Plant.from_state_space(**self.arrays(**about))
+
+    def save(self, path: str | os.PathLike[str], model: StateSpace | None = None, **about: Any) -> None:
+        """Write ``arrays`` for ``Plant.from_file``, whole or not at all; ``ValueError`` for another ending than .npz."""
+        place, file = checked_path("path", path, (ENDING,)), io.BytesIO()
+        np.savez(file, **self.arrays(model, **about))
+        try:
+            write_whole(place, file.getvalue())
+        except OSError as error:
+            raise ValueError(f"file {str(place)!r} cannot be written: {error.strerror or error}.") from None
+
     def ensemble(self, count: int, seed: int = 0) -> list[StateSpace]:
         """So many models drawn from the spread of the parameters, each with the loads of the model itself."""
         count, seed = checked("count", count, Count()), checked("seed", seed, Count(0))
@@ -112,11 +139,11 @@ class Identified:
             "order": self.model.order,
             "order_reason": self.choice.reason,
             "orders_tried": [
-                {"order": each.order, "loss": each.loss, "missed": each.missed, "kept": each.kept} for each in self.choice.tried
+                {"order": each.order, "loss": _finite(each.loss), "missed": _finite(each.missed), "kept": each.kept}
+                for each in self.choice.tried
             ],
             "modes": [
-                dict(zip(("frequency", "frequency_spread", "damping_ratio", "damping_spread"), map(float, row), strict=True))
-                for row in zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
+                dict(zip(MODE, map(float, row), strict=True)) for row in zip(*(getattr(modes, name) for name in MODE), strict=True)
             ],
             "spread": "one standard deviation, from the curvature of the likelihood (Cramér and Rao)",
             "readings": [
@@ -133,3 +160,7 @@ class Identified:
             ],
             "loads": self.noise.load_input.shape[1],
         }
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None

@@ -19,7 +19,7 @@ from baselines.identification.fit import fit_of
 from baselines.identification.identified import Identified
 from baselines.identification.measurement import Measurement
 from baselines.identification.observer import observer
-from baselines.identification.order import first_order, pruned
+from baselines.identification.order import first_order, pruned, settled
 from baselines.identification.prediction_error import Spectra, refined
 from baselines.identification.realisation import realise
 from baselines.identification.white_noise import white_noise
@@ -65,19 +65,19 @@ def identify(
     spectra = Spectra(learning)
     told(f"{begun} states", 0.1)
     first = refined(spectra, realisation.model(begun), progress=lambda done: told(f"{begun} states", 0.1 + 0.3 * done))
-    choice = pruned(first, spectra, scaled, learned, wanted, lambda what, done: told(what, 0.4 + 0.5 * done))
-    told("noise", 0.9)
-    found = choice.refined
+    choice = pruned(first, spectra, scaled, learned, wanted, lambda what, done: told(what, 0.4 + 0.4 * done))
+    told(f"{choice.refined.model.order} states", 0.9)
+    choice = settled(choice, spectra, scaled, learned)
+    model = choice.refined.model
+    told("noise", 0.95)
     whole = Identified(
         measurement=measurement,
         learned=learned,
-        scaled=found.model,
-        parameters=found.parameters,
-        noise=white_noise(found.model, learned),
         choice=choice,
+        noise=white_noise(model, learned),
         balanced=balanced,
         stabilisation=realisation.stabilisation(),
-        fit=fit_of(found.model, scaled, learned),
+        fit=fit_of(model, scaled, learned),
         collocated=collocated,
     )
     told("done", 1.0)

@@ -23,6 +23,10 @@ LEAST_POLE = 1e-3
 """A real pole of a sampled system that is negative, or hardly there, is begun with at this: no plant in continuous time has one."""
 
 
+HALVINGS = 60
+"""Of K, after which it is nothing."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class InnovationModel(ReadOnly):
     """n = 2r + s states, m voltages, p readings, in the units that these are given in."""
@@ -69,6 +73,13 @@ class InnovationModel(ReadOnly):
         """Whether it is, and its predictor too."""
         own = np.abs(np.concatenate([self.pairs, self.reals])).max(initial=0.0)
         return bool(own < 1.0 and np.abs(np.linalg.eigvals(self.predictor)).max(initial=0.0) < 1.0)
+
+    def steadied(self) -> InnovationModel:
+        """Itself if it is ``stable``; else with K halved until its predictor is, as that of a stable model without K is."""
+        found, halvings = self, 0
+        while not found.stable and halvings < HALVINGS:
+            found, halvings = replace(found, K=0.5 * found.K), halvings + 1
+        return found
 
     def scaled(self, voltage: Array, reading: Array) -> InnovationModel:
         """The same for voltages and readings in other units: old ones times ``voltage`` (m,) and ``reading`` (p,)."""

@@ -21,17 +21,19 @@ from beamenv.configuration.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
-KNEE = 5e-4
-"""Loss per reading, against the best order, below which a balanced model is as good as any to begin with."""
+MADE_GOOD = 300.0
+"""Likelihood of all rows held back that a balanced model may lack to begin with: prediction error makes it good."""
 DOUBTFUL = 3.0
 """Wald's statistic over the count of its numbers, 1 for a pole that is not there: all below this are taken away together."""
 CERTAIN = 3.0
-"""Standard errors by which rows held back must miss a pole for it to stay."""
+"""Standard errors by which rows held back must miss a pole for it to stay; of several poles at once, none may be missed at all."""
 BLOCKS = 50
 """Into which those rows are cut for the standard error, long against what a row remembers."""
 STEPS = 4
 """Of prediction error after a pole was taken away."""
-REFUSALS = 2
+LAST_STEPS, LAST_GAIN = 15, 0.002
+"""Of prediction error once the order is chosen: ten times as far as while it is sought."""
+REFUSALS = 6
 """How many poles in turn must be missed before the search ends."""
 
 
@@ -53,14 +55,19 @@ class Choice:
 
     refined: Refined
     tried: tuple[Tried, ...]
+    wanted: int | None
+    """The order that was asked for, if one was."""
 
     @property
     def reason(self) -> str:
         """Why this order, in a sentence."""
-        order, refused = self.refined.model.order, [each for each in self.tried if not each.kept]
-        if not refused:
-            return f"{order} states, as asked for." if len(self.tried) < 2 else f"{order} states: fewer were not tried."
-        nearest = min(refused, key=lambda each: each.missed)
+        order = self.refined.model.order
+        if self.wanted is not None:
+            return f"{order} states: {self.wanted} were asked for."
+        shorter = [each for each in self.tried if order - 2 <= each.order < order]
+        if not shorter:
+            return f"{order} states: there is no pole left to do without."
+        nearest = min(shorter, key=lambda each: each.missed)
         return (
             f"{order} states: without one pole more, {nearest.order} states, rows held back are worse predicted by "
             f"{nearest.missed:.1f} standard errors."
@@ -71,24 +78,33 @@ Told = Callable[[str, float], None]
 
 
 def first_order(realisation: Realisation, everything: Measurement, learned: int, candidates: range) -> tuple[int, dict[int, float]]:
-    """The least order of a balanced model that is about as good as the best on the rows after ``learned``; the loss of each."""
-    found = {order: held_back_loss(realisation.model(order), everything, learned) for order in candidates}
-    good = min(found.values()) + KNEE * everything.readings.shape[1]
-    return next(order for order, value in found.items() if value <= good), found
+    """The least order of a balanced model that explains the rows after ``learned`` about as well as the best; the loss of each."""
+    errors = {order: _held_back(realisation.model(order), everything, learned) for order in candidates}
+    losses = {order: np.inf if each is None else _loss(each) for order, each in errors.items()}
+    least = min(losses.values())
+    if not np.isfinite(least):
+        raise ValueError("the measurement is explained by no model that is stable: it is too short, or of nothing that is.")
+    rows = len(everything) - learned
+    return next(order for order, loss in losses.items() if rows * (loss - least) <= MADE_GOOD), losses
 
 
-def held_back_loss(model: InnovationModel, everything: Measurement, learned: int) -> float:
-    """As ``Tried.loss``; infinite where the model or its predictor is not stable."""
+def _held_back(model: InnovationModel, everything: Measurement, learned: int) -> Array | None:
+    """One-step errors of the rows after ``learned``; None where there are no finite ones."""
     if not model.stable:
-        return np.inf
-    errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
+        return None
+    with np.errstate(all="ignore"):  # of a predictor that is nearly unstable
+        errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
+    return errors if np.isfinite(errors).all() else None
+
+
+def _loss(errors: Array) -> float:
     return 0.5 * float(np.linalg.slogdet(errors.T @ errors / len(errors))[1])
 
 
 def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: int, wanted: int | None, told: Told) -> Choice:
     """Poles taken away down to ``wanted`` states; None: for as long as the rows after ``learned`` do not miss them."""
-    now, losses = first, _losses(first.model, everything, learned)
-    tried, passed = [Tried(first.model.order, held_back_loss(first.model, everything, learned), 0.0, True)], 0
+    now, (losses, loss) = first, _losses(first.model, everything, learned)
+    tried, passed = [Tried(first.model.order, loss, 0.0, True)], 0
     least, together = wanted or 2, first.model.order
     while now.model.order > least and passed < REFUSALS:
         poles = _next(now, least, passed, together)
@@ -96,10 +112,10 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
             break
         shorter = without(now, poles)
         after = refined(spectra, shorter.model, shorter.start, steps=STEPS)
-        left = _losses(after.model, everything, learned)
+        left, loss = _losses(after.model, everything, learned)
         missed = _in_standard_errors(left - losses)
-        kept = wanted is not None or missed < CERTAIN
-        tried.append(Tried(after.model.order, held_back_loss(after.model, everything, learned), missed, kept))
+        kept = wanted is not None or missed < (CERTAIN if len(poles) == 1 else 0.0)
+        tried.append(Tried(after.model.order, loss, missed, kept))
         told(f"{after.model.order} states", 0.0)
         if kept:
             now, losses, passed = after, left, 0
@@ -107,7 +123,15 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
             together = len(poles) // 2
         else:
             passed += 1
-    return Choice(now, tuple(tried))
+    return Choice(now, tuple(tried), wanted)
+
+
+def settled(choice: Choice, spectra: Spectra, everything: Measurement, learned: int) -> Choice:
+    """The choice with its model refined further, unless rows held back are certainly predicted worse by that."""
+    now = choice.refined
+    further = refined(spectra, now.model, now.start, steps=LAST_STEPS, enough=LAST_GAIN)
+    before, after = (_losses(each.model, everything, learned)[0] for each in (now, further))
+    return replace(choice, refined=further) if _in_standard_errors(after - before) < CERTAIN else choice
 
 
 def _next(found: Refined, least: int, passed: int, together: int) -> list[int]:
@@ -124,14 +148,18 @@ def _next(found: Refined, least: int, passed: int, together: int) -> list[int]:
     return fitting[passed : passed + 1]
 
 
-def _losses(model: InnovationModel, everything: Measurement, learned: int) -> Array:
-    """Minus log likelihood (rows,) of each row after ``learned``, less a constant."""
-    errors = model.one_step_errors(everything.voltages, everything.readings)[learned:]
+def _losses(model: InnovationModel, everything: Measurement, learned: int) -> tuple[Array, float]:
+    """Minus log likelihood (rows,) of each row after ``learned``, less a constant; and what ``Tried`` has."""
+    errors = _held_back(model, everything, learned)
+    if errors is None:
+        return np.full(len(everything) - learned, np.inf), np.inf
     root = np.linalg.cholesky(model.covariance)
-    return np.asarray(0.5 * (np.linalg.solve(root, errors.T) ** 2).sum(axis=0) + np.log(np.diag(root)).sum())
+    return 0.5 * (np.linalg.solve(root, errors.T) ** 2).sum(axis=0) + np.log(np.diag(root)).sum(), _loss(errors)
 
 
 def _in_standard_errors(difference: Array) -> float:
+    if not np.isfinite(difference).all():
+        return np.inf
     blocks = np.array([each.mean() for each in np.array_split(difference, BLOCKS)])
     return float(blocks.mean() / (blocks.std(ddof=1) / np.sqrt(len(blocks)) + 1e-300))
 
@@ -165,7 +193,7 @@ def without(found: Refined, poles: list[int]) -> Refined:
     where, values = _driving(found.model, states)
     inverse = np.linalg.pinv(found.parameters[np.ix_(where, where)], rcond=1e-8, hermitian=True)
     made_good = _dropped(moved(found.model, -found.parameters[:, where] @ inverse @ values), poles, states)
-    model = made_good if made_good.stable else _dropped(found.model, poles, states)
+    model = made_good if made_good.stable else _dropped(found.model, poles, states).steadied()
     return replace(found, model=model, start=np.delete(found.start, states))
 
 

@@ -107,6 +107,7 @@ def refined(
     start: Array | None = None,
     *,
     steps: int = 12,
+    enough: float = ENOUGH,
     lines: int = CURVATURE_LINES,
     progress: Progress | None = None,
 ) -> Refined:
@@ -124,7 +125,7 @@ def refined(
         curvature, gradient = _normal_equations(spectra, model, start, covariance, lines)
         if progress:
             progress((step + 1) / steps)
-        if gain < ENOUGH * len(gradient) / spectra.rows:
+        if gain < enough * len(gradient) / spectra.rows:
             break
     return Refined(replace(model, covariance=covariance), start, least, _inverse(2.0 * curvature))
 
@@ -202,7 +203,7 @@ def _normal_equations(spectra: Spectra, model: InnovationModel, start: Array, co
     curvature: Array | None = None
     for some in _chunks(len(drawn), AT_ONCE):
         J = _derivatives(_Errors(spectra, model, start, drawn[some]), model, whitener)
-        rows = np.concatenate([J.real, J.imag]).astype(np.float32)  # the direction of a step needs no more
+        rows = np.concatenate([J.real, J.imag])
         part = (rows.T @ rows).astype(np.float64)
         curvature = part if curvature is None else curvature + part
     assert curvature is not None
@@ -216,15 +217,21 @@ def _turned(moving: Complex, r: int) -> Complex:
     return np.stack([pairs[:, :, 1], -pairs[:, :, 0]], axis=2).reshape(len(moving), 2 * r)
 
 
-def _derivatives(at: _Errors, model: InnovationModel, whitener: Array) -> Complex:
-    """−∂ε (F p, k), whitened."""
-    S, r, n, p = at.sensitivity(whitener), len(model.pairs), model.order, len(model.C)
+def _derivatives(at: _Errors, model: InnovationModel, whitener: Array) -> NDArray[np.complex64]:
+    """−∂ε (F p, k), whitened, in single precision: the direction of a step needs no more."""
+    r, n, p = len(model.pairs), model.order, len(model.C)
     moving = (at.states @ model.A.T) * model.interval
+    exact = at.sensitivity(whitener)
+    seen = (whitener - exact @ model.K).astype(np.complex64)
+    S, states, driving = (each.astype(np.complex64) for each in (exact, at.states, at.driving))
     shrinking, turning = S * moving[:, None, :], S[:, :, : 2 * r] * _turned(moving, r)[:, None, :]
-    first = np.stack([_by_mode(shrinking[:, :, : 2 * r], r), _by_mode(turning, r)], axis=-1).reshape(*S.shape[:2], 2 * r)
-    driven = (S[:, :, :, None] * at.driving[:, None, None, :]).reshape(*S.shape[:2], -1)
-    seen = (whitener - S @ model.K)[:, :, :, None] * at.states[:, None, None, :]
-    return np.concatenate([first, shrinking[:, :, 2 * r :], driven, seen.reshape(len(S), p, p * n)], axis=2).reshape(len(S) * p, -1)
+    count, width = len(S), driving.shape[1]
+    found = np.empty((count, p, n + n * width + p * n), dtype=np.complex64)
+    found[:, :, 0 : 2 * r : 2], found[:, :, 1 : 2 * r : 2] = _by_mode(shrinking[:, :, : 2 * r], r), _by_mode(turning, r)
+    found[:, :, 2 * r : n] = shrinking[:, :, 2 * r :]
+    np.multiply(S[:, :, :, None], driving[:, None, None, :], out=found[:, :, n : n + n * width].reshape(count, p, n, width))
+    np.multiply(seen[:, :, :, None], states[:, None, None, :], out=found[:, :, n + n * width :].reshape(count, p, p, n))
+    return found.reshape(count * p, -1)
 
 
 def _by_mode(columns: Complex, r: int) -> Complex:

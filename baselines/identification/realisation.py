@@ -42,7 +42,7 @@ class Realisation(ReadOnly):
         """The model of so many states."""
         m = self.inputs.shape[1] - len(self.C)
         B, K = self.inputs[:order, :m], self.inputs[:order, m:]
-        return in_modes(self.A[:order, :order], B, self.C[:, :order], K, self.covariance, self.interval)
+        return in_modes(self.A[:order, :order], B, self.C[:, :order], K, self.covariance, self.interval).steadied()
 
     def stabilisation(self, step: int = 2) -> Stabilisation:
         """Poles of every ``step``-th order."""

@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 
 LOWEST = 0.005
 """rad per row, the lowest frequency compared; the half circle has π."""
-FREQUENCIES = 600
-STEPS = 400
+FREQUENCIES = 400
+STEPS = 300
 DISTINCT = 1e-4
 """Loss of likelihood a row below which two spectra count as one."""
 

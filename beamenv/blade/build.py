@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 from beamenv.blade.config import MATERIALS, BladeConfig
 from beamenv.blade.held_load import own_reference, reference_of, under_reference
 from beamenv.blade.instruments import in_range
+from beamenv.blade.load_shapes import shape_force
 from beamenv.configuration import Count, Instance, Refused, checked
 from beamenv.configuration.read_only import sealed_property
 from beamenv.patches import PatchResponse, actuation, local_response
 from beamenv.plant.electronics import behind_electronics, static_residual
+from beamenv.plant.further_loads import with_further_loads
 from beamenv.plant.plant import Plant, drive_limit
-from beamenv.plant.reduction import FullModel, ModalModel, full_model, reduced_plant, truncate
+from beamenv.plant.reduction import FullModel, ModalModel, acting_on_velocities, full_model, reduced_plant, truncate
 from beamenv.plant.signals import REFERENCE_LOAD
+from beamenv.sensors.points import along
 from beamenv.sensors.readings import load_feedthrough, rate_residual, with_readings
 from beamenv.sensors.rows import OnBlade, SensorRows, sensor_rows
 from beamenv.structure import RotatingBeam
@@ -103,7 +106,26 @@ class Blade:
         config, plant = self.config, self.plant
         if _is_thesis(config) and config.truth_modes in (None, config.modes):
             return plant
-        return self._behind_electronics(self._reduced(self.true_modal, plant.sensor_full_scale))
+        return self._behind_electronics(self._loaded(self._reduced(self.true_modal, plant.sensor_full_scale)))
+
+    @sealed_property
+    def further_loads(self) -> Array:
+        """(N, l): the generalised forces of loads besides the uniform ones, per unit of each."""
+        each = [shape_force(self.beam, shape, f"scenario.loads[{k}]") for k, shape in enumerate(self.config.loads)]
+        return np.column_stack([np.zeros((self.beam.space.size, 0)), *each])
+
+    def _loaded(self, bare: Plant) -> Plant:
+        """The plant with its further loads among the disturbances, of which load cases and noise make nothing."""
+        shapes, further = self.config.loads, acting_on_velocities(self.true_modal.mode_shapes.T @ self.further_loads)
+        return bare if not shapes else with_further_loads(bare, further, tuple(shape.signal for shape in shapes))
+
+    def _load_feedthrough(self, rows: SensorRows) -> Array:
+        """(p, k): what accelerometers feel of loads at once, and of the acceleration of the base."""
+        through = load_feedthrough(rows, self.true_modal, np.hstack([self.full.line_load, self.further_loads]))
+        for k, shape in enumerate(self.config.loads):
+            if shape.shape == "base":
+                through[:, 2 + k] += rows.with_base @ along(shape.direction)
+        return through
 
     def _behind_electronics(self, bare: Plant) -> Plant:
         """The plant behind amplifiers and filters, with the static share of modes that it leaves out; none of it in the thesis."""
@@ -119,7 +141,7 @@ class Blade:
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
             filter_cutoff=None if cutoff is None else cutoff * rate,
-            load_feedthrough=None if rows is None else load_feedthrough(rows, self.true_modal, self.full.line_load),
+            load_feedthrough=None if rows is None else self._load_feedthrough(rows),
         )
 
     @sealed_property
@@ -248,6 +270,7 @@ _MADE_OF = {
     "true_modal": (*_BEAM, "speed", "modes", "truth_modes", "gyroscopic", "control_interval"),
     "full": (*_BEAM, "speed"),
     "sensor_rows": (*_BEAM, "speed", "sensors"),
+    "further_loads": (*_BEAM, "speed", "loads"),
 }
 """The fields of a configuration that each part depends on."""
 

@@ -10,11 +10,13 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
+from beamenv.blade.load_shapes import LoadShape
 from beamenv.configuration import (
     Choice,
     Count,
     Flag,
     Instance,
+    Items,
     Number,
     Positive,
     Refused,
@@ -191,6 +193,8 @@ class BladeConfig:
     sensors: Annotated[tuple[Sensor, ...], Variants("kind", SENSORS)] = ()
     """What is read, in this order: tables with a ``kind`` and its fields (``beamenv.sensors.kinds``). Empty: the currents of all
     sensor patches."""
+    loads: Annotated[tuple[LoadShape, ...], Items(LoadShape)] = ()
+    """Where further loads act on the true blade; a scenario with loads of its own fills this in, and says how large they are."""
     electronics: ElectronicsConfig = field(default_factory=ElectronicsConfig)
     truth_modes: Annotated[int | None, Count()] = None
     """Modes of the plant that moves; None: every one up to the Nyquist frequency π/``control_interval``, and no fewer than

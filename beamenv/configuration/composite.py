@@ -56,7 +56,7 @@ class Variants(Variant):
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
         tables = [_whole(name, each, self.key, handler) for name, each in self.classes.items()]
-        return {"type": "array", "items": {"anyOf": tables}}
+        return _listed({"anyOf": tables})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +83,7 @@ class Items(Kind):
         return self.schema(type(None) in get_args(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
-        return {"type": "array", "items": _items(self.of, handler)}
+        return _listed(_items(self.of, handler))
 
 
 def _whole(name: str, cls: type[Any], key: str, handler: GetJsonSchemaHandler) -> JsonSchema:
@@ -92,6 +92,11 @@ def _whole(name: str, cls: type[Any], key: str, handler: GetJsonSchemaHandler) -
     return {
         "allOf": [handler(cls.__pydantic_core_schema__), {"required": [key, *_needed(cls)]}, {"properties": {key: {"const": name}}}]
     }
+
+
+def _listed(item: JsonSchema) -> JsonSchema:
+    """A list of such items, or one alone."""
+    return {"anyOf": [{"type": "array", "items": item}, item]}
 
 
 def _items(cls: type[Any], handler: GetJsonSchemaHandler) -> JsonSchema:

@@ -51,8 +51,8 @@ class PatchesOrGroups(Items):
         return {"anyOf": [Patches().json(), {"type": "array", "items": {"type": "object"}}]}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> JsonSchema:
-        groups = {**Items.__get_pydantic_json_schema__(self, schema, handler), "minItems": self.least}
-        return {"anyOf": [Patches().json(), groups, groups["items"]]}
+        groups, group = Items.__get_pydantic_json_schema__(self, schema, handler)["anyOf"]
+        return {"anyOf": [Patches().json(), {**groups, "minItems": self.least}, group]}
 
 
 def _as_groups(value: Any) -> Any:

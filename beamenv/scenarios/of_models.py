@@ -22,6 +22,9 @@ def check_scenario(chosen: Scenario) -> None:
         own, allowed = getattr(chosen.plants, name), getattr(usual, name)
         if name not in OF_SAMPLES and own != allowed:
             raise Refused(f"scenario.plants.{name}", own, f"{allowed!r} with a plant of one's own, whose variety its spread says")
+    if chosen.loads:
+        shapes = [load.shape for load in chosen.loads]
+        raise Refused("scenario.loads", shapes, "empty with a plant of one's own, whose disturbances are its own")
     if any(chosen.rotor.harmonics):
         harmonics = list(chosen.rotor.harmonics)
         raise Refused("scenario.rotor.harmonics", harmonics, "none with a plant of one's own, which does not turn")

@@ -13,13 +13,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from beamenv.configuration import Choice, Flag, Range, Refused, Share, checked, checked_table, configuration, read
+from beamenv.configuration import Choice, Flag, Items, Range, Refused, Share, checked, checked_table, configuration, read
 from beamenv.configuration.files import ENDINGS, of_file, parsed_table, read_table
 from beamenv.configuration.numbers import TURNED
 from beamenv.plant.named import ENDING
 from beamenv.scenarios import named
 from beamenv.scenarios.load_cases import CASES
 from beamenv.scenarios.named import NAMES
+from beamenv.scenarios.own_loads import Load
+from beamenv.scenarios.series import ENDING as SERIES
 from beamenv.scenarios.tables import STRONGEST, Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
 
 Loads = Annotated[Pair, Range(0.0, STRONGEST, unit="N/m")]
@@ -74,6 +76,8 @@ class Scenario:
     acquisition: Acquisition = field(default_factory=Acquisition)
     failures: Failures = field(default_factory=Failures)
     rotor: Rotor = field(default_factory=Rotor)
+    loads: Annotated[tuple[Load, ...], Items(Load)] = ()
+    """Loads of one's own, all of them in every episode."""
 
     def __post_init__(self) -> None:
         if sum(self.shares) > 1.0 + 1e-9:
@@ -98,6 +102,8 @@ class Scenario:
 def _with_lists(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _with_lists(each) for key, each in value.items()}
+    if callable(value):  # which JSON cannot hold
+        return getattr(value, "__qualname__", repr(value))
     return [_with_lists(each) for each in value] if isinstance(value, tuple) else value
 
 
@@ -140,11 +146,26 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
 
 def _beside(path: Path, content: dict[str, Any]) -> dict[str, Any]:
     """The content of a file with the plant file that it names taken to lie where it does itself."""
+    content = _series_beside(path, content)
     plants = content.get("plants")
     truth = plants.get("truth") if isinstance(plants, dict) else None
     if plants is None or not isinstance(truth, str) or not truth.lower().endswith(ENDING):
         return content
     return {**content, "plants": {**plants, "truth": str(path.parent / truth)}}
+
+
+def _series_beside(path: Path, content: dict[str, Any]) -> dict[str, Any]:
+    loads = content.get("loads")
+    if not isinstance(loads, list):
+        return content
+    return {**content, "loads": [_beside_file(path, each) for each in loads]}
+
+
+def _beside_file(path: Path, load: Any) -> Any:
+    series = load.get("series") if isinstance(load, dict) else None
+    if not isinstance(series, str) or not series.lower().endswith(SERIES):
+        return load
+    return {**load, "series": str(path.parent / series)}
 
 
 def scenario_schema() -> dict[str, Any]:

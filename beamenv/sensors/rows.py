@@ -35,6 +35,8 @@ class SensorRows(ReadOnly):
     """(p, m) of R q per V in the static state, with strains that the trial functions cannot follow."""
     static_rate: Array
     """(p, m) likewise of S q, whose rate is read."""
+    with_base: Array
+    """(p, 3): what accelerometers feel of the base's acceleration along lag, flap and span."""
     item: NDArray[np.intp]
     """(p,) which of the sensors, as they are listed, a reading is of."""
     signals: tuple[Signal, ...]
@@ -63,8 +65,9 @@ def sensor_rows(blade: OnBlade, sensors: Sequence[Sensor]) -> SensorRows:
     each = [_rows(blade, sensor, f"blade.sensors[{k}]") for k, sensor in enumerate(sensors)]
     position, rate, acceleration, static_position, static_rate = (np.concatenate(parts) for parts in zip(*each, strict=True))
     item = np.repeat(np.arange(len(each)), [len(parts[0]) for parts in each])
+    felt = [along(each.direction) if isinstance(each, Accelerometer) else np.zeros(3) for each in sensors]
     signals = tuple(Signal(f"{sensors[k].kind} {j}", UNITS[sensors[k].kind]) for j, k in enumerate(item.tolist()))
-    return SensorRows(position, rate, acceleration, static_position, static_rate, item, signals)
+    return SensorRows(position, rate, acceleration, static_position, static_rate, np.array(felt)[item], item, signals)
 
 
 def _rows(blade: OnBlade, sensor: Sensor, name: str) -> tuple[Array, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from beamenv.scenarios.drawing import draw_uniforms, draws
 from beamenv.scenarios.scenario import Scenario
+from beamenv.simulation.signals.own_loads import DRAWS
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -27,6 +28,8 @@ class Numbers(NamedTuple):
     """(k, l) uniform: load case."""
     turns: Array
     """(k, 3 H) uniform: the rotor's harmonics."""
+    own: Array
+    """(k, d) uniform: loads of one's own."""
     noise: Array
     """(k, c) standard normal: disturbances at the first instant; empty where each blade has its own generator."""
 
@@ -39,11 +42,11 @@ def draw(
     ``group`` (N,) is each blade's, ``columns`` is c and ``faults`` f, 0 where nothing is drawn for plants and faults, ``course`` w;
     load cases are made of ``loads`` disturbances.
     """
-    widths = faults, course, draws(loads), 3 * len(scenario.rotor.harmonics)
+    widths = faults, course, draws(loads), 3 * len(scenario.rotor.harmonics), DRAWS * len(scenario.loads)
     if not isinstance(generators, np.random.Generator):
         own = [generators[row] for row in rows]
-        faulty, way, load, turns = (draw_uniforms(own, len(rows), width) for width in widths)
-        return Numbers(faulty, way, load, turns, np.empty(0))
+        faulty, way, load, turns, further = (draw_uniforms(own, len(rows), width) for width in widths)
+        return Numbers(faulty, way, load, turns, further, np.empty(0))
     drawn = []
     for count in np.bincount(group[rows]).tolist():
         if count:

@@ -152,7 +152,7 @@ COMMANDS = {
             "--seed": "0",
             "--drive-limit": "100",
         },
-        ("--json",),
+        ("--json", "--before"),
         ("baselines.identification.identify.observer",),
     ),
     "place": (

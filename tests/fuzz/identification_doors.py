@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from baselines import Measurement, identify, read_measurement
 from tests.fuzz.damage import damaged
-from tests.fuzz.meaning import COUNT, MATRIX, NOTHING, NUMBER, TEXT, Kind, choice, either, instance, maybe
+from tests.fuzz.meaning import COUNT, FLAG, MATRIX, NOTHING, NUMBER, TEXT, Kind, choice, either, instance, maybe
 from tests.fuzz.oracle import Door
 
 ROWS = 240
@@ -97,8 +97,16 @@ DOORS = [
             "readings": maybe(TEXTS),
             "time": maybe(TEXT),
             "interval": maybe(NUMBER),
+            "before": FLAG,
         },
-        lambda: {"content": text().encode(), "voltages": ["u1"], "readings": ["y1"], "time": "time", "interval": 0.01},
+        lambda: {
+            "content": text().encode(),
+            "voltages": ["u1"],
+            "readings": ["y1"],
+            "time": "time",
+            "interval": 0.01,
+            "before": True,
+        },
         told=("mine.csv",),
         junk=st.nothing(),
         plain=False,

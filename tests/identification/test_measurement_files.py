@@ -52,6 +52,13 @@ def test_without_a_column_of_time_the_interval_is_given(tmp_path):
         read(text, tmp_path)
 
 
+def test_voltages_that_were_on_before_the_readings_stand_in_the_row_before(tmp_path):
+    found = read(lines(), tmp_path, before=True)
+    assert len(found) == ROWS - 1
+    assert np.allclose(found.voltages, VOLTS[1:], atol=1e-6)
+    assert np.allclose(found.readings, READINGS[:-1], rtol=1e-5)
+
+
 WRONG = [
     ("", {}, "it is empty, but must have a line of names, then a row for each instant"),
     (lines()[1:], {}, "its first line has numbers, but must name the columns"),

@@ -55,16 +55,16 @@ def python_steps(controller, plant):
 
 
 @lru_cache(maxsize=64)
-def by_python(controller, plant, scenario, reads_speed, steps=STEPS, preset="thesis"):
+def by_python(controller, plant, scenario, reads_speed, steps):
     """What is measured and the voltages of the controller in Python's double precision."""
     with in_double_precision(controller) as own:
-        return in_a_loop(python_steps(own, plant), scenario, reads_speed, steps, preset=preset)
+        return in_a_loop(python_steps(own, plant), scenario, reads_speed, steps)
 
 
-def in_a_loop(step, scenario, reads_speed=False, steps=STEPS, seed=1, preset="thesis"):
+def in_a_loop(step, scenario, reads_speed=False, steps=STEPS, seed=1, **blade):
     """What is measured (k, p) and the voltages (k, m) of a controller's own episode."""
     duration = STEPS * 5e-4  # whatever part of it is run: a run-up is as long as the episode
-    env = gym.make(beamenv.ENV_ID, preset=preset, scenario=scenario, physical_units=True, duration=duration, dtype="float64")
+    env = gym.make(beamenv.ENV_ID, scenario=scenario, physical_units=True, duration=duration, dtype="float64", **blade)
     observation, _ = env.reset(seed=seed)
     measured, voltages = [], []
     for _ in range(steps):

@@ -13,7 +13,7 @@ from beamenv.plant.plant import sample
 from beamenv.plant.signals import Signal
 from beamenv.task import resolve_task
 from tests.train.exports import EVERY, NOT_EXPORTED
-from tests.train.in_a_loop import STEPS, TOLERANCE, by_python, in_a_loop, in_double_precision, python_steps
+from tests.train.in_a_loop import STEPS, TOLERANCE, in_a_loop, in_double_precision, python_steps
 from train.controllers.named import discover
 from train.controllers.shipped import shipped
 from train.controllers.sources import Trained
@@ -23,27 +23,28 @@ from train.export.compiled import FLAGS, compiler, running, seconds_a_step
 needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 
 
-def agrees(controller, plant, scenario, preset="thesis"):
+def agrees(controller, plant, scenario, **blade):
     """Of both precisions with Python in double precision."""
     found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
     reads_speed = len(found["double"].diagram.inputs) > 1
-    measured, voltages = by_python(controller, plant, scenario, reads_speed, preset=preset)
+    with in_double_precision(controller) as own:
+        measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, **blade)
     assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
     for precision, each in found.items():
         with running(each) as step:
-            if falls_apart(controller, preset):
+            if falls_apart(controller, blade):
                 written = np.array([step(row) for row in measured])
             else:
-                _, written = in_a_loop(step, scenario, reads_speed, preset=preset)
+                _, written = in_a_loop(step, scenario, reads_speed, **blade)
         worst = np.abs(written - voltages).max() / np.abs(plant.voltage_limits).max()
         assert worst < TOLERANCE[precision], precision
 
 
-def falls_apart(controller, preset):
+def falls_apart(controller, blade):
     """Whether the loop with the full plant is unstable: rounding grows in it, and only what both are shown can be compared."""
     if not isinstance(controller, LinearController):
         return False
-    return spectral_radius(closed_loop(sample(resolve_task(preset).design.full_plant), controller)[0]) > 1.0
+    return spectral_radius(closed_loop(sample(resolve_task(**blade).design.full_plant), controller)[0]) > 1.0
 
 
 @needs_a_compiler
@@ -99,6 +100,16 @@ def test_blade_with_fewer_voltages_than_sensors(name):
 def test_strip_with_one_patch_pair(name):
     task = resolve_task(preset="aluminium-cantilever")
     agrees(discover()[name].build_for(task), task.design_plant, "default", preset="aluminium-cantilever")
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("name", ["lqg-load", "multiple-model"])
+def test_accelerometer_that_feels_the_voltages(name):
+    blade = {"sensors": [{"kind": "accelerometer"}, {"kind": "velocity", "position": 0.2}]}
+    task = resolve_task(preset="aluminium-cantilever", blade=blade)
+    law, plant = discover()[name].build_for(task), task.design_plant
+    assert plant.D[0].any()
+    agrees(law, plant, "default", preset="aluminium-cantilever", blade=blade)
 
 
 def test_sensors_are_called_what_the_plant_calls_them():

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -31,6 +32,16 @@ def test_blade_and_name_are_those_asked_for(command, tmp_path):
     assert (
         "int tail_step(tail_state *state, const double sensors[3], double volts_out[2]);" in (tmp_path / "made/tail.c").read_text()
     )
+
+
+def test_a_model_of_ones_own_is_what_it_is_designed_for(command, tmp_path):
+    A, B, C = [[0.0, 1.0], [-400.0, -0.4]], [[0.0], [0.01]], [[0.0, 1.0]]
+    np.savez(tmp_path / "mine.npz", A=A, B=B, C=C, interval=0.005)
+    result = command("lqg", "--plant", "mine.npz")
+    assert result.exit_code == 0, result.output
+    content = (tmp_path / "lqg.c").read_text()
+    assert "int lqg_step(lqg_state *state, const double sensors[1], double volts_out[1]);" in content
+    assert "note:         lqg, plant mine.npz, scenario default" in content
 
 
 @pytest.mark.skipif(compiler() is None, reason="there is no C compiler")

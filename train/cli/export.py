@@ -63,7 +63,8 @@ def export(
         path = output or Path(f"{called}.{format}")
         check_file(path, "output")
         law = chosen(controller, task, scenario, trained_seed)
-        note = f"{controller}, blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}, scenario {scenario}"
+        model = f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}" if plant is None else f"plant {plant}"
+        note = f"{controller}, {model}, scenario {scenario}"
         more: dict[str, Any] = {"precision": precision, "name": called, "note": note}
         found = exported(law, task.design_plant, **more)
         seconds = _measured(found) if measure else None

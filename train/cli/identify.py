@@ -28,6 +28,7 @@ def identify(
     ] = None,
     time: Annotated[str | None, typer.Option(help="Column of the time, s; time or t if left out.")] = None,
     interval: Annotated[float | None, typer.Option(help="s between rows, where no column tells.")] = None,
+    before: Annotated[bool, typer.Option("--before", help="The voltages of a row were on before its readings were taken.")] = False,
     held_back: Annotated[float, typer.Option(help="Share of the rows, the last, that the model is judged by.")] = 0.25,
     collocated: Annotated[
         float | None,
@@ -50,7 +51,7 @@ def identify(
         check_folder(folder)
         members, seed = checked("ensemble", ensemble, Count(0, 1000)), checked("seed", seed, Count(0, 2**63 - 1))
         about = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
-        measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval)
+        measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval, before=before)
         with bar() as report:
             found = run(measurement, _order(order), held_back=held_back, collocated=collocated, progress=report)
         from train.identification.files import write_all
@@ -87,12 +88,14 @@ def bar() -> Iterator[Callable[[str, float], None]]:
 def show(found: Any) -> None:
     """Modes and fits on the screen."""
     modes, fit, names = found.modes, found.fit, found.measurement.reading_names
-    table = Table(title="Modes", caption="± one standard deviation")
-    for column in ("mode", "rad/s", "damping ratio, %"):
+    table = Table(title="Modes", caption="± one standard deviation; certainty about 1: none")
+    for column in ("mode", "rad/s", "damping ratio, %", "certainty"):
         table.add_column(column, justify="right")
-    rows = zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
-    for k, (frequency, spread, ratio, of_ratio) in enumerate(rows, start=1):
-        table.add_row(str(k), f"{frequency:.2f} ± {spread:.2g}", f"{100.0 * ratio:.3f} ± {100.0 * of_ratio:.2g}")
+    rows = zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, modes.certainty, strict=True)
+    for k, (frequency, spread, ratio, of_ratio, certainty) in enumerate(rows, start=1):
+        table.add_row(
+            str(k), f"{frequency:.2f} ± {spread:.2g}", f"{100.0 * ratio:.3f} ± {100.0 * of_ratio:.2g}", f"{certainty:.3g}"
+        )
     print_table(table)
     fits = Table(title="Fit on rows held back")
     for column in ("reading", "one step", "free run", "attainable"):

@@ -16,7 +16,7 @@ from train.figures.paper import STYLE, draw_panel, handles, save
 
 Array = NDArray[np.float64]
 
-PERIODS = 8
+PERIODS = 2
 """Of the slowest mode, that readings are shown over."""
 SEGMENT = 4096
 """Rows of a segment, at most, over which measured spectra are averaged."""
@@ -78,8 +78,8 @@ def spectrum_panel(found: Identified) -> Panel:
     shown = slice(1, -1)
     omega = 2.0 * np.pi * hertz[shown]
     curves = [
-        Curve(omega, measured.sum(axis=1)[shown] / (2.0 * np.pi), "measured", "solid", Look(NEUTRAL, width=1.6)),
-        Curve(omega, (driven.sum(axis=1) + left)[shown] / (2.0 * np.pi), "model", "solid", Look(colour(0))),
+        Curve(omega, measured.sum(axis=1)[shown] / (2.0 * np.pi), "measured", "solid", Look(NEUTRAL, width=2.4)),
+        Curve(omega, (driven.sum(axis=1) + left)[shown] / (2.0 * np.pi), "model", "solid", Look(colour(0), width=0.7)),
         Curve(omega, left[shown] / (2.0 * np.pi), "of it loads and noise", "dashed", Look(colour(1))),
     ]
     return Panel("Spectrum of all readings, each of unit variance", "rad/s", "power, s", curves, logarithmic=True)
@@ -131,6 +131,7 @@ def order_panel(found: Identified) -> Panel:
     """How much worse rows held back are predicted than by the best, over the order."""
     orders, losses = np.array(list(found.balanced), dtype=float), np.array(list(found.balanced.values()))
     tried = np.array([[each.order, each.loss] for each in found.choice.tried])
+    tried = tried[np.isfinite(tried[:, 1])]
     least, finite = min(losses.min(), tried[:, 1].min()), np.isfinite(losses)
     balanced, refined = Look(NEUTRAL, marker=Marker("circle", size=3)), Look(colour(0), marker=Marker("square", size=4))
     curves = [

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from baselines.identification.identified import Identified
 from beamenv.configuration.writing import write_whole
@@ -22,16 +19,10 @@ ENSEMBLE = "ensemble"
 def write_all(found: Identified, folder: Path, members: int, seed: int, about: Mapping[str, Any]) -> list[Path]:
     """Write plant, ensemble, report and figures, each whole or not at all; their paths, the plant's first."""
     plant, ensemble = folder / PLANT, folder / ENSEMBLE
-    _write_arrays(plant, found.arrays(**about))
+    found.save(plant, **about)
     for k, each in enumerate(found.ensemble(members, seed) if members else []):
-        _write_arrays(ensemble / f"{k:03d}.npz", found.arrays(each, **about))
+        found.save(ensemble / f"{k:03d}.npz", each, **about)
     write_json(folder / "report.json", found.to_dict())
     write_whole(folder / "report.md", markdown(found))
     figures = draw_figures(found, folder)
     return [plant, *([ensemble] if members else []), folder / "report.json", folder / "report.md", *figures]
-
-
-def _write_arrays(path: Path, content: Mapping[str, Any]) -> None:
-    file = io.BytesIO()
-    np.savez(file, **content)
-    write_whole(path, file.getvalue())

@@ -37,11 +37,15 @@ def _modes(about: dict[str, Any]) -> str:
             f"{mode['frequency']:.2f} ± {mode['frequency_spread']:.2g}",
             f"{mode['frequency'] / HERTZ:.3f} ± {mode['frequency_spread'] / HERTZ:.2g}",
             f"{100.0 * mode['damping_ratio']:.3f} ± {100.0 * mode['damping_spread']:.2g}",
+            f"{mode['certainty']:.3g}",
         ]
         for k, mode in enumerate(about["modes"], start=1)
     ]
-    heading = "## Modes\n\n± " + about["spread"] + ". Poles damped by a fifth and more are not listed."
-    return heading + "\n\n" + table(["mode", "rad/s", "Hz", "damping ratio, %"], rows, words=0)
+    heading = (
+        "## Modes\n\n± " + about["spread"] + ". Poles damped by a fifth and more are not listed. Certainty is Wald's "
+        "statistic over the count of its numbers: about 1 where there is no mode."
+    )
+    return heading + "\n\n" + table(["mode", "rad/s", "Hz", "damping ratio, %", "certainty"], rows, words=0)
 
 
 def _readings(about: dict[str, Any]) -> str:
@@ -64,7 +68,7 @@ def _readings(about: dict[str, Any]) -> str:
 
 def _orders(about: dict[str, Any]) -> str:
     rows = [
-        [str(each["order"]), f"{each['loss']:.5f}", f"{each['missed']:.1f}", "yes" if each["kept"] else "no"]
+        [str(each["order"]), _shown(each["loss"], 5), _shown(each["missed"], 1), "yes" if each["kept"] else "no"]
         for each in about["orders_tried"]
     ]
     words = "## Orders tried\n\nEach against the one kept before it, in standard errors of the difference."
@@ -73,3 +77,7 @@ def _orders(about: dict[str, Any]) -> str:
 
 def _figures() -> str:
     return escaped("Figures:") + " ![stabilisation diagram](stabilisation.png) ![fit](fit.png)"
+
+
+def _shown(value: float | None, digits: int) -> str:
+    return "∞" if value is None else f"{value:.{digits}f}"
