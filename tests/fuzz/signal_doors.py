@@ -22,7 +22,8 @@ def _rows(value):
     return tuple(read) if all(row is not NOTHING and len(row) == 2 for row in read) else NOTHING
 
 
-SPECTRUM = Kind("spectrum", _rows, st.sampled_from([[[0, 1], [10, 1]], [[0, 1]], [[5, 1], [1, 1]], [[0, -1], [1, 1]], "flat"]))
+TABLES = [[0, 1], [10, 1]], [[0, 1]], [[5, 1], [1, 1]], [[0, -1], [1, 1]], "flat"
+SPECTRUM = Kind("spectrum", _rows, st.sampled_from(TABLES))
 FILE = Kind("file", lambda value: value if isinstance(value, str) else NOTHING, st.sampled_from(["gust.csv", "gust.txt", ""]))
 FUNCTION = Kind(
     "function", lambda value: value if isinstance(value, Callable) else NOTHING, st.sampled_from([np.sin, abs, 1.0, "f"])
