@@ -26,6 +26,7 @@ from beamenv.plant.plant import Plant
 Array = NDArray[np.float64]
 
 ENDING = ".npz"
+MODE = ("frequency", "frequency_spread", "damping_ratio", "damping_spread", "certainty")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -73,7 +74,7 @@ class Identified:
     @property
     def modes(self) -> Modes:
         """Frequencies and dampings with their spread."""
-        return modes_of(self.scaled, self.parameters)
+        return modes_of(self.choice.refined)
 
     @property
     def sensor_noise(self) -> Array:
@@ -142,8 +143,7 @@ class Identified:
                 for each in self.choice.tried
             ],
             "modes": [
-                dict(zip(("frequency", "frequency_spread", "damping_ratio", "damping_spread"), map(float, row), strict=True))
-                for row in zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
+                dict(zip(MODE, map(float, row), strict=True)) for row in zip(*(getattr(modes, name) for name in MODE), strict=True)
             ],
             "spread": "one standard deviation, from the curvature of the likelihood (Cramér and Rao)",
             "readings": [

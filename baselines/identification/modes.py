@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.identification.innovation_model import InnovationModel
-from baselines.identification.prediction_error import moved
+from baselines.identification.order import certainties
+from baselines.identification.prediction_error import Refined, moved
 from baselines.identification.realisation import OVERDAMPED
 from beamenv.configuration.read_only import ReadOnly
 
@@ -30,18 +31,21 @@ class Modes(ReadOnly):
     """(k,)."""
     damping_spread: Array
     """(k,)."""
+    certainty: Array
+    """(k,): Wald's statistic that it is driven at all, over the count of its numbers; about 1 where it is not."""
 
     def __len__(self) -> int:
         return len(self.frequency)
 
 
-def modes_of(model: InnovationModel, parameters: Array) -> Modes:
-    """Those with a damping ratio below ``OVERDAMPED``; ``parameters`` is the covariance that ``Refined`` has."""
+def modes_of(found: Refined) -> Modes:
+    """Those with a damping ratio below ``OVERDAMPED``."""
+    model, parameters = found.model, found.parameters
     s = model.poles[: len(model.pairs)]
     size, ratio = np.abs(s), -s.real / np.abs(s)
     kept = [k for k in np.argsort(size) if ratio[k] < OVERDAMPED]
     spread = np.array([_spread(s[k], parameters[2 * k : 2 * k + 2, 2 * k : 2 * k + 2]) for k in kept]).reshape(-1, 2)
-    return Modes(size[kept], spread[:, 0], ratio[kept], spread[:, 1])
+    return Modes(size[kept], spread[:, 0], ratio[kept], spread[:, 1], certainties(found)[kept])
 
 
 def _spread(s: complex, covariance: Array) -> tuple[float, float]:

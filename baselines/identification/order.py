@@ -55,14 +55,19 @@ class Choice:
 
     refined: Refined
     tried: tuple[Tried, ...]
+    wanted: int | None
+    """The order that was asked for, if one was."""
 
     @property
     def reason(self) -> str:
         """Why this order, in a sentence."""
-        order, refused = self.refined.model.order, [each for each in self.tried if not each.kept]
-        if not refused:
-            return f"{order} states, as asked for." if len(self.tried) < 2 else f"{order} states: fewer were not tried."
-        nearest = min(refused, key=lambda each: each.missed)
+        order = self.refined.model.order
+        if self.wanted is not None:
+            return f"{order} states: {self.wanted} were asked for."
+        shorter = [each for each in self.tried if order - 2 <= each.order < order]
+        if not shorter:
+            return f"{order} states: there is no pole left to do without."
+        nearest = min(shorter, key=lambda each: each.missed)
         return (
             f"{order} states: without one pole more, {nearest.order} states, rows held back are worse predicted by "
             f"{nearest.missed:.1f} standard errors."
@@ -118,7 +123,7 @@ def pruned(first: Refined, spectra: Spectra, everything: Measurement, learned: i
             together = len(poles) // 2
         else:
             passed += 1
-    return Choice(now, tuple(tried))
+    return Choice(now, tuple(tried), wanted)
 
 
 def settled(choice: Choice, spectra: Spectra, everything: Measurement, learned: int) -> Choice:

@@ -8,7 +8,6 @@ from scipy.linalg import solve_discrete_are
 from scipy.signal import cont2discrete
 
 from baselines import identify
-from baselines.identification.modes import modes_of
 from baselines.identification.observer import observer
 from baselines.identification.prediction_error import Spectra, _covariance, _ends, _log_det, _normal_equations, moved
 from baselines.identification.realisation import realise
@@ -25,6 +24,7 @@ def test_frequencies_and_dampings_lie_within_four_standard_errors(identified):
     assert np.all(np.abs(modes.frequency - FREQUENCIES) < 4.0 * modes.frequency_spread)
     assert np.all(np.abs(modes.damping_ratio - DAMPING_RATIOS) < 4.0 * modes.damping_spread)
     assert np.all(modes.frequency_spread < 2e-3 * FREQUENCIES)  # and these are no excuse
+    assert np.all(modes.certainty > 10.0)
 
 
 def test_one_load_and_the_noise_of_each_sensor_are_told_apart(identified):
@@ -125,7 +125,8 @@ def test_the_spread_is_that_of_repeated_measurements():
 def test_an_order_asked_for_is_the_order(measured):
     few = identify(measured, order=4)
     assert few.model.order == 4
-    assert len(modes_of(few.scaled, few.parameters)) <= 2
+    assert few.choice.reason == "4 states: 4 were asked for."
+    assert len(few.modes) <= 2
 
 
 @pytest.mark.parametrize(

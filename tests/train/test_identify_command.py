@@ -37,7 +37,7 @@ def test_the_report_has_the_modes_with_their_spread(folder):
     for mode, frequency, ratio in zip(modes, FREQUENCIES, DAMPING_RATIOS, strict=True):
         assert abs(mode["frequency"] - frequency) < 4.0 * mode["frequency_spread"]
         assert abs(mode["damping_ratio"] - ratio) < 4.0 * mode["damping_spread"]
-    assert "| mode | rad/s | Hz | damping ratio, % |" in (folder / "report.md").read_text()
+    assert "| mode | rad/s | Hz | damping ratio, % | certainty |" in (folder / "report.md").read_text()
 
 
 def test_the_ensemble_is_of_other_plants_of_the_same_size(folder):

@@ -88,12 +88,14 @@ def bar() -> Iterator[Callable[[str, float], None]]:
 def show(found: Any) -> None:
     """Modes and fits on the screen."""
     modes, fit, names = found.modes, found.fit, found.measurement.reading_names
-    table = Table(title="Modes", caption="± one standard deviation")
-    for column in ("mode", "rad/s", "damping ratio, %"):
+    table = Table(title="Modes", caption="± one standard deviation; certainty about 1: none")
+    for column in ("mode", "rad/s", "damping ratio, %", "certainty"):
         table.add_column(column, justify="right")
-    rows = zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, strict=True)
-    for k, (frequency, spread, ratio, of_ratio) in enumerate(rows, start=1):
-        table.add_row(str(k), f"{frequency:.2f} ± {spread:.2g}", f"{100.0 * ratio:.3f} ± {100.0 * of_ratio:.2g}")
+    rows = zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, modes.certainty, strict=True)
+    for k, (frequency, spread, ratio, of_ratio, certainty) in enumerate(rows, start=1):
+        table.add_row(
+            str(k), f"{frequency:.2f} ± {spread:.2g}", f"{100.0 * ratio:.3f} ± {100.0 * of_ratio:.2g}", f"{certainty:.3g}"
+        )
     print_table(table)
     fits = Table(title="Fit on rows held back")
     for column in ("reading", "one step", "free run", "attainable"):

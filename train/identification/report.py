@@ -37,11 +37,15 @@ def _modes(about: dict[str, Any]) -> str:
             f"{mode['frequency']:.2f} ± {mode['frequency_spread']:.2g}",
             f"{mode['frequency'] / HERTZ:.3f} ± {mode['frequency_spread'] / HERTZ:.2g}",
             f"{100.0 * mode['damping_ratio']:.3f} ± {100.0 * mode['damping_spread']:.2g}",
+            f"{mode['certainty']:.3g}",
         ]
         for k, mode in enumerate(about["modes"], start=1)
     ]
-    heading = "## Modes\n\n± " + about["spread"] + ". Poles damped by a fifth and more are not listed."
-    return heading + "\n\n" + table(["mode", "rad/s", "Hz", "damping ratio, %"], rows, words=0)
+    heading = (
+        "## Modes\n\n± " + about["spread"] + ". Poles damped by a fifth and more are not listed. Certainty is Wald's "
+        "statistic over the count of its numbers: about 1 where there is no mode."
+    )
+    return heading + "\n\n" + table(["mode", "rad/s", "Hz", "damping ratio, %", "certainty"], rows, words=0)
 
 
 def _readings(about: dict[str, Any]) -> str:
