@@ -20,7 +20,7 @@ from beamenv.blade.design import Design
 from beamenv.blade.given import given_blade
 from beamenv.blade.held_load import under_reference
 from beamenv.blade.instruments import in_range
-from beamenv.blade.model_blade import ModelBlade, PlantArgument
+from beamenv.blade.model_blade import DRIVE, ModelBlade, PlantArgument
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
 from beamenv.configuration.arrays import real_numbers
@@ -289,9 +289,12 @@ def _check_loads(chosen: Scenario, true: Blade, path: str = "scenario") -> None:
 
 
 def _driven(config: BladeConfig, chosen: Scenario) -> BladeConfig:
-    """The blade with the drive that a scenario gives it."""
+    """The blade with the drive that a scenario gives the default blade, of ±1500 V, as shares of its own."""
     limits = chosen.drive.voltage_limits
-    return config if limits is None else replace(config, voltage_limits=limits)
+    if limits is None:
+        return config
+    share = max(map(abs, config.voltage_limits)) / DRIVE
+    return replace(config, voltage_limits=(share * limits[0], share * limits[1]))
 
 
 def _with(config: BladeConfig, **modes: int | None) -> BladeConfig:

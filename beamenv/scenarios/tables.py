@@ -105,7 +105,7 @@ class Drive:
     """The amplifiers and actuators."""
 
     voltage_limits: Annotated[Pair | None, VOLTAGES] = None
-    """V; None: the blade's own."""
+    """V, of a blade that is driven by up to 1500 V, and in proportion to the drive of another; None: the blade's own."""
     hysteresis: Annotated[float, Number(ge=0.0, le=0.5)] = 0.0
     """Width of the free-strain loop over its stroke, both at full drive (``beamenv.simulation.signals.hysteresis``)."""
     delay: Annotated[tuple[int, int], Range(0, 100, whole=True)] = (0, 0)

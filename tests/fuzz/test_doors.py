@@ -28,6 +28,7 @@ from tests.fuzz import (
     model_doors,
     placement_doors,
     section_doors,
+    signal_doors,
     train_doors,
     wrapper_doors,
 )
@@ -37,7 +38,17 @@ from tests.fuzz.wrong import arguments, copied, value_at
 from train.cli.app import app
 
 OF_LAWS = (law_doors, informed_law_doors, judging_doors, placement_doors, identification_doors)
-OF_BLADES = (blade_doors, section_doors, env_doors, episode_doors, wrapper_doors, file_doors, archive_doors, model_doors)
+OF_BLADES = (
+    blade_doors,
+    section_doors,
+    signal_doors,
+    env_doors,
+    episode_doors,
+    wrapper_doors,
+    file_doors,
+    archive_doors,
+    model_doors,
+)
 DOORS = [door for room in (*OF_BLADES, *OF_LAWS, train_doors, export_doors, command_doors) for door in room.DOORS]
 
 OUTCOMES = ("refused", "accepted", "fault")

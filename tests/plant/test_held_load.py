@@ -13,6 +13,7 @@ from beamenv.patches import PatchLayout, PatchMaterial
 from beamenv.patches.group import PatchGroup
 from beamenv.structure import Lamina
 from beamenv.structure.section.open_sections import StripSection
+from beamenv.task import resolve_task
 
 ALUMINIUM = Lamina.isotropic(E=70e9, nu=0.33, density=2700.0)
 SHEET = PatchMaterial(Lamina.isotropic(E=62e9, nu=0.34, density=7800.0), -180e-12, -180e-12, 0.2e-3, 0.2e-3)
@@ -102,7 +103,13 @@ def test_a_blade_whose_patches_bend_nothing_needs_a_reference_load_of_its_own():
 def test_plants_that_are_drawn_and_designs_meet_the_loads_of_the_configured_blade():
     chosen = {"plants": {"modulus_ratio": [0.8, 1.2], "bank": 4, "design_modes": 3}, "drive": {"voltage_limits": [-60.0, 60.0]}}
     task = gym.make(beamenv.ENV_ID, blade=STRIP, scenario=chosen).unwrapped.task
-    own = Blade(replace(STRIP, voltage_limits=(-60.0, 60.0))).reference_load
+    own = Blade(replace(STRIP, voltage_limits=(-4.0, 4.0))).reference_load  # 60 V of 1500 V, as a share of 100 V
     assert task.plant.reference_load == pytest.approx([own, own])
     assert np.array_equal(task.design_plant.reference_load, task.plant.reference_load)
     assert len(task.bank) == 4
+
+
+def test_the_drive_of_a_scenario_is_a_share_of_the_blade_s_own():
+    limits = resolve_task("aluminium-cantilever", scenario="hysteresis").plant.voltage_limits
+    assert limits[:, 0] == pytest.approx([-50.0, 150.0])
+    assert np.array_equal(resolve_task(scenario="hysteresis").plant.voltage_limits[:, 0], [-500.0, 1500.0])
