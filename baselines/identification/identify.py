@@ -50,7 +50,7 @@ def identify(
     ``read_measurement`` do.
     """
     measurement = data if isinstance(data, Measurement) else read_measurement(data)
-    wanted = None if order == "auto" else _checked_order(order)
+    wanted = None if isinstance(order, str) and order == "auto" else _checked_order(order)
     held_back = checked("held_back", held_back, Number(ge=0.05, le=0.5))
     told = progress or (lambda what, done: None)
     scaled = _scaled(checked("data", measurement, Instance(Measurement)))

@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 FEWEST_ROWS = 100
 """Below this there is nothing to be learned."""
 
+LARGEST = 1e100
+"""Of any column: squares stay finite."""
+
 ALIKE = 1e-6
 """Smallest share of the voltages' variance, over its largest, in any direction: below it they have not moved on their own."""
 
@@ -90,8 +93,11 @@ def _units(given: Sequence[str], count: int) -> tuple[str, ...]:
 
 def _check_moving(columns: Array, names: Sequence[str]) -> None:
     check_finite("the measurement", columns)
+    largest = np.abs(columns).max(axis=0)
+    if (beyond := np.flatnonzero(largest > LARGEST)).size:
+        raise ValueError(f"column {names[beyond[0]]!r} goes up to {largest[beyond[0]]:.3g}, but must stay within {LARGEST:g}.")
     spread = columns.std(axis=0)
-    still = np.flatnonzero(~(spread > 1e-12 * np.abs(columns).max(axis=0)))
+    still = np.flatnonzero(~(spread > 1e-12 * largest))
     if len(still):
         raise ValueError(f"column {names[still[0]]!r} is constant, but must move for anything to be learned from it.")
 

@@ -160,7 +160,7 @@ def _losses(model: InnovationModel, everything: Measurement, learned: int) -> tu
 def _in_standard_errors(difference: Array) -> float:
     if not np.isfinite(difference).all():
         return np.inf
-    blocks = np.array([each.mean() for each in np.array_split(difference, BLOCKS)])
+    blocks = np.array([each.mean() for each in np.array_split(difference, min(BLOCKS, len(difference) // 2))])
     return float(blocks.mean() / (blocks.std(ddof=1) / np.sqrt(len(blocks)) + 1e-300))
 
 

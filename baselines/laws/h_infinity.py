@@ -146,7 +146,10 @@ def _saddle_point(game: _Game) -> _SaddlePoint | None:
     if to_come is None or has_been is None:
         return None
     P, S = to_come.matrix, has_been.matrix
-    L = solve(np.eye(p) + C @ S @ C.T, C @ S, assume_a="pos").T
+    try:
+        L = solve(np.eye(p) + C @ S @ C.T, C @ S, assume_a="pos").T
+    except LinAlgError:  # S is no covariance
+        return None
     corrected = S - L @ C @ S
     seen = np.hstack([X, D]) @ block_diag(corrected, np.eye(k)) @ np.hstack([X, D]).T
     bounded = (

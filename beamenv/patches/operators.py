@@ -16,7 +16,6 @@ from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.inlays import check_fit
 from beamenv.structure.trial_functions import LEAST, Stations
 from beamenv.structure.walls.inlay import Inlay, Strip
 
@@ -66,7 +65,7 @@ def patch_forces(beam: RotatingBeam, patch: PatchMaterial, inlays: Sequence[Inla
     ``ValueError`` for a patch that leaves the blade or does not fit its wall.
     """
     for inlay in inlays:
-        check_fit(beam, inlay)
+        beam.room.check_fit(inlay)
     under = [stations_under(beam, inlay.start, inlay.start + inlay.length) for inlay in inlays]
     if beam.model == "blade":
         sections, work = work_on_section(beam, patch, inlays[0])

@@ -22,6 +22,9 @@ ANGLE = 1.4
 
 OUTPUTS = "the cost is of outputs, each over the most that one full voltage makes of it, for no energy is known"
 
+LONGEST = 1.0
+"""s: control interval of a model, however slow it is."""
+
 OSCILLATES = 0.5
 """Damping ratio below which a mode counts as one."""
 
@@ -44,7 +47,7 @@ def usual_interval(A: Array, interval: float | None) -> tuple[float, tuple[str, 
         return interval, ()
     poles = np.linalg.eigvals(A)
     turning = poles[(poles.imag > 0.0) & (-poles.real < OSCILLATES * np.abs(poles))]
-    found = float(f"{ANGLE / np.abs(turning if len(turning) else poles).max():.2g}")
+    found = min(float(f"{ANGLE / np.abs(turning if len(turning) else poles).max():.2g}"), LONGEST)
     return found, (f"interval = {found:g} s: {ANGLE:g} rad of the fastest mode",)
 
 

@@ -259,3 +259,12 @@ def test_agents_train_on_it_and_are_its_own(agent, uncommon, tmp_path):
     about = json.loads((places[0] / "agent.json").read_text())
     other = replace(uncommon, B=1.1 * uncommon.B)
     assert list(about["plants"].values()) == [beamenv.plant.fingerprint(uncommon)] != [beamenv.plant.fingerprint(other)]
+
+
+def test_a_training_through_the_plant_meets_the_plants_of_a_spread(plant, tmp_path):
+    environment = {"plant": plant_table(plant), "spread": {"frequency": 0.05, "actuator": 0.2}, "duration": 0.5}
+    job = Job("gradient", named_recipe("gradient"), {"plants": {"bank": 8}}, 0, Budget(updates=1), environment)
+    (task,) = job.tasks().values()
+    assert len(task.prior.bank) == 8
+    places = run(job, tmp_path / "agent", lambda progress: None)
+    assert all((place / "weights.npz").is_file() for place in places)

@@ -47,7 +47,7 @@ WORD = Kind("word", lambda value: value, st.one_of(st.sampled_from(WORDS), st.te
 
 OTHER_NAMES = (
     *("path", "file", "controller", "agent", "folder", "kind", "model", "name", "studies", "teacher", "minutes", "updates"),
-    *("ption", "argument", "command", "json"),
+    *("ption", "argument", "command", "json", "held_back", "drive_limit"),
 )
 """What sentences call arguments that have no option's name."""
 

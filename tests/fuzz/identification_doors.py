@@ -15,8 +15,10 @@ ROWS = 240
 
 
 def _texts(value):
-    whole = isinstance(value, (list, tuple)) and all(isinstance(each, str) for each in value)
-    return tuple(value) if whole else NOTHING
+    if not isinstance(value, (list, tuple)):
+        return NOTHING
+    items = [each.item() if isinstance(each, np.ndarray) and each.ndim == 0 else each for each in value]
+    return tuple(map(str, items)) if all(isinstance(each, str) for each in items) else NOTHING
 
 
 TEXTS = Kind("texts", _texts, st.lists(st.sampled_from(["u1", "y1", "time", "", "a\nb", "x"]), max_size=3))

@@ -220,6 +220,34 @@ REFUSED = {
 }
 
 
+def test_of_two_equal_modes_one_voltage_reaches_a_single_one():
+    twice = block_diag(oscillator(30.0, 0.01), oscillator(30.0, 0.01))
+    both = np.array([[0.0, 0.0], [1.0, 0.2], [0.0, 0.0], [0.7, -1.0]])
+    with pytest.raises(ValueError, match=r"^A has mode 1 at 30 rad/s \(4.775 Hz\) that no voltage reaches"):
+        Plant.from_state_space(twice, both[:, 0], both.T)
+    assert len(Plant.from_state_space(twice, both, both.T).A) == 4
+
+
+def test_stiff_models_in_any_coordinates_are_reached():
+    """Poles from 1 to 5000 rad/s, and coordinates of condition 1e4."""
+    generator = np.random.default_rng(4)
+    for _ in range(20):
+        stiff = block_diag(oscillator(1.0, 0.01), oscillator(40.0, 0.02), oscillator(5000.0, 0.4), [[-2.0]])
+        basis = generator.normal(size=(7, 7)) @ np.diag(np.logspace(-2.0, 2.0, 7))
+        Plant.from_state_space(basis @ stiff @ np.linalg.inv(basis), basis @ np.ones(7), np.ones(7) @ np.linalg.inv(basis))
+
+
+def test_a_model_moves_as_python_control_says():
+    """Held voltages through control.forced_response, a simulation of its own."""
+    system = control.ss(A, B, C, np.zeros((2, 1)))
+    plant = Plant.from_control(system, interval=0.01, sensor_noise=0.0, full_scale=1e6)
+    blades, generator = Blades(plant, SCENARIOS["quiet"], None, physical_units=True), np.random.default_rng(0)
+    voltages = generator.uniform(-10.0, 10.0, 200)
+    shown = [blades.begin(generator).observation, *(blades.step(np.array([each]), generator).observation for each in voltages)]
+    held = control.forced_response(control.c2d(system, 0.01), inputs=np.append(voltages, 0.0), timepts=0.01 * np.arange(201))
+    np.testing.assert_allclose(np.array(shown).T, held.outputs, rtol=1e-8, atol=1e-9)
+
+
 @pytest.mark.parametrize("words", REFUSED)
 def test_what_cannot_be_is_refused_in_one_sentence(words):
     with pytest.raises(ValueError) as refused:
