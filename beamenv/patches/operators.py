@@ -105,7 +105,7 @@ def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Arra
     _check_parts(beam, layout)
     forces = [(group, _by_channel(_forces(beam, group, "sensors", speed), group)) for group in layout.groups("sensors")]
     charges = [group.patch.charge_per_reaction * force.T for group, force in forces]
-    return np.vstack([np.zeros((0, beam.space.size)), *charges])
+    return np.vstack(charges) if charges else np.zeros((0, beam.space.size))
 
 
 def _forces(beam: RotatingBeam, group: PatchGroup, side: Side, speed: float) -> Array:
