@@ -16,7 +16,6 @@ from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.inlays import check_fit
 from beamenv.structure.trial_functions import LEAST, Stations
 from beamenv.structure.walls.inlay import Inlay, Strip
 
@@ -66,7 +65,7 @@ def patch_forces(beam: RotatingBeam, patch: PatchMaterial, inlays: Sequence[Inla
     ``ValueError`` for a patch that leaves the blade or does not fit its wall.
     """
     for inlay in inlays:
-        check_fit(beam, inlay)
+        beam.room.check_fit(inlay)
     under = [stations_under(beam, inlay.start, inlay.start + inlay.length) for inlay in inlays]
     if beam.model == "blade":
         sections, work = work_on_section(beam, patch, inlays[0])
@@ -106,7 +105,7 @@ def sensing(beam: RotatingBeam, layout: PatchLayout, speed: float = 0.0) -> Arra
     _check_parts(beam, layout)
     forces = [(group, _by_channel(_forces(beam, group, "sensors", speed), group)) for group in layout.groups("sensors")]
     charges = [group.patch.charge_per_reaction * force.T for group, force in forces]
-    return np.vstack([np.zeros((0, beam.space.size)), *charges])
+    return np.vstack(charges) if charges else np.zeros((0, beam.space.size))
 
 
 def _forces(beam: RotatingBeam, group: PatchGroup, side: Side, speed: float) -> Array:

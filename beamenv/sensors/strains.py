@@ -11,7 +11,6 @@ from beamenv.patches.operators import CLASSICAL, LOCAL_STATIONS, stations_under,
 from beamenv.sensors.kinds import StrainGauge
 from beamenv.structure import Lamina, RotatingBeam
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.inlays import check_fit
 from beamenv.structure.trial_functions import Stations
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply
@@ -31,7 +30,7 @@ def footprint(beam: RotatingBeam, gauge: StrainGauge, name: str) -> Inlay:
     try:
         thickness = LAYER * beam.section.thickness_of(gauge.wall)
         inlay = Inlay(gauge.wall, start, gauge.length, gauge.width, Ply(_FOIL, 0.0), thickness, gauge.offset, gauge.face)
-        check_fit(beam, inlay)
+        beam.room.check_fit(inlay)
     except ValueError as error:
         raise Refused(name, f"at {gauge.position:g} m on {gauge.wall}", f"on the blade and its walls: {error}") from None
     return inlay

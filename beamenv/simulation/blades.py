@@ -63,7 +63,7 @@ class Blades:
         self._safe_energy = safe_energy(self.bank.strain, self.bank.standing)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
-        self._own = (
+        self.own_loads = (
             OwnLoads(scenario.loads, self.plant.control_interval, self.count or 1, self.plant.loads) if scenario.loads else None
         )
         self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
@@ -94,7 +94,7 @@ class Blades:
         self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in memories)
 
     def __getstate__(self) -> tuple[Any, ...]:
-        moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.state_dict(), self._own
+        moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.state_dict(), self.own_loads
         return self.bank, self.scenario, self._sizes, self._physical, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
@@ -103,7 +103,7 @@ class Blades:
         self.__init__(*arguments)  # type: ignore[misc]
         self._now.joined[...] = joined
         np.square(self._now.energetic, out=self._squares)
-        self._disturbances, self.electronics, self._own = disturbances, electronics, own
+        self._disturbances, self.electronics, self.own_loads = disturbances, electronics, own
         self.plants.load_state_dict(plants)
 
     @property
@@ -151,8 +151,8 @@ class Blades:
         """(…, k) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
         loads = np.zeros((*self._shape, self.plant.disturbance_input.shape[1]))
         self.disturbances.loads(loads)
-        if self._own is not None:
-            self._own.add(loads)
+        if self.own_loads is not None:
+            self.own_loads.add(loads)
         return self._by_blade(loads)
 
     @property
@@ -204,8 +204,8 @@ class Blades:
         lowest = self._lowest_frequency[self.plants.group[rows]]
         speeds = self.bank.speeds[index]
         cases = load_cases(scenario, self.plant, lowest, numbers.load, numbers.turns, speeds)
-        if self._own is not None:
-            self._own.begin(rows, numbers.own)
+        if self.own_loads is not None:
+            self.own_loads.begin(rows, numbers.own)
         begins: Any = numbers.noise if isinstance(generators, np.random.Generator) else generators
         noise = self._disturbances.begin(rows, cases, begins)
         state = row_product(cases.deflection, self.bank.release[index])
@@ -266,9 +266,9 @@ class Blades:
         now, then = self._now, self._then
         now.voltages[...] = acting.reshape(now.voltages.shape)
         self._disturbances.loads(now.loads)
-        if self._own is not None:
-            self._own.add(now.loads)
-            self._own.elapse()
+        if self.own_loads is not None:
+            self.own_loads.add(now.loads)
+            self.own_loads.elapse()
         _, reading, tip, increment = advance(self.plants.operators, now.joined, then.product, self._multiply, self._squares)
         self._now, self._then = then, now  # the product begins with the next state
         noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
@@ -319,7 +319,7 @@ class Blades:
             "plants": self.plants.state_dict(),
             "disturbances": self.disturbances.state_dict(),
             "electronics": None if self.electronics is None else self.electronics.state_dict(),
-            **({} if self._own is None else {"own_loads": self._own.state_dict()}),
+            **({} if self.own_loads is None else {"own_loads": self.own_loads.state_dict()}),
         }
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
@@ -330,8 +330,8 @@ class Blades:
         self.disturbances.load_state_dict(state["disturbances"])
         if self.electronics is not None:
             self.electronics.load_state_dict(state["electronics"])
-        if self._own is not None:
-            self._own.load_state_dict(state["own_loads"])
+        if self.own_loads is not None:
+            self.own_loads.load_state_dict(state["own_loads"])
 
     def _by_blade(self, columns: Array) -> Array:
         """A copy (…, columns) of what is laid out in blocks."""

@@ -16,7 +16,7 @@ from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strai
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.inlays import SHORTEST, check_inlays
+from beamenv.structure.inlays import SHORTEST, Room
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
 from beamenv.structure.planform import TABLE, Planform, Steps, check_table
@@ -104,12 +104,17 @@ class RotatingBeam:
                 if getattr(self, name) is not None:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
-        check_inlays(self)
+        self.room.check(self.inlays)
 
     @property
     def narrowest(self) -> float:
         """Size of the section where it is smallest, over that at the root, or 1."""
         return self.planform.narrowest
+
+    @property
+    def room(self) -> Room:
+        """What there is for inlays."""
+        return Room(self.section, self.length, self.narrowest, self.model == "thesis")
 
     @cached_property
     def planform(self) -> Planform:

@@ -52,8 +52,9 @@ def steady(**changes):
         {"plants": {"speed_ratio": [0.7, 1.3], "bank": 2}},
         {"plants": {"mass_drift": 1.3, "drift_duration": 0.04, "bank": 8}},
         {"failures": {"dead_actuators": 4, "onset": 0.02}},
+        {"loads": [{"course": "pulse", "magnitude": 20.0, "onset": 0.01}]},
     ],
-    ids=["nominal", "spin-up", "hysteresis and delay", "two speeds", "drift", "failure on the way"],
+    ids=["nominal", "spin-up", "hysteresis and delay", "two speeds", "drift", "failure on the way", "loads of one's own"],
 )
 def test_windows_cost_what_the_environment_s_blades_cost(plant, bias, changes):
     """Under one load and a constant voltage, once every blade has begun an episode of its own."""

@@ -113,6 +113,9 @@ class Windows:
         assert isinstance(disturbances, SharedDisturbances)  # one generator serves the batch
         for _ in range(self.length):
             disturbances.loads(self._loads)
+            if (own := self._blades.own_loads) is not None:
+                own.add(self._loads)
+                own.elapse()
             loads = self._float(self._loads.reshape(batch, -1))
             yield loads, self._float(disturbances.next(self._generator).reshape(batch, -1))
 
