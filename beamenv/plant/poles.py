@@ -16,8 +16,13 @@ def poles_of_sampled(transition: Array, interval: float) -> NDArray[np.complex12
 
 
 def damping_ratios(poles: NDArray[np.complex128]) -> Array:
-    """ζ = −Re s/|s| (r,) of a real system's 2r poles, by ascending |s|: of one of each pair, and of every second real pole."""
-    real = poles[poles.imag == 0.0]
-    one_each = np.concatenate([poles[poles.imag > 0.0], real[np.argsort(np.abs(real))][::2]])
+    """ζ = −Re s/|s| (r,) of a real system's 2r poles, by ascending |s|: of one of each pair, and of every second one that has no
+    conjugate, a real one or, of a sampled system, one that alternates from sample to sample.
+    """
+    above = poles[poles.imag > 0.0]
+    apart = np.abs(above[:, None] - poles.conj()[None, :])
+    paired = np.any(apart <= 1e-9 * np.abs(above)[:, None], axis=1)
+    alone = np.concatenate([poles[poles.imag == 0.0], above[~paired]])
+    one_each = np.concatenate([above[paired], alone[np.argsort(np.abs(alone))][::2]])
     one_each = one_each[np.argsort(np.abs(one_each))]
     return np.asarray(-one_each.real / np.abs(one_each))

@@ -190,7 +190,12 @@ COMMANDS = {
     "reproduce": (("table-3.4",), {"--output": "made", "--docs": None}, ("--fresh",), ("train.cli.reproduce.run_with_progress",)),
     "schema": (("blade",), {"--output": None}, (), ()),
     "speed": ((), {}, ("--json",), ("train.cli.speed.measured",)),
-    "explore": ((), {"--port": "0", "--host": "127.0.0.1"}, (), ("train.explore.serve",)),
+    "explore": (
+        (),
+        {"--port": "0", "--host": "127.0.0.1", "--preset": "thesis", "--blade": "blade.toml"},
+        (),
+        ("train.explore.serve",),
+    ),
 }
 
 

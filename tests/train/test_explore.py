@@ -13,6 +13,7 @@ import pytest
 from baselines import closed_loop_poles, lqg
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import build_beam, build_plant
+from beamenv.blade.files import load_config
 from beamenv.blade.presets import THESIS
 from beamenv.plant.plant import drive_limit, sample
 from beamenv.plant.poles import poles_of_sampled
@@ -22,9 +23,9 @@ pytest.importorskip("dash", reason="dash is not installed")
 go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")
 
 from train.explore import Settings, view  # noqa: E402 - they need the packages asked for above
-from train.explore.app import create_app, redraw  # noqa: E402
+from train.explore.app import create_app, redraw, settings  # noqa: E402
 from train.explore.blade import CAMPBELL_SPEEDS, built  # noqa: E402
-from train.explore.layout import RANGES  # noqa: E402
+from train.explore.layout import RANGES, Page  # noqa: E402
 from train.explore.loops import powers, step_responses  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -243,3 +244,20 @@ def test_without_its_extra_the_command_says_how_to_install_it(hidden):
     assert run.returncode == 1
     assert run.stderr.count("\n") == 1
     assert "pip install 'beamenv[explore]'" in run.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "without"),
+    [("i-beam", set()), ("channel", {"actuators", "sensors"}), ("wedge", {"ply_angle_deg"}), ("two-cell-box", {"ply_angle_deg"})],
+)
+def test_a_blade_of_one_s_own_has_the_sliders_that_mean_something_of_it(name, without):
+    """None for plies that differ from wall to wall, nor for patches in several groups."""
+    base = load_config(ROOT / "examples" / "blades" / f"{name}.toml")
+    page = Page.of(base)
+    assert set(RANGES) - set(page.ranges) == without
+    start = {control: entry.value for control, entry in page.ranges.items()} | {"load": "flap"}
+    assert settings(**start).config(base).beam == base.beam
+    shown = redraw(page=page, **start)
+    assert shown["message"] == ""
+    assert len(shown["damping"]) == base.modes
+    assert create_app(page).layout is not None

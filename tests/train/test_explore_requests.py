@@ -118,7 +118,7 @@ def test_what_else_a_body_says_is_not_read(client, asked, monkeypatch):
         assert client.post(CALLBACK, json=body).status_code in (200, 204)
 
 
-def nothing(values):
+def nothing(values, *_):
     """In place of a redraw, which takes a while."""
     outputs = page.outputs().items()
     return {name: [page.no_update] * len(each) if isinstance(each, list) else page.no_update for name, each in outputs}
@@ -278,7 +278,7 @@ def test_another_sites_page_is_not_answered(client, asked, origin):
 def test_many_redraws_at_once_are_answered_in_turn_and_too_many_refused(asked, monkeypatch):
     begun, go_on, at_work = threading.Semaphore(0), threading.Event(), []
 
-    def slow(values):
+    def slow(values, *_):
         at_work.append(1)
         assert sum(at_work) == 1  # one at a time
         begun.release()

@@ -205,12 +205,16 @@ def compare(
 def explore(
     port: Annotated[int, typer.Option(help="Where the page is served; 0 takes any free one.")] = 8050,
     host: Annotated[str, typer.Option(help="A loopback address: the page is for this computer alone.")] = "127.0.0.1",
+    preset: PresetOption = "thesis",
+    blade: BladeOption = None,
 ) -> None:
     """Serve a page whose sliders redraw a blade's frequencies, mode shapes, damping and step response. Ctrl-C ends it."""
     with one_sentence():
+        from beamenv.blade.files import load_config
+        from beamenv.blade.presets import blade_config
         from train.explore import serve
 
-        server = serve(port, host)
+        server = serve(port, host, blade_config(preset, load_config(blade) if blade else None))
     name = f"[{host}]" if ":" in host else host
     Console().print(f"http://{name}:{server.port} (Ctrl-C ends it)", markup=False, highlight=False)
     server.serve_forever()

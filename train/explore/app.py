@@ -13,9 +13,10 @@ from threadpoolctl import threadpool_limits
 from werkzeug.exceptions import HTTPException, NotFound
 from werkzeug.wrappers import Response
 
+from beamenv.configuration import Refused
 from train.explore.blade import CAMPBELL_MODES, Settings, View, view
 from train.explore.figures import campbell_diagram, mode_shape, step_response
-from train.explore.layout import CONTROLS, RANGES, layout
+from train.explore.layout import THESIS_PAGE, Page, layout
 from train.explore.requests import ANSWERED, OnlyThePage, told
 from train.figures.themes import THEMES
 
@@ -42,8 +43,8 @@ PAGE = """<!DOCTYPE html>
 </html>"""
 
 
-def create_app() -> Dash:
-    """The page as a Flask application that asks for nothing beyond this computer."""
+def create_app(page: Page = THESIS_PAGE) -> Dash:
+    """The page of a blade as a Flask application that asks for nothing beyond this computer."""
     app = Dash(
         __name__,
         assets_folder=str(files("beamenv.train.explore") / "assets"),
@@ -56,16 +57,16 @@ def create_app() -> Dash:
     app.server.register_error_handler(HTTPException, refusal)
     app.server.register_error_handler(DashException, lambda _: refusal(NotFound()))
     app.server.view_functions["/<path:path>"] = lambda path: refusal(NotFound())  # Dash gives the page under every name
-    app.layout = layout()
+    app.layout = layout(page)
     app.clientside_callback(
-        ClientsideFunction("explore", "newest"), Output("wanted", "data"), [Input(name, "value") for name in CONTROLS]
+        ClientsideFunction("explore", "newest"), Output("wanted", "data"), [Input(name, "value") for name in page.controls]
     )
     app.clientside_callback(ClientsideFunction("explore", "goOn"), Input("busy", "data"))
-    app.callback(outputs(), Input("wanted", "data"), running=[(Output("busy", "data"), True, False)], prevent_initial_call=True)(
-        lambda wanted: redraw(**dict(zip(CONTROLS, wanted, strict=True)))
-    )
+    app.callback(
+        outputs(page), Input("wanted", "data"), running=[(Output("busy", "data"), True, False)], prevent_initial_call=True
+    )(lambda wanted: redraw(**dict(zip(page.controls, wanted, strict=True)), page=page))
     (callback,) = (name for name in app.callback_map if name.startswith(".."))
-    app.server.wsgi_app = OnlyThePage(app.server.wsgi_app, callback)
+    app.server.wsgi_app = OnlyThePage(app.server.wsgi_app, callback, page)
     return app
 
 
@@ -81,10 +82,10 @@ def theme() -> str:
     return ":root{" + "".join(f"--{name}:light-dark({getattr(light, name)},{getattr(dark, name)});" for name in names) + "}"
 
 
-def outputs() -> dict[str, Any]:
+def outputs(page: Page = THESIS_PAGE) -> dict[str, Any]:
     """What the callback gives, by the names that ``redraw`` uses."""
     return {
-        "values": [Output(f"{name}-value", "children") for name in RANGES],
+        "values": [Output(f"{name}-value", "children") for name in page.ranges],
         "message": Output("message", "children"),
         "results": Output("results", "hidden"),
         "campbell": Output("campbell", "figure"),
@@ -96,21 +97,21 @@ def outputs() -> dict[str, Any]:
     }
 
 
-def redraw(**values: Any) -> dict[str, Any]:
+def redraw(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:
     """Figures for the controls' values; for what makes no blade, one sentence in their place.
 
     On one BLAS thread, for matrices are so small that a second one makes it five times slower; one redraw at a time, for that
     limit is the whole process'.
     """
     with ONE_AT_A_TIME, threadpool_limits(limits=1):
-        return drawn(values)
+        return drawn(values, page)
 
 
-def drawn(values: Mapping[str, Any]) -> dict[str, Any]:
+def drawn(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]:
     """What ``redraw`` gives, on as many threads as there are."""
-    texts = [entry.text(values[name]) for name, entry in RANGES.items()]
+    texts = [entry.text(values[name]) for name, entry in page.ranges.items()]
     try:
-        seen = view(settings(**values))
+        seen = view(settings(**values), page.base)
     except ValueError as error:
         kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
         rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
@@ -130,7 +131,11 @@ def drawn(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def settings(**values: Any) -> Settings:
     """The controls' values, with patches in mm, as settings."""
-    return Settings(**values | {side: tuple(round(1e-3 * edge, 9) for edge in values[side]) for side in SIDES})
+    for name, value in values.items():
+        if value is None:
+            raise Refused(name, value, "what its control can have")
+    metres = {side: tuple(round(1e-3 * edge, 9) for edge in values[side]) for side in SIDES if side in values}
+    return Settings(**values | metres)
 
 
 def heading(seen: View, mode: int) -> str:

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import Blade
-from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
+from beamenv.blade.config import ON_EVERY_WALL, BladeConfig
+from beamenv.blade.layouts import SIDES, with_positions
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, configuration
 from beamenv.configuration.read_only import sealed
-from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
 from train.explore.loops import Damping, StepResponses, damping, step_responses
@@ -30,42 +30,41 @@ CAMPBELL_MODES = 6
 STATIONS = 33
 MOTIONS = ("lag u", "flap v", "extension s", "twist φ·c/2")
 """Twist as the displacement of the root chord's ends, so that all four are lengths."""
-STEP_LOAD = 30.0
-"""N/m."""
 STEP_DURATION = 0.5
 """s."""
 
 
 @configuration("settings")
 class Settings:
-    """What the sliders say; the rest is the thesis' blade.
+    """What the sliders say; the rest, and what is None, is that of the blade which the page began with.
 
     Raises ``ValueError`` for a value that is no number, or a load that is neither in lag nor in flap.
     """
 
-    ply_angle_deg: Annotated[float, Number(unit="degrees")] = 30.0
-    """Of all six plies of every wall, from the contour tangent."""
-    speed: Annotated[float, Number(unit="rad/s")] = 200.0
+    ply_angle_deg: Annotated[float | None, Number(unit="degrees")] = None
+    """Of all plies of every wall, from the contour tangent."""
+    speed: Annotated[float | None, Number(unit="rad/s")] = None
     """rad/s."""
-    pretwist_deg: Annotated[float, Number(unit="degrees")] = 30.0
-    taper: Annotated[float, Number()] = 1.0
+    pretwist_deg: Annotated[float | None, Number(unit="degrees")] = None
+    taper: Annotated[float | None, Number()] = None
     """Root chord over tip chord."""
-    actuators: Annotated[tuple[float, ...], Numbers()] = THESIS.patches.actuator_positions(THESIS.beam.length)
+    actuators: Annotated[tuple[float, ...] | None, Numbers()] = None
     """Root-side edges, m."""
-    sensors: Annotated[tuple[float, ...], Numbers()] = THESIS.patches.sensor_positions(THESIS.beam.length)
+    sensors: Annotated[tuple[float, ...] | None, Numbers()] = None
     """Root-side edges, m."""
     load: Annotated[Direction, Choice(("lag", "flap"))] = "flap"
 
-    def config(self) -> BladeConfig:
+    def config(self, base: BladeConfig = THESIS) -> BladeConfig:
         """The blade."""
-        beam = replace(
-            THESIS.beam,
-            ply_angles_deg=((ON_EVERY_WALL, (self.ply_angle_deg,) * 6),),
-            pretwist_deg=self.pretwist_deg,
-            taper=self.taper,
-        )
-        patches = replace(THESIS.patches, actuators=self.actuators, sensors=self.sensors)
-        return replace(THESIS, beam=beam, patches=patches, speed=self.speed)
+        changes: dict[str, Any] = {name: getattr(self, name) for name in ("pretwist_deg", "taper")}
+        if self.ply_angle_deg is not None:
+            changes["ply_angles_deg"] = (
+                (ON_EVERY_WALL, (self.ply_angle_deg,) * len(dict(base.beam.ply_angles_deg)[ON_EVERY_WALL])),
+            )
+        given = {side: getattr(self, side) for side in SIDES if getattr(self, side) is not None}
+        beam = replace(base.beam, **{name: value for name, value in changes.items() if value is not None})
+        whole = with_positions(replace(base, beam=beam), given)
+        return whole if self.speed is None else replace(whole, speed=self.speed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,15 +89,15 @@ class View:
     response: StepResponses
 
 
-def view(settings: Settings) -> View:
+def view(settings: Settings, base: BladeConfig = THESIS) -> View:
     """Everything the page shows; ``ValueError``, in one sentence, for a blade or patches that cannot be."""
-    config = settings.config()
-    blade = built(config.beam, config.patches).changed(config)
+    config = settings.config(base)
+    blade = built(replace(config, speed=base.speed)).changed(config)
     beam, plant = blade.beam, blade.plant
     modes = beam.modes(config.speed, config.modes)
-    stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * config.beam.width)
+    stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * width(beam))
     held, (_, K), (_, L) = sampled_design(plant)
-    line_load = STEP_LOAD * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
+    line_load = blade.reference_load * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
     return View(
         speed=config.speed,
         critical_speed=beam.critical_speed,
@@ -113,9 +112,14 @@ def view(settings: Settings) -> View:
 
 
 @lru_cache(maxsize=16)
-def built(beam: BeamConfig, patches: PatchLayout) -> Blade:
+def built(config: BladeConfig) -> Blade:
     """The blade, whose matrices do for every speed."""
-    return Blade(replace(THESIS, beam=beam, patches=patches))
+    return Blade(config)
+
+
+def width(beam: RotatingBeam) -> float:
+    """m: of the root section's contour."""
+    return float(np.ptp(np.concatenate([chain.points for chain in beam.section.chains])[:, 0]))
 
 
 @lru_cache(maxsize=16)

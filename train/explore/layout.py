@@ -10,13 +10,14 @@ from typing import Any, get_args
 
 from dash import dcc, html
 
+from beamenv.blade.build import Blade
+from beamenv.blade.config import ON_EVERY_WALL, BladeConfig
+from beamenv.blade.layouts import SIDES, Side
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Number, Numbers
-from beamenv.patches.layout import OUTERMOST
-from train.explore.blade import CAMPBELL_MODES, HIGHEST_SPEED, MOTIONS, STEP_LOAD, Direction, Settings
+from train.explore.blade import CAMPBELL_MODES, HIGHEST_SPEED, MOTIONS, Direction
 from train.figures.palette import PALETTE
 
-START = Settings()
 DIRECTIONS = get_args(Direction)
 ROUND_OFF = 1e-6
 """How far a slider's last step may lie beyond its end, in its unit."""
@@ -32,13 +33,15 @@ class Range:
     high: float
     step: float
     value: float | list[float]
+    apart: int = 0
+    """Steps that keep handles from one another."""
 
     def control(self, name: str) -> html.Div:
         """The slider under its label and value."""
         limits: dict[str, Any] = {"min": self.low, "max": self.high, "step": self.step, "value": self.value, "marks": None}
         limits |= {"updatemode": "drag", "allow_direct_input": False}  # an emptied input would stop the handle
         several = isinstance(self.value, list)
-        slider = dcc.RangeSlider(id=name, **limits, pushable=APART) if several else dcc.Slider(id=name, **limits)
+        slider = dcc.RangeSlider(id=name, **limits, pushable=self.apart) if several else dcc.Slider(id=name, **limits)
         return _control(self.label, html.Output(id=f"{name}-value"), slider)
 
     @property
@@ -62,62 +65,108 @@ def _millimetres(edges: tuple[float, ...]) -> list[float]:
     return [round(1e3 * edge, 6) for edge in edges]
 
 
-_LAST = round(1e3 * (OUTERMOST * THESIS.beam.length - THESIS.patches.length), 6)
-_STEP = round(_LAST / 153, 6)
-"""mm: a 51st of the spacing of the thesis' four patches, so that these lie on the grid."""
-APART = math.ceil(1e3 * THESIS.patches.length / _STEP)
-"""Steps that keep patches from overlapping: Dash 4 counts the distance between handles in steps, whatever it says."""
+@dataclass(frozen=True, slots=True)
+class Page:
+    """The blade that a page begins with, and its sliders: of what it has, and has in one way that a slider can change."""
 
-RANGES: Mapping[str, Range] = MappingProxyType(
-    {
-        "ply_angle_deg": Range("ply angle from the contour", "°", 0.0, 90.0, 1.0, START.ply_angle_deg),
-        "speed": Range("rotor speed", "rad/s", 0.0, HIGHEST_SPEED, 5.0, START.speed),
-        "pretwist_deg": Range("pretwist", "°", 0.0, 90.0, 1.0, START.pretwist_deg),
-        "taper": Range("taper, root chord over tip chord", "", 1.0, 3.0, 0.05, START.taper),
-        "actuators": Range("actuators on top, from the root at", "mm", 0.0, _LAST, _STEP, _millimetres(START.actuators)),
-        "sensors": Range("sensors below, from the root at", "mm", 0.0, _LAST, _STEP, _millimetres(START.sensors)),
-    }
-)
-CONTROLS = (*RANGES, "load")
-"""Ids: the fields of ``Settings``."""
+    base: BladeConfig
+    ranges: Mapping[str, Range]
+
+    @classmethod
+    def of(cls, base: BladeConfig) -> Page:
+        """That of a blade."""
+        sliders = {"ply_angle_deg": _plies(base), "speed": _within("rotor speed", "rad/s", 0.0, HIGHEST_SPEED, 5.0, base.speed)}
+        if base.beam.twist_table is None:
+            sliders["pretwist_deg"] = _within("pretwist", "°", 0.0, 90.0, 1.0, base.beam.pretwist_deg)
+        if base.beam.chord_table is None:
+            sliders["taper"] = _within("taper, root chord over tip chord", "", 1.0, 3.0, 0.05, base.beam.taper)
+        for side in SIDES:
+            sliders[side] = _patches(base, side)
+        return cls(base, MappingProxyType({name: entry for name, entry in sliders.items() if entry is not None}))
+
+    @property
+    def controls(self) -> tuple[str, ...]:
+        """Ids: the fields of ``Settings``."""
+        return (*self.ranges, "load")
+
+
+def _within(label: str, unit: str, low: float, high: float, step: float, value: float) -> Range | None:
+    return Range(label, unit, low, high, step, value) if low <= value <= high else None
+
+
+def _plies(base: BladeConfig) -> Range | None:
+    """Where all plies of all walls have one angle."""
+    angles = {angle for _, each in base.beam.ply_angles_deg for angle in each}
+    if len(angles) > 1 or set(dict(base.beam.ply_angles_deg)) != {ON_EVERY_WALL}:
+        return None
+    return _within("ply angle from the contour", "°", 0.0, 90.0, 1.0, angles.pop())
+
+
+def _patches(base: BladeConfig, side: Side) -> Range | None:
+    """Where they are one group."""
+    groups, length = base.patches.groups(side), base.beam.length
+    if len(groups) != 1:
+        return None
+    group = groups[0]
+    last = round(1e3 * (group.outermost * length - group.length), 6)
+    step = round(last / STEPS, 6)
+    where = {"top": "on top", "bottom": "below"}.get(group.wall, f"on the {group.wall} wall")
+    edges = _millimetres(base.patches.positions(side, length))
+    apart = math.ceil(1e3 * group.length / step)
+    return Range(f"{side} {where}, from the root at", "mm", 0.0, last, step, edges, apart) if step > 0.0 else None
+
+
+STEPS = 153
+"""Of a slider for patches: the thesis' four, 51 of them apart, lie on its grid. Dash 4 counts what handles are apart in steps,
+whatever it says."""
+
+THESIS_PAGE = Page.of(THESIS)
+RANGES, CONTROLS = THESIS_PAGE.ranges, THESIS_PAGE.controls
 
 _QUIET: Any = {"displayModeBar": False, "responsive": True}
 
 
-def layout() -> html.Div:
+def layout(page: Page = THESIS_PAGE) -> html.Div:
     """The whole page."""
     return html.Div(
         [
-            html.Header([html.H1("Rotating blade"), html.P(_introduction())]),
-            html.Main([html.Div(_controls(), id="controls"), html.Div([_message(), _results()], id="shown")]),
+            html.Header([html.H1("Rotating blade"), html.P(_introduction(page.base))]),
+            html.Main([html.Div(_controls(page), id="controls"), html.Div([_message(), _results(page.base)], id="shown")]),
             dcc.Store(id="wanted"),
             dcc.Store(id="busy"),
         ]
     )
 
 
-def _introduction() -> str:
-    beam, patches = THESIS.beam, THESIS.patches
+def _introduction(base: BladeConfig) -> str:
+    beam, groups = base.beam, base.patches.groups("actuators")
+    shape = "box" if beam.section is None else beam.section.shape
+    what = f"A beam with a section of the shape {shape}, {beam.length:g} m long"
+    if beam == THESIS.beam:
+        what = f"The thesis' box beam, {beam.length:g} m long, {1e3 * beam.width:g} × {1e3 * beam.depth:g} mm at the root"
+    names = ", ".join(dict.fromkeys(group.material if isinstance(group.material, str) else "your own" for group in groups))
+    sizes = ", ".join(dict.fromkeys(f"{1e3 * group.length:g}" for group in groups))
+    counted = ", whose mass and stiffness count" if all(group.passive for group in groups) else ""
     return (
-        f"The thesis' box beam, {beam.length:g} m long, {1e3 * beam.width:g} × {1e3 * beam.depth:g} mm at the root, "
-        f"with {patches.material} patches of {1e3 * patches.length:g} mm, whose mass and stiffness count. "
-        f"Damping without control is {100.0 * THESIS.damping_ratio:g} % of critical in every mode, but for gyroscopic coupling."
+        f"{what}, with {names} patches of {sizes} mm{counted}. "
+        f"Damping without control is {100.0 * base.damping_ratio:g} % of critical in every mode, but for gyroscopic coupling."
     )
 
 
-def _controls() -> list[Any]:
-    choice = dcc.RadioItems(id="load", options=list(DIRECTIONS), value=START.load, inline=True)
-    return [*(entry.control(name) for name, entry in RANGES.items()), _control(f"step load of {STEP_LOAD:g} N/m in", choice)]
+def _controls(page: Page) -> list[Any]:
+    choice = dcc.RadioItems(id="load", options=list(DIRECTIONS), value="flap", inline=True)
+    load = float(Blade(page.base).reference_load)
+    return [*(entry.control(name) for name, entry in page.ranges.items()), _control(f"step load of {load:.3g} N/m in", choice)]
 
 
 def _message() -> html.P:
     return html.P(id="message", role="alert")
 
 
-def _results() -> html.Div:
+def _results(base: BladeConfig) -> html.Div:
     small = html.Div([_small(mode) for mode in range(CAMPBELL_MODES)], className="shapes")
     crossings = "Dots: natural frequencies at the rotor speed. Dotted: its multiples."
-    sudden = f"Uniform line load that sets in at once on the blade at rest. The drive is limited to {_volts()}."
+    sudden = f"Uniform line load that sets in at once on the blade at rest. The drive is limited to {_volts(base)}."
     left = [
         _section("Campbell diagram", crossings, _graph("campbell", 430)),
         _section("Step response of the tip", sudden, _graph("response", 660)),
@@ -129,8 +178,8 @@ def _results() -> html.Div:
     return html.Div([html.Div(left), html.Div(right)], id="results")
 
 
-def _volts() -> str:
-    low, high = THESIS.voltage_limits
+def _volts(base: BladeConfig) -> str:
+    low, high = base.voltage_limits
     return f"{low:g} … {high:g} V".replace("-", "−")
 
 

@@ -14,7 +14,7 @@ from werkzeug.exceptions import HTTPException
 from werkzeug.wrappers import Request, Response
 
 from beamenv.configuration import Choice, checked, shown
-from train.explore.layout import CONTROLS, DIRECTIONS, RANGES
+from train.explore.layout import DIRECTIONS, THESIS_PAGE, Page
 
 CALLBACK = "/_dash-update-component"
 LARGEST_BODY = 2**16
@@ -39,8 +39,8 @@ class OnlyThePage:
     checked and written anew: what the application gets of them are the values of the controls, within the controls' ranges.
     """
 
-    def __init__(self, application: Any, output: str) -> None:
-        self.application, self.output = application, output
+    def __init__(self, application: Any, output: str, page: Page = THESIS_PAGE) -> None:
+        self.application, self.output, self.page = application, output, page
         self.free = BoundedSemaphore(MOST_AT_ONCE)
 
     def __call__(self, environ: dict[str, Any], start_response: Any) -> Iterable[bytes]:
@@ -58,7 +58,7 @@ class OnlyThePage:
 
     def redrawn(self, request: Request, environ: dict[str, Any], start_response: Any) -> Iterable[bytes]:
         """The callback's answer."""
-        body = json.dumps(self.body(wanted(content(request), self.output))).encode()
+        body = json.dumps(self.body(wanted(content(request), self.output, self.page))).encode()
         if not self.free.acquire(blocking=False):
             raise Unanswered(429, f"{MOST_AT_ONCE} redraws are being made: ask again.")
         try:
@@ -125,19 +125,19 @@ def content(request: Request) -> Any:
         raise Unanswered(408, "the body must come whole, and without a long pause.") from None
 
 
-def wanted(asked: Any, output: str) -> list[Any]:
+def wanted(asked: Any, output: str, page: Page = THESIS_PAGE) -> list[Any]:
     """The controls' values in a callback's body."""
     match asked:
         case {"output": where, "inputs": [{"id": "wanted", "property": "data", "value": list(values)}]}:
-            if where == output and len(values) == len(CONTROLS):
-                return controlled(dict(zip(CONTROLS, values, strict=True)))
-    raise Unanswered(400, f"the body must ask for the page's outputs with the values of {', '.join(CONTROLS)}.")
+            if where == output and len(values) == len(page.controls):
+                return controlled(dict(zip(page.controls, values, strict=True)), page)
+    raise Unanswered(400, f"the body must ask for the page's outputs with the values of {', '.join(page.controls)}.")
 
 
-def controlled(values: Mapping[str, Any]) -> list[Any]:
+def controlled(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> list[Any]:
     """Values as the controls can have them."""
     try:
-        read = {name: checked(name, values[name], entry.kind) for name, entry in RANGES.items()}
+        read = {name: checked(name, values[name], entry.kind) for name, entry in page.ranges.items()}
         read["load"] = checked("load", values["load"], Choice(DIRECTIONS))
     except ValueError as error:
         raise Unanswered(400, str(error)) from None

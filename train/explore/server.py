@@ -7,8 +7,11 @@ from typing import Any
 
 from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 
-from beamenv.configuration import Count, Refused, checked
+from beamenv.blade.config import BladeConfig
+from beamenv.blade.presets import THESIS
+from beamenv.configuration import Count, Instance, Refused, checked
 from train.explore.app import create_app
+from train.explore.layout import Page
 from train.explore.requests import is_loopback
 
 LOOPBACK = "127.0.0.1"
@@ -22,18 +25,19 @@ class _Quiet(WSGIRequestHandler):
         """No line for every slider's move."""
 
 
-def serve(port: int, host: str = LOOPBACK) -> BaseWSGIServer:
-    """A server that is bound and waits for ``serve_forever``; port 0 takes a free one, which ``server.port`` gives.
+def serve(port: int, host: str = LOOPBACK, base: BladeConfig = THESIS) -> BaseWSGIServer:
+    """A server of a blade's page that is bound and waits for ``serve_forever``; port 0 takes a free one: ``server.port``.
 
     Raises ``ValueError`` for a host that is not loopback, and for a port that is none or cannot be had.
     """
     if not is_loopback(host):
         raise Refused("host", host, f"a loopback address such as {LOOPBACK}, for the page is for this computer alone")
     port = checked("port", port, Count(0, 65535))
+    page = Page.of(checked("base", base, Instance(BladeConfig)))
     try:
         bound = socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except OSError as error:
         raise ValueError(f"port {port} of {host} cannot be had: {error.strerror}.") from None
     with bound:
-        taken, wsgi = bound.getsockname()[1], create_app().server
+        taken, wsgi = bound.getsockname()[1], create_app(page).server
         return make_server(host, taken, wsgi, threaded=True, request_handler=_Quiet, fd=bound.fileno())
