@@ -17,6 +17,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.clamp import clamp_note
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.design import Design
+from beamenv.blade.files import load_config
 from beamenv.blade.given import given_blade
 from beamenv.blade.held_load import under_reference
 from beamenv.blade.instruments import in_range
@@ -24,6 +25,7 @@ from beamenv.blade.model_blade import DRIVE, ModelBlade, PlantArgument
 from beamenv.blade.presets import PRESETS, blade_config
 from beamenv.configuration import Choice, Count, Flag, Number, Refused, checked, checked_table, read
 from beamenv.configuration.arrays import real_numbers
+from beamenv.configuration.files import ENDINGS
 from beamenv.configuration.numbers import UNBOUNDED
 from beamenv.knowledge import TIERS, TRUTH, Prior, Truth, kept_for_judging, on_training_bank, without_faults
 from beamenv.plant.files import load_plant
@@ -41,7 +43,7 @@ from beamenv.simulation.strain_limit import FAILURE_STRAIN
 
 Array = NDArray[np.float64]
 
-BladeArgument = BladeConfig | Mapping[str, Any] | None
+BladeArgument = BladeConfig | Mapping[str, Any] | str | Path | None
 DesignArgument = BladeConfig | Mapping[str, Any] | str | Path | Plant | None
 ScenarioArgument = Scenario | Mapping[str, Any] | str | Path | None
 
@@ -184,7 +186,7 @@ def resolve_task(
     if spread is not None:
         raise Refused("spread", spread, "None without a plant: what varies of a blade is in the scenario's plants")
     duration = DURATION if duration is None else duration
-    config = blade_config(preset, blade, speed)
+    config = blade_config(preset, _of_file(blade), speed)
     interval = config.control_interval
     duration = checked("duration", duration, Number(gt=interval / 2, le=UNBOUNDED * interval, unit="s"))
     physical_units = checked("physical_units", physical_units, Flag())
@@ -242,6 +244,13 @@ def _of_model(
         physical_units=checked("physical_units", physical_units, Flag()),
     )
     return _alive(_TASKS, task)
+
+
+def _of_file(blade: BladeArgument) -> BladeConfig | Mapping[str, Any] | None:
+    """What a path stands for; anything else as it is."""
+    if isinstance(blade, Path) or (isinstance(blade, str) and blade.lower().endswith(ENDINGS)):
+        return load_config(blade)
+    return blade  # type: ignore[return-value] # other strings are refused where it is read
 
 
 _Made = TypeVar("_Made")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field, fields, is_dataclass
+from dataclasses import MISSING, field, fields, is_dataclass
 from typing import Any, TypeVar
 
 from pydantic import ConfigDict
@@ -86,7 +86,8 @@ def made(cls: type[T], given: Any, path: str) -> T:
     for name in given:
         if name not in known:
             raise unknown_field(path, name, known)
-    values = {name: _read_field(cls, name, None, value, f"{path}.{name}") for name, value in given.items()}
+    usual = {each.name: each.default for each in fields(cls) if each.default is not MISSING}  # type: ignore[arg-type]
+    values = {name: _read_field(cls, name, usual.get(name), value, f"{path}.{name}") for name, value in given.items()}
     instance: T = object.__new__(cls)
     _construct(instance, (), values, path)
     return instance

@@ -21,11 +21,18 @@ def reward_scale(plant: Plant) -> float:
     may cost nothing at rest: then it is the greatest xᵀQx after that load has suddenly set in, or after full voltages where there
     is no load.
     """
+    scale = _scale(plant) * plant.control_interval
+    if not (np.isfinite(scale) and scale > 0.0):
+        raise ValueError("plant costs nothing under its reference load: its energy or output weight must weigh what that moves.")
+    return scale
+
+
+def _scale(plant: Plant) -> float:
     if not plant.loads:
-        return after_sudden(plant, plant.B @ drive_limit(plant)[:, None]).cost * plant.control_interval
+        return after_sudden(plant, plant.B @ drive_limit(plant)[:, None]).cost
     load = np.zeros(plant.disturbance_input.shape[1])
     load[plant.loads - 1] = np.asarray(plant.reference_load)[plant.loads - 1]
     if not plant.energy_known:
-        return after_sudden(plant, (plant.disturbance_input @ load)[:, None]).cost * plant.control_interval
+        return after_sudden(plant, (plant.disturbance_input @ load)[:, None]).cost
     state = static_deflection(plant, load)
-    return float(state @ plant.state_weight @ state) * plant.control_interval
+    return float(state @ plant.state_weight @ state)

@@ -120,5 +120,7 @@ def _cut_off(side: Array, at: float) -> Array:
     if not len(beyond):
         return side
     k = int(beyond[0])
+    while k > 2 and at - side[k - 1, 0] < 0.5 * (side[k - 1, 0] - side[k - 2, 0]):
+        side, k = np.delete(side, k - 1, axis=0), k - 1  # a piece much shorter than its neighbour has no room for its wall
     share = (at - side[k - 1, 0]) / (side[k, 0] - side[k - 1, 0])
     return np.concatenate([side[:k], (side[k - 1] + share * (side[k] - side[k - 1]))[None]])

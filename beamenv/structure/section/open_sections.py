@@ -200,6 +200,9 @@ class WallsSection(OpenSection):
         for wall, points in self.lines:
             if np.any(np.hypot(*np.diff(np.array(points), axis=0).T) == 0.0):
                 raise Refused(f"lines.{wall}", points, "points of which no two in turn coincide")
+        for chain in self._joined():
+            if np.allclose(chain.points[0], chain.points[-1], rtol=0.0, atol=1e-9):
+                raise Refused("lines", chain.walls, "walls that close no cell: closed ones are a polygon with its webs")
         self.check_walls()
 
     @property

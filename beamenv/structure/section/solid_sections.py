@@ -78,22 +78,16 @@ class SolidSections(Sealed):
 
     @classmethod
     def _of_rate(
-        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: tuple[Array, Array] | None
-    ) -> tuple[SolidSections, tuple[Array, Array]]:
-        """Those of one pretwist, and what amplitudes of 1 mean: the resultants (6,), in the first section of unit energy, and the
-        loads that distort. ``meant`` is that of other sections of the blade.
-        """
+        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: _Meaning | None
+    ) -> tuple[SolidSections, _Meaning]:
+        """Those of one pretwist, and what amplitudes of 1 mean in all. ``meant`` is that of other sections of the blade."""
         sums = element_sums(mesh, laminates, which, rate)
         system = Factorised.of(sums)
         central = central_solution(system, rate)
         if meant is None:
-            loads = loads_of_vibrations(system.first)
-            if len(mesh.loose_ends):
-                torsion = central.warping[:1, :, :, RIGID - 1 :]
-                loads = np.concatenate([loads_of_bimoment(system.first, torsion), loads[..., : DISTORTIONS - 1]], axis=-1)
-            meant = np.sqrt(np.diagonal(central.stiffness[0])), loads
-        unit, loads = meant
-        shapes = np.concatenate([central.warping * unit, distortion_shapes(system, loads)], axis=-1)
+            meant = _Meaning.of(system.first, central, bool(len(mesh.loose_ends)))
+        warping, amplitudes = meant.shapes(central)
+        shapes = np.concatenate([warping, distortion_shapes(system, meant.loads)], axis=-1)
         here = sums.gather(shapes)
         sections = cls(
             mesh=mesh,
@@ -104,7 +98,7 @@ class SolidSections(Sealed):
             inertia=sums.inertia,
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, here),
-            saint_venant=_saint_venant(central, unit, rate),
+            saint_venant=_saint_venant(central, amplitudes, rate),
         )
         return sections, meant
 
@@ -239,12 +233,54 @@ def faces_of(mesh: Mesh) -> list[tuple[NDArray[np.intp], bool, float]]:
     return [(elements, last, side) for elements, last, side in found if len(elements)]
 
 
-def _saint_venant(central: CentralSolution, unit: Array, pretwist: float) -> Array:
+SHEAR_AND_TWIST = np.array([0, 1, 5])
+"""Of the beam strains γx, γy and φ′, and of the resultants Vx, Vy and Mz."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Meaning:
+    """What amplitudes of 1 mean in all sections of a blade."""
+
+    resultants: Array
+    """(6,): in the first section of unit energy."""
+    loads: Array
+    """Those that distort, (1, K, size, DISTORTIONS)."""
+    strains: Array | None
+    """(3, 3): of an open section, shear and twist of the first under these resultants of them; None: closed."""
+
+    @classmethod
+    def of(cls, first: Factorised, central: CentralSolution, opened: bool) -> _Meaning:
+        """That of a blade whose first section this is."""
+        loads, resultants = loads_of_vibrations(first), np.sqrt(np.diagonal(central.stiffness[0]))
+        if not opened:
+            return cls(resultants, loads, None)
+        torsion = central.warping[:1, :, :, RIGID - 1 :]
+        loads = np.concatenate([loads_of_bimoment(first, torsion), loads[..., : DISTORTIONS - 1]], axis=-1)
+        return cls(resultants, loads, (central.strain[0] * resultants)[np.ix_(SHEAR_AND_TWIST, SHEAR_AND_TWIST)])
+
+    def shapes(self, central: CentralSolution) -> tuple[Array, Array]:
+        """Saint-Venant's shapes of each section, and their amplitudes (V, 6, 6) per stress resultant.
+
+        Warping must go on from one section to the next where a patch begins. In torsion, and under forces beside the shear centre,
+        that of an open section is large and goes with twist and shear, not with torque and forces: of two sections of unlike
+        stiffness it is alike where these are. Otherwise, and of a closed section, amplitudes go with the resultants: under a patch
+        that bends no moment acts, and nothing jumps at its ends.
+        """
+        if self.strains is None:
+            per_resultant = np.broadcast_to(np.diag(1.0 / self.resultants), central.strain.shape)
+            return central.warping * self.resultants, per_resultant
+        resultants = np.tile(np.diag(self.resultants), (len(central.strain), 1, 1))
+        own = np.ix_(np.arange(len(resultants)), SHEAR_AND_TWIST, SHEAR_AND_TWIST)
+        resultants[own] = np.linalg.solve(central.strain[own], np.broadcast_to(self.strains, resultants[own].shape))
+        return central.warping @ resultants[:, None], np.asarray(np.linalg.inv(resultants))
+
+
+def _saint_venant(central: CentralSolution, amplitudes: Array, pretwist: float) -> Array:
     """(V, STRAINS, 6)."""
     state = np.zeros((len(central.strain), STRAINS, RIGID))
     state[:, :RIGID] = central.strain
-    state[:, RIGID : 2 * RIGID] = np.diag(1.0 / unit)
-    state[:, RIGID + AMPLITUDES : 2 * RIGID + AMPLITUDES] = equilibrium(pretwist) / unit[:, None]
+    state[:, RIGID : 2 * RIGID] = amplitudes
+    state[:, RIGID + AMPLITUDES : 2 * RIGID + AMPLITUDES] = amplitudes @ equilibrium(pretwist)
     return state
 
 
