@@ -63,8 +63,13 @@ class Room:
         """``ValueError`` where an inlay does not fit its wall along the contour."""
         section = self.section
         if self.thesis and section.walls.count(inlay.wall) != 1:
-            raise Refused("wall", inlay.wall, f"one straight wall of the section: {', '.join(section.wall_names)}")
-        room = self.narrowest * (section.wall_width(inlay.wall) - 2.0 * abs(inlay.offset))
+            walls = ", ".join(section.wall_names)
+            raise ValueError(f"inlay's wall is {inlay.wall!r}, but must be one straight wall of the section: {walls}.")
+        try:
+            width = section.wall_width(inlay.wall)
+        except Refused as refused:
+            raise ValueError(f"inlay's {refused}") from None
+        room = self.narrowest * (width - 2.0 * abs(inlay.offset))
         if not 0.0 < inlay.width <= room * (1.0 + ROUNDING):
             where = f" (offset {inlay.offset!r} m from its middle)" if inlay.offset else ""
             raise ValueError(

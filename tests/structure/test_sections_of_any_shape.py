@@ -320,6 +320,14 @@ def test_walls_that_cannot_stand_on_one_another_are_refused_in_one_sentence(case
         section.properties(ALUMINIUM)
 
 
+@pytest.mark.parametrize("case", MESHED)
+def test_a_blade_of_walls_that_cannot_stand_is_refused_in_the_same_sentence(case):
+    section, words = MESHED[case]
+    beam = RotatingBeam(section=section, layup=ALUMINIUM, length=1.0)
+    with pytest.raises(ValueError, match=words):
+        beam.matrices  # noqa: B018
+
+
 def test_walls_by_their_lines_are_the_same_section_as_by_its_name():
     lines = {"top": [[0.03, 0.05], [-0.03, 0.05]], "bottom": [[-0.03, -0.05], [0.03, -0.05]], "web": [[0.0, -0.05], [0.0, 0.05]]}
     by_lines, by_name = classical(WallsSection(lines, 0.003)), classical(ISection(0.06, 0.1, 0.003))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Refused
+from beamenv.structure.scale import Contradiction
 from beamenv.structure.section.standing import check_apart, check_joined
 from beamenv.structure.walls.chain import Chain
 
@@ -220,6 +221,7 @@ def _along(points: Array, arcs: Array, at: Array) -> Array:
     return np.stack([np.interp(at, arcs, points[:, axis]) for axis in range(2)], axis=-1)
 
 
-def _too_near(chain: Chain) -> ValueError:
+def _too_near(chain: Chain) -> Contradiction:
     names = ", ".join(dict.fromkeys(chain.walls))
-    return ValueError(f"section has a wall that ends on {names} too near to a corner, an end or another web: within its thickness.")
+    near = "too near to a corner, an end or another web: within its thickness"
+    return Contradiction(f"section has a wall that ends on {names} {near}.")

@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.structure.scale import Contradiction
 from beamenv.structure.walls.chain import Chain
 
 Array = NDArray[np.float64]
@@ -20,7 +21,7 @@ def check_joined(chains: Sequence[Chain], joined: Iterable[tuple[int, int]]) -> 
         part = [part[one] if each == part[other] else each for each in part]
     alone = [k for k, each in enumerate(part) if each != part[0]]
     if alone:
-        raise ValueError(f"section is in parts: wall {chains[alone[0]].walls[0]!r} must end on another wall, or another on it.")
+        raise Contradiction(f"section is in parts: wall {chains[alone[0]].walls[0]!r} must end on another wall, or another on it.")
 
 
 def check_apart(chains: Sequence[Chain]) -> None:
@@ -28,7 +29,7 @@ def check_apart(chains: Sequence[Chain]) -> None:
     for one, other in combinations(chains, 2):
         crossing = _crossing(one, other)
         if crossing is not None:
-            raise ValueError(f"section has walls {crossing[0]!r} and {crossing[1]!r} that cross, but one must end on the other.")
+            raise Contradiction(f"section has walls {crossing[0]!r} and {crossing[1]!r} that cross, but one must end on the other.")
 
 
 def _crossing(one: Chain, other: Chain) -> tuple[str, str] | None:
