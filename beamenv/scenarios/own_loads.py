@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from typing import Annotated, Any
 
-from beamenv.blade.load_shapes import SHAPES, LoadShape, usual_size
+from beamenv.blade.load_shapes import LARGEST, SHAPES, LoadShape, usual_size
 from beamenv.configuration import Choice, Count, Number, Numbers, Points, Range, Refused, configuration
 from beamenv.configuration.numbers import TURNED
 from beamenv.scenarios.series import Function, Series, read_series
@@ -14,8 +14,6 @@ from beamenv.scenarios.tables import Pair
 from beamenv.structure import RotatingBeam
 
 COURSES = ("step", "pulse", "harmonic", "series", "noise", "function")
-LARGEST = 1e9
-"""N, N/m or m/s²: a load beyond this is a mistake."""
 
 Seconds = Annotated[Pair, Range(0.0, 1e6, unit="s")]
 
@@ -34,9 +32,9 @@ class Load:
     """m along the span from the clamp, of a point; None: the tip."""
     span: Annotated[Pair | None, Range(0.0, unit="m")] = None
     """m from and to which a line load reaches; None: all of the span."""
-    profile: Annotated[tuple[float, ...], Numbers(least=2, most=2)] = (1.0, 1.0)
+    profile: Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=2, most=2)] = (1.0, 1.0)
     """How large a line load is at its beginning and its end over its size; linear between."""
-    point: Annotated[tuple[float, ...], Numbers(Number(unit="m"), least=2, most=2)] = (0.0, 0.0)
+    point: Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST, unit="m"), least=2, most=2)] = (0.0, 0.0)
     """m: x and y in the section, from the pitch axis: where a force acts."""
     direction: Annotated[tuple[float, ...], Numbers(least=3, most=3)] = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""
@@ -96,10 +94,8 @@ class Load:
 def _check_spectrum(spectrum: tuple[Pair, ...]) -> None:
     frequencies, densities = zip(*spectrum, strict=True)
     rising = all(later > earlier for earlier, later in zip(frequencies, frequencies[1:], strict=False))
-    if not rising or frequencies[0] < 0.0 or min(densities) < 0.0 or max(densities) == 0.0:
-        raise Refused(
-            "spectrum", spectrum, "pairs of ascending frequencies (Hz) and densities that are not negative, some positive"
-        )
+    if not rising or frequencies[0] < 0.0 or min(densities) < 0.0 or not 0.0 < max(densities) <= LARGEST:
+        raise Refused("spectrum", spectrum, f"pairs of ascending frequencies (Hz) and densities of 0 to {LARGEST:g}, some positive")
 
 
 TENTH = 0.1

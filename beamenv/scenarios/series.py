@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.configuration import Numbers, Refused
+from beamenv.blade.load_shapes import LARGEST
+from beamenv.configuration import Number, Numbers, Refused
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 
 ENDING = ".csv"
@@ -30,7 +31,7 @@ class Series(Kind):
 
     @property
     def _numbers(self) -> Numbers:
-        return Numbers(least=LEAST)
+        return Numbers(Number(ge=-LARGEST, le=LARGEST), least=LEAST)
 
     def core(self) -> CoreSchema:
         """A tuple of floats, or a string."""
@@ -76,7 +77,9 @@ def read_series(path: str, name: str) -> tuple[float, ...]:
     values = [_number(line) for line in lines[first:]]
     for k, value in enumerate(values):
         if value is None:
-            raise Refused(name, lines[first + k], f"a finite number in each line; line {first + k + 1} of {path!r} has none")
+            raise Refused(
+                name, lines[first + k], f"a number of at most {LARGEST:g} in each line; line {first + k + 1} of {path!r} has none"
+            )
     if len(values) < LEAST:
         raise Refused(name, path, f"a file of at least {LEAST} numbers")
     return tuple(value for value in values if value is not None)
@@ -87,7 +90,7 @@ def _number(line: str) -> float | None:
         value = float(line.strip().rstrip(","))
     except ValueError:
         return None
-    return value if math.isfinite(value) else None
+    return value if abs(value) <= LARGEST else None
 
 
 def interval_means(values: tuple[float, ...], rate: float, interval: float) -> np.ndarray[Any, np.dtype[np.float64]]:

@@ -223,6 +223,10 @@ def test_controllers_see_the_disturbances_that_they_had():
         ({"course": "function"}, "function is None"),
         ({"course": "noise", "spectrum": [[10, 1], [5, 1]]}, "spectrum is"),
         ({"magnitude": [2.0, 1.0]}, "magnitude is"),
+        ({"shape": "line", "profile": [1.0, 1e200]}, "profile"),
+        ({"point": [1e200, 0.0]}, "point"),
+        ({"course": "series", "series": [0, 1e200], "rate": 10.0}, "series"),
+        ({"course": "noise", "spectrum": [[5, 1e200], [10, 1]]}, "spectrum is"),
     ],
 )  # fmt: skip
 def test_loads_that_cannot_be_are_refused_in_one_sentence(load, sentence):
@@ -233,7 +237,7 @@ def test_loads_that_cannot_be_are_refused_in_one_sentence(load, sentence):
 def test_a_line_of_a_file_that_is_no_number_is_named(tmp_path):
     (tmp_path / "gap.csv").write_text("0.0\n1.0\n\n0.5\n", encoding="utf-8")
     load = {"course": "series", "series": str(tmp_path / "gap.csv"), "rate": 100.0}
-    with pytest.raises(ValueError, match=r"scenario.loads\[0\].series is '', but must be a finite number in each line; line 3 of"):
+    with pytest.raises(ValueError, match=r"series is '', but must be a number of at most 1e\+09 in each line; line 3 of"):
         make(load)
 
 
@@ -241,6 +245,13 @@ def test_a_function_that_gives_no_number_is_named():
     env = make({"course": "function", "function": lambda t: None})
     env.reset()
     with pytest.raises(ValueError, match=r"scenario.loads: function\(0.00025\) is None, but must be a finite number"):
+        env.step(np.zeros(1))
+
+
+def test_a_function_that_takes_no_time_is_named():
+    env = make({"course": "function", "function": lambda: 1.0})
+    env.reset()
+    with pytest.raises(ValueError, match=r"scenario.loads: function\(0.00025\) cannot be called: .* takes 0 positional arguments"):
         env.step(np.zeros(1))
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
+from beamenv.blade.load_shapes import LARGEST
 from beamenv.scenarios.drawing import whole_intervals
 from beamenv.scenarios.own_loads import Load
 from beamenv.scenarios.series import interval_means
@@ -138,10 +139,17 @@ def values_of(function: Any, times: Array) -> Array:
         if values.shape != times.shape:
             raise TypeError
     except (TypeError, ValueError):
-        values = np.array([_number(function(time), time) for time in times.tolist()])
+        values = np.array([_number(_called(function, time), time) for time in times.tolist()])
     for value, time in zip(values, times, strict=True):
         _number(value, time)
     return values
+
+
+def _called(function: Any, time: float) -> Any:
+    try:
+        return function(time)
+    except TypeError as error:
+        raise ValueError(f"scenario.loads: function({time:g}) cannot be called: {error}.") from None
 
 
 def _number(value: Any, time: float) -> float:
@@ -149,8 +157,8 @@ def _number(value: Any, time: float) -> float:
         number = float(value)
     except (TypeError, ValueError):
         number = np.nan
-    if not np.isfinite(number):
-        raise ValueError(f"scenario.loads: function({time:g}) is {value!r}, but must be a finite number.")
+    if not abs(number) <= LARGEST:
+        raise ValueError(f"scenario.loads: function({time:g}) is {value!r}, but must be a finite number, at most {LARGEST:g}.")
     return number
 
 
