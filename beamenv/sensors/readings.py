@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from beamenv.configuration import Refused
 from beamenv.configuration.read_only import sealed
 from beamenv.plant.electronics import static_residual
 from beamenv.plant.plant import Plant
@@ -84,7 +85,9 @@ def _ranges(
     found = []
     for k, sensor in enumerate(sensors):
         own = current_range if isinstance(sensor, PatchCurrent) and sensor.range is None else sensor.range
-        fitted = max(float(largest[rows.item == k].max()), np.finfo(np.float64).tiny)
+        fitted = float(largest[rows.item == k].max())
+        if own is None and not fitted**2 > 0.0:  # squares of readings must be numbers
+            raise Refused(f"blade.sensors[{k}].range", own, "given where the blade's reference load moves no reading of the sensor")
         found.append(fitted if own is None else own)
     return np.array(found)[rows.item]
 

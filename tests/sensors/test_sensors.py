@@ -51,6 +51,13 @@ def test_ranges_are_twice_the_largest_reading_after_a_sudden_reference_load():
     assert 0.2 < largest[0] < 0.6
 
 
+def test_an_accelerometer_at_the_clamp_needs_a_range():
+    at_the_clamp = {"sensors": [{"kind": "accelerometer", "position": 0.0}]}
+    with pytest.raises(ValueError, match=r"blade.sensors\[0\].range is None, but must be given where .* moves no reading"):
+        make(blade=at_the_clamp)
+    make(blade={"sensors": [{"kind": "accelerometer", "position": 0.0, "range": 10.0}]})
+
+
 def test_an_accelerometer_alone_is_enough_to_halve_the_cost():
     task, count = resolve_task("aluminium-cantilever", blade=ACCELEROMETER), 16
     assert np.any(task.design_plant.D)
