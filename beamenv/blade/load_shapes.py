@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beamenv.configuration import Choice, Number, Numbers, Range, Refused, configuration
 from beamenv.plant.signals import Signal
-from beamenv.sensors.kinds import check_direction
+from beamenv.sensors.kinds import Vector, check_direction
 from beamenv.sensors.points import along, point_rows
 from beamenv.structure import RotatingBeam
 from beamenv.structure.beam import EXTRA_STATIONS
@@ -24,6 +24,9 @@ LARGEST = 1e9
 """N, N/m or m/s², and m of a lever: a load beyond this is a mistake."""
 UNITS = {"point": "N", "line": "N/m", "base": "m/s²"}
 
+Profile = Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=2, most=2)]
+Point = Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST, unit="m"), least=2, most=2)]
+
 
 @configuration("blade.loads")
 class LoadShape:
@@ -37,11 +40,11 @@ class LoadShape:
     """m along the span from the clamp, of a point; None: the tip."""
     span: Annotated[Pair | None, Range(0.0, unit="m")] = None
     """m from and to which a line load reaches; None: all of the span."""
-    profile: Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=2, most=2)] = (1.0, 1.0)
+    profile: Profile = (1.0, 1.0)
     """How large a line load is at its beginning and its end over its size; linear between."""
-    point: Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST, unit="m"), least=2, most=2)] = (0.0, 0.0)
+    point: Point = (0.0, 0.0)
     """m: x and y in the section, which turns with the pretwist, from the pitch axis: where a force acts."""
-    direction: Annotated[tuple[float, ...], Numbers(least=3, most=3)] = (0.0, 1.0, 0.0)
+    direction: Vector = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""
 
     def __post_init__(self) -> None:

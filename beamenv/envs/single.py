@@ -32,7 +32,7 @@ from beamenv.task import (
 )
 
 if TYPE_CHECKING:
-    from beamenv.rendering import BladeRenderer, Instant, ModelRenderer
+    from beamenv.rendering import EpisodeRenderer, Instant
 
 Array = NDArray[np.float64]
 
@@ -241,7 +241,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 50}
-    _renderer: BladeRenderer | ModelRenderer | None = None
+    _renderer: EpisodeRenderer | None = None
 
     def __init__(
         self,
@@ -354,7 +354,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         if self._renderer is not None:
             self._renderer.close()
 
-    def _make_renderer(self) -> BladeRenderer | ModelRenderer:
+    def _make_renderer(self) -> EpisodeRenderer:
         from beamenv.rendering import renderer_of
 
         return renderer_of(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)

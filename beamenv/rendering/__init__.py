@@ -2,8 +2,9 @@
 
 from beamenv.rendering.batch import BatchRenderer
 from beamenv.rendering.choice import renderer_of
+from beamenv.rendering.episode_renderer import EpisodeRenderer
 from beamenv.rendering.history import Instant
 from beamenv.rendering.model_renderer import ModelRenderer
 from beamenv.rendering.renderer import BladeRenderer
 
-__all__ = ["BatchRenderer", "BladeRenderer", "Instant", "ModelRenderer", "renderer_of"]
+__all__ = ["BatchRenderer", "BladeRenderer", "EpisodeRenderer", "Instant", "ModelRenderer", "renderer_of"]

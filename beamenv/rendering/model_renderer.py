@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beamenv.plant.plant import drive_limit
-from beamenv.rendering.canvas import Canvas, Frame
+from beamenv.rendering.canvas import Frame
 from beamenv.rendering.charts import Chart, round_above
-from beamenv.rendering.history import WINDOW, History, Instant
-from beamenv.rendering.installed import check_installed
+from beamenv.rendering.episode_renderer import EpisodeRenderer
+from beamenv.rendering.history import WINDOW, History
 from beamenv.rendering.palette import INK, QUIET, line_colours
-from beamenv.rendering.window import Window
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 
@@ -27,12 +24,10 @@ POINTS = 401
 """A curve is drawn through so many instants at most: more than it has pixels."""
 
 
-class ModelRenderer:
-    """Draws a model's episode as ``BladeRenderer`` does a blade's: ``begin``, ``record`` after every step, ``draw``, ``close``."""
+class ModelRenderer(EpisodeRenderer):
+    """Draws a model's episode: readings, voltages, cost, and displacements where the model has them."""
 
-    def __init__(self, task: Task, rate: float | None = None) -> None:
-        check_installed()
-        self._task, self._rate = task, rate
+    def _prepare(self, task: Task) -> None:
         plant = task.plant
         window = float(f"{WINDOW * plant.time_scale:.1g}")
         usual_cost = 0.1 * window / plant.control_interval * reward_scale(plant)
@@ -41,46 +36,13 @@ class ModelRenderer:
         readings, displacements, voltages, cost = (
             replace(each, window=window) for each in (READINGS, DISPLACEMENTS, VOLTAGES, COST)
         )
-        self._charts = [readings, voltages.up_to(float(drive_limit(plant).max())), cost.up_to(round_above(usual_cost))]
-        self._charts += [displacements.up_to(1e-12)] if len(plant.tip_displacement) else []
+        self._least = [readings, voltages.up_to(float(drive_limit(plant).max())), cost.up_to(round_above(usual_cost))]
+        self._least += [displacements.up_to(1e-12)] if len(plant.tip_displacement) else []
         self._titles = [each.name for each in plant.sensors]
-        self._canvas = Canvas()
-        self._window = None if rate is None else Window("beamenv", rate)
+
+    def _rest(self) -> None:
+        self._charts = self._least
         self._lay_out()
-
-    def __getstate__(self) -> tuple[Any, ...]:
-        return self._task, self._rate, self._history
-
-    def __setstate__(self, state: tuple[Any, ...]) -> None:
-        """Surfaces and windows are made anew: they cannot be copied."""
-        task, rate, history = state
-        self.__init__(task, rate)  # type: ignore[misc]
-        self._history = history
-
-    def begin(self, first: Instant) -> None:
-        """Start an episode."""
-        self._history.begin(first)
-        self._show()
-
-    def record(self, instant: Instant) -> None:
-        """Take down what one control interval brought."""
-        self._history.record(instant)
-        self._show()
-
-    def draw(self) -> NDArray[np.uint8]:
-        """The picture of the last instant recorded: (540, 960, 3)."""
-        self._paint()
-        return self._canvas.pixels()
-
-    def close(self) -> None:
-        """Close the window, if there is one."""
-        if self._window is not None:
-            self._window.close()
-
-    def _show(self) -> None:
-        if self._window is not None:
-            self._paint()
-            self._window.show(self._canvas.picture)
 
     def _lay_out(self) -> None:
         self._canvas.clear()

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import drive_limit
-from beamenv.rendering.canvas import Canvas, Frame
+from beamenv.rendering.canvas import Frame
 from beamenv.rendering.charts import Chart, draw_scale, round_above
 from beamenv.rendering.deformation import Deformation
-from beamenv.rendering.history import WINDOW, History, Instant
-from beamenv.rendering.installed import check_installed
+from beamenv.rendering.episode_renderer import EpisodeRenderer
+from beamenv.rendering.history import WINDOW, History
 from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
 from beamenv.rendering.scene import Scene
-from beamenv.rendering.window import Window
 from beamenv.sensors.kinds import PatchSensor, Sensor
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
@@ -34,16 +32,10 @@ CURVE_POINTS = 401
 """A curve is drawn through so many instants at most: more than it has pixels."""
 
 
-class BladeRenderer:
-    """Draws one blade's episode: ``begin``, then ``record`` after every step, and ``draw`` whenever a picture is wanted.
+class BladeRenderer(EpisodeRenderer):
+    """Draws one blade's episode: the blade in space beside its displacement, voltages and cost."""
 
-    ``rate`` (1/s) opens a window, which then shows every instant at this rate; None is for pictures as arrays alone.
-    Raises DependencyNotInstalled without pygame, which draws, or matplotlib, which lends colour scales and letters.
-    """
-
-    def __init__(self, task: Task, rate: float | None = None) -> None:
-        check_installed()
-        self._task, self._rate = task, rate
+    def _prepare(self, task: Task) -> None:
         config, plant = task.config, task.plant
         self._scene = Scene(task.blade)
         self._deformation = Deformation(task, self._scene.solid.stations)
@@ -59,44 +51,9 @@ class BladeRenderer:
         self._least = tip, COST.up_to(round_above(1e3 * usual_cost))
         self._history = History(config.control_interval)
         self._stride = -(-(round(WINDOW / config.control_interval) + 1) // CURVE_POINTS)
-        self._canvas = Canvas()
-        self._window = None if rate is None else Window("beamenv", rate)
+
+    def _rest(self) -> None:
         self._lay_out(*self._least)
-
-    def __getstate__(self) -> tuple[Any, ...]:
-        return self._task, self._rate, self._history
-
-    def __setstate__(self, state: tuple[Any, ...]) -> None:
-        """Surfaces and windows are made anew: they cannot be copied."""
-        task, rate, history = state
-        self.__init__(task, rate)  # type: ignore[misc]
-        self._history = history
-
-    def begin(self, first: Instant) -> None:
-        """Start an episode."""
-        self._history.begin(first)
-        self._lay_out(*self._least)
-        self._show()
-
-    def record(self, instant: Instant) -> None:
-        """Take down what one control interval brought."""
-        self._history.record(instant)
-        self._show()
-
-    def draw(self) -> NDArray[np.uint8]:
-        """The picture of the last instant recorded: (540, 960, 3)."""
-        self._paint()
-        return self._canvas.pixels()
-
-    def close(self) -> None:
-        """Close the window, if there is one."""
-        if self._window is not None:
-            self._window.close()
-
-    def _show(self) -> None:
-        if self._window is not None:
-            self._paint()
-            self._window.show(self._canvas.picture)
 
     def _lay_out(self, tip: Chart, cost: Chart) -> None:
         """Draw what seldom changes."""

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from typing import Annotated, Any
 
-from beamenv.blade.load_shapes import LARGEST, SHAPES, LoadShape, usual_size
-from beamenv.configuration import Choice, Count, Number, Numbers, Points, Range, Refused, configuration
+from beamenv.blade.load_shapes import LARGEST, SHAPES, LoadShape, Point, Profile, usual_size
+from beamenv.configuration import Choice, Count, Number, Points, Range, Refused, configuration
 from beamenv.configuration.numbers import TURNED
 from beamenv.scenarios.series import Function, Series, read_series
 from beamenv.scenarios.tables import Pair
+from beamenv.sensors.kinds import Vector
 from beamenv.structure import RotatingBeam
 
 COURSES = ("step", "pulse", "harmonic", "series", "noise", "function")
@@ -32,11 +33,11 @@ class Load:
     """m along the span from the clamp, of a point; None: the tip."""
     span: Annotated[Pair | None, Range(0.0, unit="m")] = None
     """m from and to which a line load reaches; None: all of the span."""
-    profile: Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=2, most=2)] = (1.0, 1.0)
+    profile: Profile = (1.0, 1.0)
     """How large a line load is at its beginning and its end over its size; linear between."""
-    point: Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST, unit="m"), least=2, most=2)] = (0.0, 0.0)
+    point: Point = (0.0, 0.0)
     """m: x and y in the section, from the pitch axis: where a force acts."""
-    direction: Annotated[tuple[float, ...], Numbers(least=3, most=3)] = (0.0, 1.0, 0.0)
+    direction: Vector = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""
     course: Annotated[str, Choice(COURSES)] = "step"
     magnitude: Annotated[Pair | None, Range(-LARGEST, LARGEST)] = None
