@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beamenv.configuration import Choice, Number, Numbers, Range, Refused, configuration
 from beamenv.plant.signals import Signal
-from beamenv.sensors.kinds import Vector, check_direction
+from beamenv.sensors.kinds import LARGEST, Point, Vector, check_direction
 from beamenv.sensors.points import along, point_rows
 from beamenv.structure import RotatingBeam
 from beamenv.structure.beam import EXTRA_STATIONS
@@ -20,12 +20,9 @@ Array = NDArray[np.float64]
 Pair = tuple[float, float]
 
 SHAPES = ("point", "line", "base")
-LARGEST = 1e9
-"""N, N/m or m/s², and m of a lever: a load beyond this is a mistake."""
 UNITS = {"point": "N", "line": "N/m", "base": "m/s²"}
 
 Profile = Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=2, most=2)]
-Point = Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST, unit="m"), least=2, most=2)]
 
 
 @configuration("blade.loads")

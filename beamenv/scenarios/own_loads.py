@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from typing import Annotated, Any
 
-from beamenv.blade.load_shapes import LARGEST, SHAPES, LoadShape, Point, Profile, usual_size
+from beamenv.blade.load_shapes import SHAPES, LoadShape, Profile, usual_size
 from beamenv.configuration import Choice, Count, Number, Points, Range, Refused, configuration
 from beamenv.configuration.numbers import TURNED
 from beamenv.scenarios.series import Function, Series, read_series
 from beamenv.scenarios.tables import Pair
-from beamenv.sensors.kinds import Vector
+from beamenv.sensors.kinds import LARGEST, Point, Vector
 from beamenv.structure import RotatingBeam
 
 COURSES = ("step", "pulse", "harmonic", "series", "noise", "function")

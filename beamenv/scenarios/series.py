@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.blade.load_shapes import LARGEST
 from beamenv.configuration import Number, Numbers, Refused
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
+from beamenv.sensors.kinds import LARGEST
 
 ENDING = ".csv"
 LEAST = 2

@@ -12,10 +12,13 @@ from beamenv.configuration import Choice, Count, Number, Numbers, Refused, Text,
 from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.walls.inlay import FACE
 
-Metres = Number(unit="m")
+LARGEST = 1e9
+"""Either way, of lengths (m), directions and loads (N, N/m or m/s²): beyond, a number is a mistake."""
+Metres = Number(ge=-LARGEST, le=LARGEST, unit="m")
+Point = Annotated[tuple[float, ...], Numbers(Metres, least=2, most=2)]
 Range = Annotated[float | None, Number(ge=1e-15, le=1e9)]
 Noise = Annotated[float | None, Number(ge=0.0, le=100.0)]
-Vector = Annotated[tuple[float, ...], Numbers(least=3, most=3)]
+Vector = Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=3, most=3)]
 
 
 @configuration("blade.sensors")
@@ -73,7 +76,7 @@ class Displacement:
 
     position: Annotated[float | None, Number(ge=0.0, unit="m")] = None
     """m along the span from the clamp; None: the tip."""
-    point: Annotated[tuple[float, ...], Numbers(Metres, least=2, most=2)] = (0.0, 0.0)
+    point: Point = (0.0, 0.0)
     """m: x and y in the section, which turns with the pretwist, from the pitch axis; it need not be in a wall."""
     direction: Vector = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""
@@ -93,7 +96,7 @@ class Velocity:
 
     position: Annotated[float | None, Number(ge=0.0, unit="m")] = None
     """m along the span from the clamp; None: the tip."""
-    point: Annotated[tuple[float, ...], Numbers(Metres, least=2, most=2)] = (0.0, 0.0)
+    point: Point = (0.0, 0.0)
     """m: x and y in the section, which turns with the pretwist, from the pitch axis."""
     direction: Vector = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""
@@ -115,7 +118,7 @@ class Accelerometer:
 
     position: Annotated[float | None, Number(ge=0.0, unit="m")] = None
     """m along the span from the clamp; None: the tip."""
-    point: Annotated[tuple[float, ...], Numbers(Metres, least=2, most=2)] = (0.0, 0.0)
+    point: Point = (0.0, 0.0)
     """m: x and y in the section, which turns with the pretwist, from the pitch axis."""
     direction: Vector = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""

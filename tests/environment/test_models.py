@@ -250,6 +250,8 @@ def test_its_pictures_are_time_histories(plant, uncommon):
             env.step(np.ones(env.action_space.shape))
         after = env.render()
         assert after.shape == (540, 960, 3) and (before != after).any()
+        env.reset(seed=0)
+        assert (env.render() == before).all()  # at the usual scale again
 
 
 @pytest.mark.parametrize("agent", ["gradient", "ppo"])

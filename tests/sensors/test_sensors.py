@@ -58,6 +58,11 @@ def test_an_accelerometer_at_the_clamp_needs_a_range():
     make(blade={"sensors": [{"kind": "accelerometer", "position": 0.0, "range": 10.0}]})
 
 
+def test_a_point_beyond_all_blades_is_refused():
+    with pytest.raises(ValueError, match=r"blade.sensors\[0\].point"):
+        make(blade={"sensors": [{"kind": "accelerometer", "point": [1e200, 0.0]}]})
+
+
 def test_an_accelerometer_alone_is_enough_to_halve_the_cost():
     task, count = resolve_task("aluminium-cantilever", blade=ACCELEROMETER), 16
     assert np.any(task.design_plant.D)

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
-from beamenv.blade.load_shapes import LARGEST
 from beamenv.scenarios.drawing import whole_intervals
 from beamenv.scenarios.own_loads import Load
 from beamenv.scenarios.series import interval_means
+from beamenv.sensors.kinds import LARGEST
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
