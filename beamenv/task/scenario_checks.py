@@ -1,0 +1,47 @@
+"""Whether a scenario suits a blade."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from beamenv.blade.build import Blade
+from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Refused
+from beamenv.plant.plant import Plant
+from beamenv.scenarios.own_loads import of_blade
+from beamenv.scenarios.sampling import check_frequencies, largest_speed
+from beamenv.scenarios.scenario import Scenario
+
+
+def check_failures(chosen: Scenario, plant: Plant) -> None:
+    """``ValueError`` for more broken actuators or sensors than the blade has."""
+    failures = chosen.failures
+    for name, broken, there in (
+        ("dead_actuators", failures.dead_actuators, plant.B.shape[1]),
+        ("faulty_sensors", failures.faulty_sensors, len(plant.C)),
+    ):
+        if broken > there:
+            raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
+
+
+def with_own_loads(chosen: Scenario, true: Blade) -> Scenario:
+    """The scenario with what its own loads leave to the blade; ``ValueError`` where none can act."""
+    if not chosen.loads:
+        return chosen
+    if chosen.plants.spin_up is not None or chosen.plants.truth is not None:
+        shapes = [load.shape for load in chosen.loads]
+        raise Refused("scenario.loads", shapes, "empty where the rotor runs up or a plant file says what moves")
+    return replace(chosen, loads=of_blade(chosen.loads, true.beam, true.reference_load))
+
+
+def check_sensors(chosen: Scenario, config: BladeConfig) -> None:
+    """``ValueError`` for a run-up of a blade with sensors that are listed."""
+    if chosen.plants.spin_up is not None and config.sensors:
+        kinds = [each.kind for each in config.sensors]
+        raise Refused("blade.sensors", kinds, "empty, the currents of patches, where the rotor runs up")
+
+
+def check_loads(chosen: Scenario, true: Blade, path: str = "scenario") -> None:
+    """``ValueError`` for loads that cannot be shown at the blade's control interval."""
+    interval, lowest = true.config.control_interval, float(true.plant.natural_frequencies[0])
+    check_frequencies(chosen, interval, lowest, largest_speed(chosen, true.config.speed), path)
