@@ -164,7 +164,8 @@ def _root(stiffness: Array) -> Array:
 
 def plant_at(blade: Blade, run_up: RunUp, time: float, root: Array) -> Plant:
     """The plant at one time in energy coordinates [Uᵀη; η̇], U = ``root``; the electronics are those of any time."""
-    at, full, inverse, none = np.asarray(time), blade.full, np.linalg.inv(root), np.zeros_like(root)
+    at, full, none = np.asarray(time), blade.full, np.zeros_like(root)
+    inverse: Array = np.linalg.inv(root).astype(np.float64)
     shapes, patches = run_up.shapes(at), run_up.patches(at)
     forces, charges, strained = (
         (shapes.T @ full.forces, full.charges @ shapes, full.strain @ shapes) if patches is None else patches
@@ -186,11 +187,11 @@ def plant_at(blade: Blade, run_up: RunUp, time: float, root: Array) -> Plant:
 
 
 def _on_displacements(rows: Array, inverse: Array) -> Array:
-    return np.hstack([rows @ inverse.T, np.zeros_like(rows)])
+    return np.asarray(np.hstack([rows @ inverse.T, np.zeros_like(rows)]))
 
 
 def _shown(blade: Blade, readings: tuple[Array, Array, Array], moves: dict[str, Array]) -> tuple[dict[str, Array], Array]:
-    """C and D of sensors that are listed, and F (p, k), what they show of loads at once; the modes left out are those of any time."""
+    """C and D of sensors that are listed, and F (p, k), what they show of loads at once."""
     (displaced, rate, acceleration), rows = readings, blade.sensor_rows
     assert rows is not None
     accelerated = on_velocities(acceleration)
