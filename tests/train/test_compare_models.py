@@ -41,7 +41,7 @@ class Notes(Listener):
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory, ticking):
     home, notes = tmp_path_factory.mktemp("compare"), Notes()
-    comparison = Comparison({"plant": write(home / "mine.npz"), "duration": 0.3}, {"gradient": 0.5, "ppo": 0.5}, seeds=3)
+    comparison = Comparison({"plant": write(home / "mine.npz"), "duration": 1.0}, {"gradient": 0.08, "ppo": 0.08}, seeds=3)
     with ticking(0.02):
         return comparison, home / "results", compare(comparison, home / "results", notes), notes
 

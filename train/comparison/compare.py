@@ -15,6 +15,7 @@ import gymnasium as gym
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from baselines.design.objects import instance, optional_instance
+from baselines.evaluation.fit import check_state_told
 from beamenv.blade.files import to_dict
 from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
@@ -159,14 +160,18 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
 
 def classical(task: Task) -> tuple[dict[str, Any], dict[str, str]]:
     """The laws of ``CLASSICAL`` that can be had of a task, and why not the others."""
-    laws: dict[str, Any] = {}
-    left_out: dict[str, str] = {}
-    for name in CLASSICAL:
-        try:
-            laws[name] = named(name).build_for(task)
-        except ValueError as error:
-            left_out[name] = str(error)
-    return laws, left_out
+    found = {name: _law_or_sentence(name, task) for name in CLASSICAL}
+    laws = {name: law for name, law in found.items() if not isinstance(law, str)}
+    return laws, {name: law for name, law in found.items() if isinstance(law, str)}
+
+
+def _law_or_sentence(name: str, task: Task) -> Any:
+    try:
+        law = named(name).build_for(task)
+        check_state_told(law, task)
+    except ValueError as error:
+        return str(error)
+    return law
 
 
 def tiers_of(evaluations: Sequence[Evaluation], left_out: Collection[str] = ()) -> dict[str, int]:
