@@ -14,6 +14,7 @@ from baselines.design.law import Law
 from baselines.evaluation.conditions import check_alike
 from baselines.evaluation.loop import Environment, attribute
 from baselines.evaluation.spaces import check_spaces
+from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration import Refused, shown
 from beamenv.task import Task
 
@@ -40,10 +41,18 @@ def check_fit(controller: Controller, env: Any) -> None:
     task = getattr(env.unwrapped, "task", None)
     if isinstance(task, Task):
         _check_units(controller, task.physical_units)
+        check_state_told(controller, task)
     if isinstance(controller, Law):
         _check_clock(controller, attribute(env, "plant")[0].control_interval)
     _check_model(controller, env)
     check_spaces(env, ("action", "observation") if _reads_the_sensors(controller) else ("action",))
+
+
+def check_state_told(controller: Controller, task: Task) -> None:
+    """``ValueError`` for a law of the true state where plants move whose states are not in the design's coordinates."""
+    if getattr(controller, "observes", "observation") == "state" and task.bank.to_design is None:
+        why = "each of the plants has its own" if isinstance(task.blade, ModelBlade) else "their trial functions differ"
+        raise ValueError(f"the true blade's state cannot be told in the design's coordinates: {why}.")
 
 
 def _reads_the_sensors(controller: Controller) -> bool:

@@ -22,6 +22,8 @@ INFO = ("cost_increment", "effort", "tip_displacement", "volts")
 class Instant:
     """N blades at their reset or at the end of a control interval."""
 
+    observation: Any
+    """(N, …): what is observed then, of a new episode where one has begun in the same step."""
     info: Mapping[str, Array]
     """(N, …) each of ``INFO``: at the end of the interval itself, not at the start of a new episode. Not all of it at a reset."""
     running: NDArray[np.bool_]
@@ -43,12 +45,12 @@ def instants(
     observes = getattr(controller, "observes", "observation")
     observation, info = _reset(env, seeds, options)
     memory, begins, running = None, np.ones(len(seeds), dtype=bool), np.ones(len(seeds), dtype=bool)
-    yield Instant(info, running.copy(), np.zeros(len(seeds)))
+    yield Instant(observation, info, running.copy(), np.zeros(len(seeds)))
     while running.any():
         seen = _seen(observes, observation, env)
         action, memory = controller.predict(seen, state=memory, episode_start=begins, deterministic=True)
         observation, failed, ended, info = _step(env, action)
-        yield Instant(info, running.copy(), failed)
+        yield Instant(observation, info, running.copy(), failed)
         running &= ~ended
         begins[:] = False
 

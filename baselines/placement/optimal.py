@@ -30,6 +30,8 @@ def optimal_positions(config: BladeConfig, side: Side) -> Positions:
     """
     checked("config", config, Instance(BladeConfig))
     checked("side", side, Choice(SIDES))
+    for each in SIDES:
+        config.patches.only(each)  # several groups are refused by their own name
     return optimal_layout(with_positions(config, {each: len(positions_of(config, each)) for each in SIDES}))[side]
 
 

@@ -31,7 +31,7 @@ from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
 from beamenv.plant.limits import VOLTAGES
-from beamenv.sensors.kinds import SENSORS, Accelerometer, Sensor
+from beamenv.sensors.kinds import SENSORS, Accelerometer, PatchCurrent, Sensor
 from beamenv.structure import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
@@ -211,6 +211,10 @@ class BladeConfig:
         if self.sensors and self.model == "thesis":
             raise Refused(
                 "sensors", [each.kind for each in self.sensors], "empty with model = 'thesis', which reads currents alone"
+            )
+        if self.sensor_full_scale is not None and self.sensors and not any(isinstance(each, PatchCurrent) for each in self.sensors):
+            raise Refused(
+                "sensor_full_scale", self.sensor_full_scale, "None (A) where the sensors that are listed read no currents"
             )
         if not self.sensors and not self.patches.groups("sensors"):
             raise Refused("sensors", [], "a list of one or more where no patches are sensors")

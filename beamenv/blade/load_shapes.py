@@ -7,7 +7,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Choice, Number, Numbers, Range, Refused, configuration
+from beamenv.configuration import Choice, Number, Numbers, Range, Refused, check_heeded, configuration
+from beamenv.configuration.heeded import Heeded
 from beamenv.plant.signals import Signal
 from beamenv.sensors.kinds import LARGEST, Point, Vector, check_direction
 from beamenv.sensors.points import along, point_rows
@@ -25,6 +26,14 @@ UNITS = {"point": "N", "line": "N/m", "base": "m/s²"}
 Profile = Annotated[tuple[float, ...], Numbers(Number(ge=-LARGEST, le=LARGEST), least=2, most=2)]
 
 
+_HEEDED: Heeded = (
+    ("position", "shape", ("point",)),
+    ("span", "shape", ("line",)),
+    ("profile", "shape", ("line",)),
+    ("point", "shape", ("point", "line")),
+)
+
+
 @configuration("blade.loads")
 class LoadShape:
     """Where a load acts, and along which direction; how large it is, and when, a scenario says."""
@@ -40,12 +49,13 @@ class LoadShape:
     profile: Profile = (1.0, 1.0)
     """How large a line load is at its beginning and its end over its size; linear between."""
     point: Point = (0.0, 0.0)
-    """m: x and y in the section, which turns with the pretwist, from the pitch axis: where a force acts."""
+    """m: x and y in the section, which turns with the pretwist, from the pitch axis: where a force or a line load acts."""
     direction: Vector = (0.0, 1.0, 0.0)
     """Along lag, flap and span; of any length."""
 
     def __post_init__(self) -> None:
         check_direction(self.direction)
+        check_heeded(self, _HEEDED)
         if self.span is not None and not self.span[1] > self.span[0]:
             raise Refused("span", self.span, "a range [from, to] of some length (m)")
 

@@ -18,7 +18,7 @@ from beamenv.configuration.numbers import Number
 from beamenv.configuration.read_only import sealed
 from beamenv.patches import PatchResponse
 from beamenv.plant.fingerprint import fingerprint
-from beamenv.plant.model_files import plant_from_file, plant_from_table
+from beamenv.plant.model_files import plant_from_file, plant_from_table, plant_table
 from beamenv.plant.model_rules import priced_alike
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel
@@ -151,15 +151,25 @@ def model_of(given: Any, name: str = "plant") -> Plant:
 
 def models_of(given: Any) -> tuple[Plant, ...]:
     """One or several, behind the same instruments, or those in a folder; ``ValueError`` where they are not."""
+    models = _one_or_several(given)
+    for k, each in enumerate(models[1:], start=1):
+        check_like(f"plant[{k}]", each, models[0], alike=("disturbances", "reference_load"))
+    return _behind_the_same(models)
+
+
+def tables_of(given: Any) -> Any:
+    """The models that are meant, as tables that JSON can hold: what their files say now, whatever they will say later."""
+    tables = [plant_table(each) for each in _one_or_several(given)]
+    return tables if len(tables) > 1 else tables[0]
+
+
+def _one_or_several(given: Any) -> tuple[Plant, ...]:
     if isinstance(given, (str, Path)) and Path(given).is_dir():
         given = _in_folder(Path(given))
     several = isinstance(given, (list, tuple))
     if several and not given:
         raise Refused("plant", given, "one model, or a list of them")
-    models = tuple(model_of(each, f"plant[{k}]") for k, each in enumerate(given)) if several else (model_of(given),)
-    for k, each in enumerate(models[1:], start=1):
-        check_like(f"plant[{k}]", each, models[0], alike=("disturbances", "reference_load"))
-    return _behind_the_same(models)
+    return tuple(model_of(each, f"plant[{k}]") for k, each in enumerate(given)) if several else (model_of(given),)
 
 
 def _in_folder(folder: Path) -> list[Path]:

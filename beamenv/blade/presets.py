@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
-from beamenv.blade.lab_presets import AIRFOIL_BLADE, ALUMINIUM_CANTILEVER
+from beamenv.blade.lab_presets import AIRFOIL_BLADE, ALUMINIUM_CANTILEVER, TAKACS_BEAM
 from beamenv.configuration import Refused, read
 from beamenv.patches import PatchLayout
 from beamenv.patches.layout import OUTERMOST
@@ -55,12 +55,13 @@ PRESETS: Mapping[str, BladeConfig] = MappingProxyType(
         "thesis-pretwisted": replace(THESIS, beam=BeamConfig(presetting_deg=30.0)),
         "chandra-chopra": CHANDRA_CHOPRA,
         "aluminium-cantilever": ALUMINIUM_CANTILEVER,
+        "takacs-beam": TAKACS_BEAM,
         "airfoil-blade": AIRFOIL_BLADE,
     }
 )
 """thesis: θ = 30°, pretwist 30°, 200 rad/s, four MFC actuators over four sensors; thesis-untwisted: Figs. 5.10–5.12;
 thesis-pretwisted: with 30° presetting too, Figs. 5.2 and 5.7; chandra-chopra: the CAS box of Table 3.2 at 1000 rev/min with
-7 mm wide MFC (M-8507-P1); aluminium-cantilever and airfoil-blade: see ``lab_presets``.
+7 mm wide MFC (M-8507-P1); aluminium-cantilever, takacs-beam and airfoil-blade: see ``lab_presets``.
 
 No real blade could turn as the thesis' does: at 200 rad/s its tip moves at 445 m/s, faster than sound, and its steady rotation
 alone strains its outer face by 2.8 %, stretches it by 32 mm and unwinds half of its pretwist. Its patches are rated for 0.45 %, and

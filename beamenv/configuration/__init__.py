@@ -15,6 +15,7 @@ The rules, the same for every argument, dictionary and file:
 """
 
 from beamenv.configuration.composite import Items, Variant, Variants
+from beamenv.configuration.heeded import check_heeded
 from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
@@ -44,6 +45,7 @@ __all__ = [
     "Variant",
     "Variants",
     "Whole",
+    "check_heeded",
     "checked",
     "checked_table",
     "configuration",

@@ -67,6 +67,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
     | `thesis-pretwisted`    | the default with 30° presetting                                           | 200   | 3.1 %         |
     | `chandra-chopra`       | a box of 0.84 m with bending–twist coupling (Chandra and Chopra 1992)     | 104.7 | 0.02 %        |
     | `aluminium-cantilever` | a strip of 300 × 30 × 2 mm with a pair of piezoceramic sheets             | 0     | 0             |
+    | `takacs-beam`          | a published strip of 550 × 40 × 3 mm with measurements (Takács 2012)      | 0     | 0             |
     | `airfoil-blade`        | a hollow NACA 0012 with a web, 1.3 m, with MFC along the span             | 72    | 0.01 %        |
 
     ## Action Space

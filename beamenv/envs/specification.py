@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Set
 from copy import copy
+from dataclasses import fields, is_dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -37,6 +38,30 @@ def plain(value: Any) -> Any:
     return value
 
 
+class Unwritable(EnvSpec):
+    """A specification with a function among its arguments, which is told from the others when it is to be written."""
+
+    def to_json(self) -> str:
+        """``ValueError`` that names the function."""
+        path = _function_in(self.kwargs)
+        raise ValueError(f"{path} is a function, which no JSON can hold: give a series of numbers or a CSV file to write the spec.")
+
+
+def _function_in(value: Any, path: str = "") -> str | None:
+    """The path of the first function within plain arguments; None where there is none."""
+    if callable(value):
+        return path
+    if isinstance(value, Mapping):
+        parts = [(f"{path}.{name}" if path else str(name), each) for name, each in value.items()]
+    elif isinstance(value, list):
+        parts = [(f"{path}[{k}]", each) for k, each in enumerate(value)]
+    elif is_dataclass(value) and not isinstance(value, type):
+        parts = [(f"{path}.{each.name}", getattr(value, each.name)) for each in fields(value)]
+    else:
+        return None
+    return next((found for name, each in parts if (found := _function_in(plain(each), name)) is not None), None)
+
+
 class Specified:
     """An environment whose ``spec`` tells how many steps an episode has at most, and can be written as JSON."""
 
@@ -49,6 +74,8 @@ class Specified:
         if self._spec is None:
             return None
         told, limit = copy(self._spec), self._spec.max_episode_steps
+        if _function_in(told.kwargs) is not None:
+            told.__class__ = Unwritable
         told.max_episode_steps = self._steps if limit is None else min(limit, self._steps)
         return told
 

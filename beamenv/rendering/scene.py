@@ -84,6 +84,7 @@ class Scene:
             distance=DISTANCE * length,
             frame=Frame(PLACE.left + MARGIN, PLACE.top + MARGIN, PLACE.width - 2.0 * MARGIN, PLACE.height - 2.0 * MARGIN),
         )
+        self._above = faces_camera(self._camera.project(self._rest.sensors)[0])  # in an upper face, where most lie in a lower one
         self._hub = self._seen(hub, HUB)
         self._voltage_colours, self._output_colours = colour_table(VOLTAGE_SCALE), colour_table(OUTPUT_SCALE)
 
@@ -104,12 +105,16 @@ class Scene:
         pose = self.solid.pose(displacement)
         self._draw_leaders(canvas, pose)
         patches, points = self._read_by_patches(outputs), outputs[self.solid.places.of_points]
-        self._draw_patches(canvas, pose.sensors[:, ::-1] + self._drop, colours_of(self._output_colours, patches), patches)
+        self._draw_patches(canvas, self._dropped(pose), colours_of(self._output_colours, patches), patches)
         _draw_faces(canvas, [face for body in pose.bodies for face in self._seen([sides(body), body[-1:]], BODY, body.shape[1])])
         self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts)
         self._draw_points(canvas, pose.points, colours_of(self._output_colours, points))
         _draw_faces(canvas, self._hub)
         canvas.develop(PLACE)
+
+    def _dropped(self, pose: Pose) -> Array:
+        """(s, 4, 3): sensor patches where they are drawn, with the side up that is seen at rest."""
+        return np.where(self._above[:, None, None], pose.sensors, pose.sensors[:, ::-1]) + self._drop
 
     def _read_by_patches(self, outputs: Array) -> Array:
         """(s,): 0 of a patch that is not read."""

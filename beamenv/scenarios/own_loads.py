@@ -7,7 +7,8 @@ from dataclasses import fields, replace
 from typing import Annotated, Any
 
 from beamenv.blade.load_shapes import SHAPES, LoadShape, Profile, usual_size
-from beamenv.configuration import Choice, Count, Number, Points, Range, Refused, configuration
+from beamenv.configuration import Choice, Count, Number, Points, Range, Refused, check_heeded, configuration
+from beamenv.configuration.heeded import Heeded
 from beamenv.configuration.numbers import TURNED
 from beamenv.scenarios.series import Function, Series, read_series
 from beamenv.scenarios.tables import Pair
@@ -17,6 +18,17 @@ from beamenv.structure import RotatingBeam
 COURSES = ("step", "pulse", "harmonic", "series", "noise", "function")
 
 Seconds = Annotated[Pair, Range(0.0, 1e6, unit="s")]
+
+_SETS_IN = ("step", "pulse", "series", "function")
+_HEEDED: Heeded = (
+    ("onset", "course", _SETS_IN),
+    ("duration", "course", ("pulse",)),
+    ("frequency", "course", ("harmonic",)),
+    ("phase_deg", "course", ("harmonic",)),
+    *((name, "course", ("noise",)) for name in ("spectrum", "cutoff", "order", "damping")),
+    *((name, "spectrum", (None,)) for name in ("cutoff", "order", "damping")),
+    ("damping", "order", (2,)),
+)
 
 
 @configuration("scenario.loads")
@@ -74,6 +86,7 @@ class Load:
             raise Refused("rate", self.rate, "given (Hz) where the course is 'series', and only there")
         if (self.course == "function") != (self.function is not None):
             raise Refused("function", self.function, "given where the course is 'function', and only there")
+        check_heeded(self, _HEEDED)
         if self.spectrum is not None:
             _check_spectrum(self.spectrum)
 

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -35,11 +36,32 @@ def with_blocks(language):
 
 
 @pytest.mark.parametrize("page", with_blocks("python"))
-def test_python_blocks_run_in_the_order_of_their_page(page, tmp_path, monkeypatch):
+def test_python_blocks_run_in_the_order_of_their_page_and_print_what_it_shows(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     namespace = {"__name__": page.stem}
+    shown = dict(printed(page))
     for line, text in blocks(page, "python"):
+        capsys.readouterr()
         exec(compile("\n" * (line - 1) + text, str(page), "exec"), namespace)  # tracebacks tell the page's own lines
+        if line in shown:
+            assert_same_words(capsys.readouterr().out, shown[line])
+
+
+def printed(page):
+    """(line of a Python block, text that it prints) of every block that is directly followed by one of what it prints."""
+    text = page.read_text(encoding="utf-8")
+    found = list(BLOCK.finditer(text))
+    for each, following in pairwise(found):
+        if each[1] == "python" and following[1] == "text" and not text[each.end() : following.start()].strip():
+            yield text.count("\n", 0, each.start(2)) + 1, following[2]
+
+
+def assert_same_words(printed, shown):
+    """Word for word, numbers within 1 %: sums are another machine's."""
+    number = re.compile(r"-?\d+\.\d+(?:e[-+]\d+)?")
+    assert number.sub("#", printed).split() == number.sub("#", shown).split()
+    values = [[float(each) for each in number.findall(text)] for text in (printed, shown)]
+    assert values[0] == pytest.approx(values[1], rel=0.01)
 
 
 def commands(page):

@@ -91,7 +91,7 @@ def test_three_faces_of_a_box_are_seen_from_above_beside_and_before_it():
 @pytest.mark.parametrize("preset", sorted(beamenv.PRESETS))
 def test_every_actuator_and_sensor_of_every_preset_is_in_the_scene(preset):
     scene = Scene(Blade(blade_config(preset)))
-    for patches in (scene._rest.actuators, scene._rest.sensors[:, ::-1] + scene._drop):
+    for patches in (scene._rest.actuators, scene._dropped(scene._rest)):
         corners, _ = scene._camera.project(patches)
         assert faces_camera(corners).all()
         assert (corners >= [PLACE.left, PLACE.top]).all()

@@ -90,7 +90,15 @@ COMMANDS = {
     ),
     "compare": (
         ("made",),
-        {"--minutes": "0", "--seeds": "2", "--preset": "thesis", "--speed": "20", "--blade": "blade.toml", "--scenario": "white"},
+        {
+            "--minutes": "0",
+            "--seeds": "2",
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--scenario": "white",
+            "--plant": None,
+        },
         ("--json",),
         ("train.comparison.compare.evaluate_all", "train.comparison.compare.run"),
     ),

@@ -11,7 +11,8 @@ from beamenv.sensors.kinds import SENSORS
 from tests.fuzz.blade_doors import constructor
 from tests.fuzz.meaning import NOTHING, NUMBERS, Kind, either, maybe
 
-TOLD = ("direction", "span", "series", "rate", "function", "spectrum")
+HEEDED = ("position", "profile", "point", "onset", "duration", "frequency", "phase_deg", "cutoff", "order", "damping")
+TOLD = ("direction", "span", "series", "rate", "function", "spectrum", *HEEDED)
 """What a sentence may be about when another field is wrong beside it."""
 
 
@@ -34,5 +35,6 @@ DOORS = [
     *(constructor(cls, {"position": 0.1} if kind == "strain-gauge" else {}, TOLD) for kind, cls in SENSORS.items()),
     constructor(LoadShape, {}, TOLD),
     constructor(Load, {}, TOLD, **LOAD),
+    constructor(Load, {"course": "noise"}, TOLD, **LOAD),
     constructor(Load, {"course": "series", "series": (0.0, 1.0), "rate": 10.0}, TOLD, **LOAD),
 ]

@@ -1,6 +1,7 @@
 """Patches put elsewhere in an environment, single and batched."""
 
 import copy
+from dataclasses import replace
 
 import gymnasium
 import numpy as np
@@ -285,3 +286,12 @@ def test_layouts_of_a_batch_are_one_for_each_blade_in_an_array_or_a_list():
         with pytest.raises(ValueError, match="^layouts is array.{1,250}, but must be one layout, or a sequence of 2") as refused:
             VectorPlacementWrapper(gymnasium.make_vec(ENV_ID, num_envs=2), layouts=numbers)
         assert len(str(refused.value)) < 400
+
+
+@pytest.mark.parametrize("side", ["actuators", "sensors"])
+def test_the_side_with_several_groups_is_named_where_the_best_layout_is_asked_for(side):
+    config = blade_config("airfoil-blade")
+    group = config.patches.groups("actuators")[0]
+    several = replace(config, patches=replace(config.patches, actuators=(group, replace(group, face="inner"))))
+    with pytest.raises(ValueError, match="^blade.patches.actuators has 2 groups, but must have one where patches are to be placed"):
+        PlacementWrapper(gymnasium.make(ENV_ID, blade=several), **{side: "optimal"})

@@ -1,9 +1,10 @@
 """The blades of benches: their frequencies are those of handbooks, and an episode with each is worth controlling."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from baselines.laws.reference_lqg import reference_lqg
 from beamenv.blade import PRESETS, Blade, BladeConfig
@@ -49,14 +50,29 @@ def test_the_bare_strip_has_the_frequencies_of_the_handbook():
     assert twisting < nearest(found, twisting) < 1.07 * twisting  # its warping is kept at the clamp
 
 
-def with_sheets(elements: int = 240) -> np.ndarray:
-    """Hz: the strip with both sheets by finite elements of Hermite's cubics, with the stiffness E I of each cross-section."""
-    sheet, wide, density, modulus = 0.5e-3, 0.025, 7800.0, 1.0 / 16.1e-12
-    size, ends = LENGTH / elements, np.linspace(0.0, LENGTH, elements + 1)
-    under = (0.5 * (ends[1:] + ends[:-1]) > 0.01) & (0.5 * (ends[1:] + ends[:-1]) < 0.06)
-    arm = 0.5 * (THICKNESS + sheet)
-    stiffness = E * WIDTH * THICKNESS**3 / 12.0 + under * 2.0 * modulus * wide * (sheet * arm**2 + sheet**3 / 12.0)
-    mass = DENSITY * WIDTH * THICKNESS + under * 2.0 * density * wide * sheet
+@dataclass(frozen=True)
+class Sheets:
+    """Sheets on a strip: (start, end) in m and face, 1 or −1, of each; thickness and width in m, Pa, kg/m³."""
+
+    places: tuple[tuple[float, float, int], ...]
+    thickness: float
+    width: float
+    modulus: float
+    density: float
+
+
+def with_sheets(length: float, width: float, thickness: float, modulus: float, density: float, sheets: Sheets) -> np.ndarray:
+    """Hz: a strip with sheets by finite elements of Hermite's cubics, with each cross-section's E I about its own neutral axis."""
+    elements = round(length / 2e-3)
+    size, middle = length / elements, (np.arange(elements) + 0.5) * length / elements
+    stretch, first, second = modulus * width * thickness, 0.0, modulus * width * thickness**3 / 12.0
+    mass = np.full(elements, density * width * thickness)
+    for start, end, face in sheets.places:
+        under, arm = (middle > start) & (middle < end), 0.5 * face * (thickness + sheets.thickness)
+        axial = under * sheets.modulus * sheets.width * sheets.thickness
+        stretch, first, second = stretch + axial, first + axial * arm, second + axial * (arm**2 + sheets.thickness**2 / 12.0)
+        mass += under * sheets.density * sheets.width * sheets.thickness
+    stiffness = second - first**2 / stretch
     bend = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) / size**3
     move = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) * size / 420.0
     scale = np.outer([1, size, 1, size], [1, size, 1, size])
@@ -65,14 +81,55 @@ def with_sheets(elements: int = 240) -> np.ndarray:
         at = slice(2 * k, 2 * k + 4)
         K[at, at] += stiffness[k] * bend * scale
         M[at, at] += mass[k] * move * scale
-    return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(M[2:, 2:], K[2:, 2:])).real)[:3]) / (2.0 * np.pi)
+    return np.sqrt(eigh(K[2:, 2:], M[2:, 2:], eigvals_only=True, subset_by_index=(0, 2))) / (2.0 * np.pi)
 
 
-def test_the_sheets_stiffen_the_strip_as_they_do_a_beam_of_steps():
-    found, wanted = hertz(replace(PRESETS["aluminium-cantilever"], modes=12)), with_sheets()
-    assert wanted[0] > 1.15 * bending(E * WIDTH * THICKNESS**3 / 12.0, DENSITY * WIDTH * THICKNESS, LENGTH)[0]
-    for each in wanted:
+PAIR = Sheets(((0.01, 0.06, 1), (0.01, 0.06, -1)), 0.5e-3, 0.025, 1.0 / 16.1e-12, 7800.0)
+WAFERS = Sheets(((0.014, 0.058, 1), (0.014, 0.058, -1), (0.09, 0.134, 1), (0.322, 0.366, 1)), 0.25e-3, 0.02, 1.0 / 16.4e-12, 7700.0)
+STRIPS = {
+    "aluminium-cantilever": with_sheets(LENGTH, WIDTH, THICKNESS, E, DENSITY, PAIR),
+    "takacs-beam": with_sheets(0.55, 0.04, 0.003, 68e9, 2691.7, WAFERS),
+}
+
+
+@pytest.mark.parametrize("preset", STRIPS)
+def test_the_sheets_stiffen_the_strip_as_they_do_a_beam_of_steps(preset):
+    found, strip = hertz(replace(PRESETS[preset], modes=12)), hertz(bare(PRESETS[preset]))
+    assert STRIPS[preset][0] > 1.02 * strip[0]
+    for each in STRIPS[preset]:
         assert each < nearest(found, each) < each / np.sqrt(1.0 - NU**2)  # of a plate, kept flat across everywhere
+
+
+A = np.array([[0.867074264700783, 1.118487994649831], [-0.214184972531195, 0.869746240894636]])
+B = np.array([0.933601028678616e-3, 0.530974425107969e-3])
+C = np.array([-0.552612993066737, 0.705187130687643])
+INTERVAL = 0.01
+"""s, and the model from volts to mm at the tip that Takács and Rohaľ-Ilkiv identified from their beam (n4s2s in parameters.mac of
+github.com/gergelytakacs/vibration-control-ANSYS, MIT licence). It is not that of their finite elements, whose first mode has a
+damping ratio of half BETAD ω, 0.39 %."""
+
+
+def first_mode(poles: np.ndarray, weights: np.ndarray) -> tuple[float, float, float]:
+    """Hz, damping ratio and static response per volt of the slowest pair of poles, given their residues."""
+    pole, residue = poles[abs(poles).argmin()], weights[abs(poles).argmin()]
+    return abs(pole) / (2.0 * np.pi), -pole.real / abs(pole), 2.0 * abs((residue / pole).real)
+
+
+def residues(A: np.ndarray, B: np.ndarray, C: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    poles, shapes = np.linalg.eig(A)
+    return poles, (C @ shapes) * np.linalg.solve(shapes, B.astype(complex))
+
+
+def test_the_published_beam_is_a_little_stiffer_than_its_measurement_as_an_ideal_clamp_and_adhesive_are():
+    multipliers, steps = residues(A, B, C)
+    poles = np.log(multipliers) / INTERVAL
+    frequency, damping, gain = first_mode(poles, steps * poles / (multipliers - 1.0))  # voltages are held over an interval
+    assert (frequency, damping, gain) == pytest.approx((8.169, 0.00616, 1.894e-3), rel=1e-3)
+    plant = Blade(PRESETS["takacs-beam"]).plant
+    here = first_mode(*residues(plant.A, plant.B[:, 0], plant.C[0]))
+    assert here[0] / frequency == pytest.approx(1.031, abs=1e-3)  # as the preset says
+    assert here[1] == pytest.approx(damping, rel=0.01)  # which is given
+    assert 1e3 * here[2] / gain == pytest.approx(1.267, abs=1e-3)
 
 
 def test_the_airfoil_bends_as_a_beam_of_its_skin():
@@ -90,8 +147,8 @@ def test_the_airfoil_bends_as_a_beam_of_its_skin():
     assert hertz(still)[0] == pytest.approx(flap, rel=0.03)
 
 
-@pytest.mark.parametrize("preset", ["aluminium-cantilever", "airfoil-blade"])
-def test_lqg_halves_the_cost_of_an_episode_with_voltages_neither_idle_nor_always_at_their_limits(preset):
+@pytest.mark.parametrize(("preset", "most"), [("aluminium-cantilever", 0.1), ("takacs-beam", 0.2), ("airfoil-blade", 0.1)])
+def test_lqg_halves_the_cost_of_an_episode_with_voltages_neither_idle_nor_always_at_their_limits(preset, most):
     task, count = resolve_task(preset), 24
     law = reference_lqg(task.design.full_plant)
     costs = []
@@ -112,4 +169,4 @@ def test_lqg_halves_the_cost_of_an_episode_with_voltages_neither_idle_nor_always
         costs.append(cost.mean())
     assert costs[1] < 0.5 * costs[0]
     assert 0.03 < share < 0.5
-    assert full < 0.1
+    assert full < most

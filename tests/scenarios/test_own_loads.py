@@ -227,6 +227,16 @@ def test_controllers_see_the_disturbances_that_they_had():
         ({"point": [1e200, 0.0]}, "point"),
         ({"course": "series", "series": [0, 1e200], "rate": 10.0}, "series"),
         ({"course": "noise", "spectrum": [[5, 1e200], [10, 1]]}, "spectrum is"),
+        ({"course": "noise", "spectrum": [[5, 1], [10, 1]], "cutoff": 20.0}, "cutoff is 20.0, but must be left out where spectrum"),
+        ({"course": "noise", "spectrum": [[5, 1], [10, 1]], "order": 2}, "order is 2, but must be left out where spectrum is"),
+        ({"course": "noise", "damping": 0.1}, "damping is 0.1, but must be left out where order is 1"),
+        ({"course": "noise", "onset": 0.1}, "onset is .*, but must be left out where course is 'noise'"),
+        ({"cutoff": 20.0}, r"loads\[0\].cutoff is 20.0, but must be left out where course is 'step'"),
+        ({"course": "harmonic", "duration": 0.1}, "duration is .*, but must be left out where course is 'harmonic'"),
+        ({"course": "pulse", "frequency": 5.0}, "frequency is .*, but must be left out where course is 'pulse'"),
+        ({"shape": "base", "position": 0.1}, "position is 0.1, but must be left out where shape is 'base'"),
+        ({"shape": "point", "span": [0.1, 0.2]}, "span is .*, but must be left out where shape is 'point'"),
+        ({"shape": "base", "point": [0.01, 0.0]}, "point is .*, but must be left out where shape is 'base'"),
     ],
 )  # fmt: skip
 def test_loads_that_cannot_be_are_refused_in_one_sentence(load, sentence):
@@ -239,6 +249,14 @@ def test_a_line_of_a_file_that_is_no_number_is_named(tmp_path):
     load = {"course": "series", "series": str(tmp_path / "gap.csv"), "rate": 100.0}
     with pytest.raises(ValueError, match=r"series is '', but must be a number of at most 1e\+09 in each line; line 3 of"):
         make(load)
+
+
+def test_a_function_is_named_where_a_specification_is_to_be_written():
+    env = make({}, {"course": "function", "function": np.cos})
+    with pytest.raises(ValueError, match=r"scenario.loads\[1\].function is a function, which no JSON can hold"):
+        env.spec.to_json()
+    assert gym.make(env.spec).unwrapped.task.scenario == env.unwrapped.task.scenario
+    assert gym.envs.registration.EnvSpec.from_json(make({}).spec.to_json()).kwargs == make({}).spec.kwargs
 
 
 def test_a_function_that_gives_no_number_is_named():
@@ -255,6 +273,10 @@ def test_a_function_that_takes_no_time_is_named():
         env.step(np.zeros(1))
 
 
-def test_a_run_up_takes_no_loads_of_one_s_own():
-    with pytest.raises(ValueError, match="scenario.loads is .* empty where the rotor runs up"):
-        resolve_task("airfoil-blade", scenario={"loads": [{}], "plants": {"spin_up": [10.0, 72.0]}})
+def test_a_force_on_a_blade_of_the_thesis_model_acts_at_rest_and_in_a_run_up():
+    """At the tip, F L³/3EI by 8 over 3 the displacement under the line load F/L."""
+    force = {"magnitude": 1.0}
+    for scenario in ({}, {"plants": {"spin_up": [0.0, 1.0]}}):
+        task = resolve_task(speed=0.0, blade={"model": "thesis"}, scenario={**scenario, "loads": [force]}, duration=0.01)
+        release, shown = task.bank.release[0], task.bank.tip[0]
+        assert (release @ shown)[2, 1] == pytest.approx(8.0 / 3.0 / 2.023 * (release @ shown)[1, 1], rel=0.05)

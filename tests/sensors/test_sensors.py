@@ -131,8 +131,11 @@ def test_full_scale_of_a_rotating_blade_counts_what_turning_brings():
         ({"blade": {"sensors": [{"kind": "velocity", "direction": [0, 0, 0]}]}}, "direction is"),
         ({"blade": {"sensors": [{"kind": "charge", "group": 1}]}}, r"blade.sensors\[0\].group is 1, but must be below 1"),
         ({"blade": {"patches": {"sensors": []}}}, "blade.sensors is"),
+        (
+            {"blade": {"sensors": [{"kind": "charge"}], "sensor_full_scale": 1e-6}},
+            "blade.sensor_full_scale is 1e-06, but must be None",
+        ),
         ({"blade": {**ACCELEROMETER, "electronics": {"filter_cutoff": None}}}, "blade.electronics.filter_cutoff is None"),
-        ({"blade": MIXED, "speed": 1.0, "scenario": {"plants": {"spin_up": [1.0, 5.0]}}}, "blade.sensors is .* rotor runs up"),
         ({"blade": {**MIXED, "model": "thesis"}}, "blade.sensors is .* model = 'thesis'"),
     ],
 )

@@ -14,10 +14,8 @@ import numpy as np
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
-from beamenv.blade.model_blade import model_of
 from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
 from beamenv.configuration.files import ENDINGS
-from beamenv.plant.model_files import plant_table
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.named import expanded
 from beamenv.scenarios.of_models import fits_models
@@ -32,6 +30,7 @@ from train.benchmark.showing.report import write_files
 from train.benchmark.table import BenchmarkTable, tabulate
 from train.controllers.shipped import FOLDER
 from train.shared.files import as_path, check_folder
+from train.shared.held_models import held_models
 from train.shared.held_out import SEEDS
 from train.shared.lock import alone_in
 from train.shared.versions import versions
@@ -151,19 +150,11 @@ def environment_json(environment: Any) -> str:
     resolve_task(**{name: value for name, value in given.items() if name != "max_episode_steps"})
     if given.get("max_episode_steps") is not None:
         checked("environment.max_episode_steps", given["max_episode_steps"], Count())
-    for name in ("plant", "design") if given.get("plant") is not None else ():
-        given[name] = _held(given.get(name))  # what a file says now, whatever it will say later
+    given = held_models(given)
     try:
         return json.dumps(given, sort_keys=True, default=_plain)
     except (TypeError, ValueError) as error:
         raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {error}.") from None
-
-
-def _held(plant: Any) -> Any:
-    """Models as tables."""
-    if plant is None:
-        return None
-    return [_held(each) for each in plant] if isinstance(plant, (list, tuple)) else plant_table(model_of(plant))
 
 
 def _plain(value: Any) -> Any:

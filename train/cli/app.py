@@ -175,6 +175,7 @@ def compare(
     speed: SpeedOption = None,
     blade: BladeOption = None,
     scenario: ScenarioOption = "default",
+    plant: PlantOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Train two agents and compare every controller on the same held-out episodes: tables, figures, models.
@@ -191,13 +192,14 @@ def compare(
         default = Comparison().budget
         share = 60.0 * checked("minutes", minutes, Number(ge=0.0)) / sum(default.values())
         budget = {name: share * length for name, length in default.items()} if minutes else {}
-        comparison = Comparison({**environment_arguments(preset, speed, blade), "scenario": scenario}, budget, seeds)
+        comparison = Comparison({**environment_arguments(preset, speed, blade, plant), "scenario": scenario}, budget, seeds)
         with Progressbar(budget) as bar:
             evaluations = run(comparison, folder, bar)
+        tiers = tiers_of(evaluations, bar.without)
     if as_json:
-        print_json([{"tier": tiers_of(evaluations)[evaluation.name], **evaluation.row()} for evaluation in evaluations])
+        print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:
-        print_table(screen_table(evaluations, tiers_of(evaluations)))
+        print_table(screen_table(evaluations, tiers))
         Console().print(f"written to {folder}", markup=False)
 
 

@@ -19,6 +19,7 @@ class Progressbar(Listener):
     def __init__(self, budget: Mapping[str, float], unit: str = "s") -> None:
         """Budgets in ``unit``: "s" or "updates"."""
         self._unit = unit
+        self.without: list[str] = []
         self._bars = Progress(
             TextColumn("{task.description:>10}", markup=False),
             BarColumn(),
@@ -56,3 +57,8 @@ class Progressbar(Listener):
     def evaluated(self, evaluation: Evaluation) -> None:
         """Say how a controller did."""
         self._bars.console.print(f"{evaluation.name:>36}  J / no control {evaluation.relative_cost.value:.3f}", markup=False)
+
+    def left_out(self, name: str, sentence: str) -> None:
+        """Say which law there is not, and why."""
+        self.without.append(name)
+        self._bars.console.print(f"beamenv: {name} is left out: {sentence}", markup=False, soft_wrap=True)

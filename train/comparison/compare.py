@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, field, replace
 from itertools import chain, repeat
@@ -15,6 +15,7 @@ import gymnasium as gym
 import beamenv
 from baselines import Controller, Evaluation, LinearController, evaluate
 from baselines.design.objects import instance, optional_instance
+from baselines.evaluation.fit import check_state_told
 from beamenv.blade.files import to_dict
 from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration import Natural, Number, Table, checked, checked_table, configuration
@@ -35,12 +36,16 @@ from train.learning.training import Progress
 from train.shared.claim import NAME, check_nothing_replaced
 from train.shared.curve import read_curve
 from train.shared.files import as_path, read_json, write_json
+from train.shared.held_models import held_models, told_models
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
 from train.shared.interruption import ending_as_interrupted
 from train.shared.lock import alone_in
 
 CLASSICAL = ("none", "velocity", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
 """The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
+
+DRAWN = ("none", "velocity", "positive-position-feedback", "lqg")
+"""Whose loops' poles are drawn."""
 
 RESULTS = (
     "agents",
@@ -99,6 +104,9 @@ class Listener:
     def evaluated(self, evaluation: Evaluation) -> None:
         """After each controller."""
 
+    def left_out(self, name: str, sentence: str) -> None:
+        """Before anything else, of each law that cannot be had of what moves."""
+
 
 def compare(comparison: Comparison, folder: Path, listener: Listener | None = None) -> list[Evaluation]:
     """Train, evaluate, write tables, models, configuration, figures and a page to ``folder``, and return the evaluations.
@@ -107,12 +115,16 @@ def compare(comparison: Comparison, folder: Path, listener: Listener | None = No
     are not trained again. ``ValueError`` if it holds another comparison or what this one would replace, and
     if another process is at work in it; whatever is refused before any result leaves it as it was. An interruption ends
     all of it at once, as ``Interrupted`` where an agent is being trained: its checkpoint is kept, and no half-trained agent.
+
+    A model of one's own, the "plant" of the environment, is compared on as its file says it now; a file that says something else
+    later is another comparison. A law that cannot be had of what moves is told in one sentence, and the others go on.
     """
     instance("comparison", comparison, Comparison, "a Comparison")
     optional_instance("listener", listener, Listener, "a Listener")
     folder = as_path("folder", folder)
+    held = replace(comparison, environment=held_models(comparison.environment))
     with alone_in(folder), ending_as_interrupted():
-        return _compare(comparison, folder, listener or Listener())
+        return _compare(held, folder, listener or Listener())
 
 
 def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[Evaluation]:
@@ -121,13 +133,11 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
     envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=comparison.seeds, **{"dtype": "float64", **comparison.environment})
     try:
         plant = envs.unwrapped.plant
-        if isinstance(envs.unwrapped.task.blade, ModelBlade):
-            raise ValueError(
-                "plant is a model without a shape, which a comparison cannot draw: put it through the benchmark instead."
-            )
         content = described(comparison, envs.unwrapped.task)
         check_claim(folder, content)
-        laws: dict[str, Any] = {name: named(name).build_for(envs.unwrapped.task) for name in CLASSICAL}
+        laws, left_out = classical(envs.unwrapped.task)
+        for name, sentence in left_out.items():
+            listener.left_out(name, sentence)
         alone = evaluate(
             laws["none"], envs, held_out(comparison.seeds)
         )  # what cannot be compared is refused before anything is written
@@ -137,28 +147,46 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
             evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener, alone)
     finally:
         envs.close()
-    tiers = tiers_of(evaluations)
-    write_tables(folder, evaluations, tiers)
+    tiers = tiers_of(evaluations, left_out)
+    write_tables(folder, evaluations, tiers, left_out)
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
-    levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load")}
-    drawn: list[LinearController] = [laws[name] for name in ("none", "velocity", "positive-position-feedback", "lqg")]
+    levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load") if name in laws}
+    drawn: list[LinearController] = [laws[name] for name in DRAWN if name in laws]
     write_figures(folder, plant, evaluations, drawn, curves, levels)
-    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, content, tiers)
+    episodes = comparison.environment
+    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, content, episodes, tiers, left_out)
     return evaluations
 
 
-def tiers_of(evaluations: Sequence[Evaluation]) -> dict[str, int]:
+def classical(task: Task) -> tuple[dict[str, Any], dict[str, str]]:
+    """The laws of ``CLASSICAL`` that can be had of a task, and why not the others."""
+    found = {name: _law_or_sentence(name, task) for name in CLASSICAL}
+    laws = {name: law for name, law in found.items() if not isinstance(law, str)}
+    return laws, {name: law for name, law in found.items() if isinstance(law, str)}
+
+
+def _law_or_sentence(name: str, task: Task) -> Any:
+    try:
+        law = named(name).build_for(task)
+        check_state_told(law, task)
+    except ValueError as error:
+        return str(error)
+    return law
+
+
+def tiers_of(evaluations: Sequence[Evaluation], left_out: Collection[str] = ()) -> dict[str, int]:
     """Tiers of information by the controllers' names, in the order in which a comparison evaluates: its laws, then the agents."""
-    tiers = chain((named(name).tier for name in CLASSICAL), repeat(LEARNT))
+    tiers = chain((named(name).tier for name in CLASSICAL if name not in left_out), repeat(LEARNT))
     return {evaluation.name: tier for evaluation, tier in zip(evaluations, tiers, strict=False)}
 
 
 def described(comparison: Comparison, task: Any) -> dict[str, Any]:
     """The configuration of a comparison, as JSON holds it."""
+    seeds, told = [HELD_OUT, HELD_OUT + comparison.seeds - 1], told_models(comparison.environment)
+    blades = {} if isinstance(task.blade, ModelBlade) else {"blade": to_dict(task.config), "design": to_dict(task.design_config)}
     content = {
-        "comparison": {**asdict(comparison), "held_out_seeds": [HELD_OUT, HELD_OUT + comparison.seeds - 1]},
-        "blade": to_dict(task.config),
-        "design": to_dict(task.design_config),
+        "comparison": {**asdict(comparison), "environment": told, "held_out_seeds": seeds},
+        **blades,
         "scenario": task.scenario.to_dict(),
         "agents": {name: asdict(comparison.recipe(name).settings) for name in comparison.budget},
     }

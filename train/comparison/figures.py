@@ -12,15 +12,21 @@ from numpy.typing import NDArray
 from baselines import Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.figures.figure import Curve, Look, Panel
-from train.figures.palette import BEHIND, INK
+from train.figures.palette import BEHIND, INK, LINES
 from train.figures.panels import LearningCurves, learning_panel, pole_panel, voltage_curves
 from train.figures.paper import STYLE, draw_panel, handles, plain, save
 
 Array = NDArray[np.float64]
 
+KILO = 300.0
+"""V from which a drive's voltages are drawn in kV."""
+
 
 def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
-    """Tip displacement over voltages (the layout of thesis Fig. 5.7), a panel for each controller, no control in grey behind."""
+    """Tip displacement over voltages (the layout of thesis Fig. 5.7), a panel for each controller, no control in grey behind.
+
+    Of a model of one's own the displacements that it tells; of one that tells none, how J grows to that without control.
+    """
     import matplotlib.pyplot as plt
 
     columns = 3
@@ -28,12 +34,11 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
     with plt.rc_context(STYLE):
         figure = plt.figure(figsize=(11.0, 2.9 * rows), layout="constrained")
         cells = figure.subfigures(rows, columns, squeeze=False).ravel()
-        reference = evaluations[0].reference
-        largest = 1.05e6 * np.nanmax(np.abs(reference.tip_displacement[:, episode]))
+        upper = _cost_panel if not tells_displacements(evaluations[0]) else _tip_panel
         for cell, evaluation in zip(cells, evaluations, strict=False):
-            tip, volts = cell.subplots(2, 1, sharex=True)
-            drawn = [_tip_panel(evaluation, episode, largest), _voltage_panel(evaluation, episode)]
-            for axis, panel in zip((tip, volts), drawn, strict=True):
+            axes = cell.subplots(2, 1, sharex=True)
+            drawn = [upper(evaluation, episode), _voltage_panel(evaluation, episode)]
+            for axis, panel in zip(axes, drawn, strict=True):
                 draw_panel(axis, panel)
             cell.suptitle(f"{plain(evaluation.name)}: J = {_relative(evaluation, episode):.3f} of no control", fontsize=9)
         for cell in cells[len(evaluations) :]:
@@ -47,23 +52,47 @@ def _relative(evaluation: Evaluation, episode: int) -> float:
     return float(evaluation.judged_cost[episode] / evaluation.uncontrolled[episode])
 
 
-def _tip_panel(evaluation: Evaluation, episode: int, largest: float) -> Panel:
+def tells_displacements(evaluation: Evaluation) -> bool:
+    """Whether any is known of what moved."""
+    return evaluation.reference.tip_displacement.shape[-1] > 0
+
+
+def _tip_panel(evaluation: Evaluation, episode: int) -> Panel:
+    points = evaluation.reference.tip_displacement.shape[-1]
+    names = ("lag", "flap") if points == 2 else [f"displacement {point}" for point in range(points)]
     curves = []
-    for direction, line in (("lag", "dashed"), ("flap", "solid")):
+    for point, name in enumerate(names):
+        line = LINES[(points - 1 - point) % len(LINES)]  # flap is solid
         for episodes, look, label in (
-            (evaluation.reference, Look(BEHIND), "tip without control" if direction == "flap" else ""),
-            (evaluation.episodes, Look(INK), f"tip, {direction}"),
+            (evaluation.reference, Look(BEHIND), "tip without control" if point == points - 1 else ""),
+            (evaluation.episodes, Look(INK), f"tip, {name}"),
         ):
-            tip = 1e6 * episodes.tip_displacement[:, episode, int(direction == "flap")]
+            tip = 1e6 * episodes.tip_displacement[:, episode, point]
             curves.append(Curve(1e3 * evaluation.episodes.time, tip, label, line, look))
+    largest = 1.05e6 * float(np.nanmax(np.abs(evaluation.reference.tip_displacement[:, episode])))
     return Panel("", "", "tip, µm", curves, y_limits=(-largest, largest))
 
 
+def _cost_panel(evaluation: Evaluation, episode: int) -> Panel:
+    whole = evaluation.uncontrolled[episode]
+    curves = [
+        Curve(1e3 * evaluation.episodes.time, np.cumsum(episodes.cost[:, episode]) / whole, label, look=look)
+        for episodes, look, label in (
+            (evaluation.reference, Look(BEHIND), "J₀: J without control"),
+            (evaluation.episodes, Look(INK), "J"),
+        )
+    ]
+    highest = max(1.0, np.nan_to_num(_relative(evaluation, episode), posinf=1.0))
+    return Panel("", "", "J / J₀", curves, y_limits=(0.0, 1.05 * highest))
+
+
 def _voltage_panel(evaluation: Evaluation, episode: int) -> Panel:
+    limits = evaluation.episodes.voltage_limits
+    unit, factor = ("kV", 1e-3) if np.abs(limits).max() >= KILO else ("V", 1.0)
     time = 1e3 * evaluation.episodes.time
-    low, high = 1.08e-3 * evaluation.episodes.voltage_limits.T[0]
-    curves = voltage_curves(time, 1e-3 * evaluation.episodes.voltages[:, episode])
-    return Panel("", "time, ms", "voltage, kV", curves, x_limits=(0.0, time[-1]), y_limits=(low, high))
+    low, high = 1.08 * factor * limits[0].min(), 1.08 * factor * limits[1].max()
+    curves = voltage_curves(time, factor * evaluation.episodes.voltages[:, episode])
+    return Panel("", "time, ms", f"voltage, {unit}", curves, x_limits=(0.0, time[-1]), y_limits=(low, high))
 
 
 def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) -> Any:
@@ -112,8 +141,15 @@ def write_figures(
 def clearest_episode(evaluation: Evaluation) -> int:
     """The episode whose load lets the undriven tip swing most about where it comes to rest: it shows damping best.
 
-    Blades that fail without control come last.
+    Blades that fail without control come last. Where no displacement is known, the episode with the largest J without control.
     """
+    if not tells_displacements(evaluation):
+        return int(np.argmax(evaluation.uncontrolled))
     response = evaluation.reference.load_response
     swing = np.linalg.norm(response - response[-len(response) // 5 :].mean(axis=0), axis=-1)
     return int(np.argmax(np.nan_to_num(swing, nan=-1.0).max(axis=0)))
+
+
+def which_episode(evaluation: Evaluation) -> str:
+    """What ``clearest_episode`` chooses, in words."""
+    return "whose load makes the tip swing most" if tells_displacements(evaluation) else "whose J without control is largest"

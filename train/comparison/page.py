@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,12 +12,14 @@ from numpy.typing import NDArray
 
 from baselines import Controller, Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
-from train.comparison.figures import clearest_episode
-from train.comparison.table import Tiers, caption, cells, headings, ranked
+from train.comparison.figures import clearest_episode, which_episode
+from train.comparison.table import Tiers, caption, cells, headings, notes, ranked
 from train.page import Cell, LearningCurves, PageContent, Table, record_episode, write_page
 from train.shared.columns import EVALUATION
 
 Array = NDArray[np.float64]
+
+NO_SHAPE = "The plant is a model without a shape: no blade is drawn."
 
 
 def write_comparison_page(
@@ -27,20 +30,24 @@ def write_comparison_page(
     curves: Mapping[str, Array],
     levels: Mapping[str, float],
     configuration: Mapping[str, Any],
+    environment: Mapping[str, Any],
     tiers: Tiers = None,
+    left_out: Mapping[str, str] = MappingProxyType({}),
 ) -> None:
     """Write ``report.html``; ``controllers`` are in the order of the ``evaluations``, ``curves`` and ``levels`` as in ``figures``.
 
     The blade is shown in the episode of ``figures`` under the best law with sensors and the best agent; without agents, under
-    no control and the best law.
+    no control and the best law. A model of one's own, which has no shape, shows the signals of that episode alone.
     """
     seed = evaluations[0].episodes.seeds[clearest_episode(evaluations[0])]
     linear = {law.name: law for law in controllers.values() if isinstance(law, LinearController)}
+    episode = record_episode(environment, seed, shown_pair(evaluations, controllers))
     content = PageContent(
-        title="Controllers compared on a rotating blade",
+        title=f"Controllers compared on a {'rotating blade' if episode.has_shape else 'model'}",
+        note="\n".join([*notes(left_out), *([] if episode.has_shape else [NO_SHAPE])]),
         table=page_table(evaluations, tiers),
-        episode=record_episode(configuration["comparison"]["environment"], seed, shown_pair(evaluations, controllers)),
-        episode_note=f"Held-out episode of seed {seed}, whose load makes the tip swing most.",
+        episode=episode,
+        episode_note=f"Held-out episode of seed {seed}, {which_episode(evaluations[0])}.",
         poles={name: closed_loop_poles(plant, law) for name, law in linear.items() if law.observes == "observation"},
         learning=LearningCurves(curves, levels),
         configuration=configuration,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from baselines import Evaluation
 from beamenv.configuration.writing import write_whole
@@ -58,9 +59,17 @@ def markdown_table(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> st
     return f"{markdown.table(headings(tiers), rows, words=1)}\n\n{caption(evaluations, tiers)}\n"
 
 
-def write_tables(folder: Path, evaluations: Sequence[Evaluation], tiers: Tiers = None) -> None:
+def notes(left_out: Mapping[str, str]) -> list[str]:
+    """One sentence on each law that could not be had."""
+    return [f"{name} is left out: {sentence}" for name, sentence in left_out.items()]
+
+
+def write_tables(
+    folder: Path, evaluations: Sequence[Evaluation], tiers: Tiers = None, left_out: Mapping[str, str] = MappingProxyType({})
+) -> None:
     """``table.csv``, in SI units with every interval, and ``table.md``."""
-    told = [{"controller": each.name, **({"tier": tiers[each.name]} if tiers else {})} for each in ranked(evaluations)]
-    rows = [{**about, **each.row()} for about, each in zip(told, ranked(evaluations), strict=True)]
+    about = [{"controller": each.name, **({"tier": tiers[each.name]} if tiers else {})} for each in ranked(evaluations)]
+    rows = [{**whose, **each.row()} for whose, each in zip(about, ranked(evaluations), strict=True)]
     write_csv(folder / "table.csv", rows)
-    write_whole(folder / "table.md", markdown_table(evaluations, tiers))
+    told = "".join(f"\n{note}\n" for note in notes(left_out))
+    write_whole(folder / "table.md", markdown_table(evaluations, tiers) + told)

@@ -26,6 +26,7 @@ from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
 from train.shared.curve import NAME as CURVE
 from train.shared.curve import write_curve
+from train.shared.held_models import told_models
 from train.shared.interruption import Interrupted, ending_as_interrupted
 from train.shared.lock import alone_in
 from train.shared.threads import one_torch_thread
@@ -72,7 +73,7 @@ class Job:
             "agent": self.name,
             "recipe": self.recipe.to_dict(),
             "scenario": self.scenario,
-            "environment": dict(self.environment),
+            "environment": told_models(self.environment),
             "seed": self.seed,
             "budget": [str(self.budget.updates), str(self.budget.seconds)],
             "teacher": weights,

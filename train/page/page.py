@@ -23,6 +23,7 @@ from train.figures.themes import THEMES
 from train.page.blade import blade_figures, frame_times, motions
 from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
+from train.page.signals import drawn_signals, words
 from train.page.table import Table
 from train.shared.versions import versions
 
@@ -118,7 +119,7 @@ def templates() -> dict[str, Any]:
 
 def animation(content: PageContent) -> Animation | None:
     """The blade's pair of figures, when there is an episode."""
-    if content.episode is None:
+    if content.episode is None or not content.episode.has_shape:
         return None
     pair = blade_figures(content.episode)
     left, right = (Plot(f"blade-{side}", "", "", figure, 440) for side, figure in zip(("left", "right"), pair, strict=True))
@@ -135,11 +136,7 @@ def plots(content: PageContent) -> list[Plot]:
     if content.heat_map is not None:
         found.append(_heat_map(content.heat_map))
     if content.episode is not None:
-        rows = 2 + len(content.episode.controlled)
-        note = "Panels share their time axis: zoom into one and all follow. The upright line is the instant of the blade above."
-        found.append(Plot("time-series", "Tip displacement and voltages", note, time_series(content.episode), 130 + 160 * rows))
-        note = "Spectra of the tip before and after: Hann window over the whole record, mean removed; dotted: natural frequencies."
-        found.append(Plot("spectra", "Spectra", note, spectra(content.episode), 560))
+        found += _of_episode(content.episode, content.episode_note)
     if content.poles:
         note = (
             "Continuous equivalents log(z)/Δt of the sampled loops' poles, upper half plane. "
@@ -161,6 +158,18 @@ def plots(content: PageContent) -> list[Plot]:
             )
         )
     return found
+
+
+def _of_episode(episode: RecordedEpisode, which: str) -> list[Plot]:
+    """Its course and its spectra."""
+    signals, what = len(drawn_signals(episode)), words(episode)
+    instant = "The upright line is the instant of the blade above." if episode.has_shape else which
+    note = f"Panels share their time axis: zoom into one and all follow. {instant}".rstrip()
+    height = 130 + 160 * (signals + len(episode.controlled))
+    course = Plot("time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height)
+    of = "the tip" if episode.has_shape else f"the {what}"
+    note = f"Spectra of {of} before and after: Hann window over the whole record, mean removed; dotted: natural frequencies."
+    return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals)]
 
 
 def _plotted(panel: Panel, **layout: Any) -> go.Figure:

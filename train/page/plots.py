@@ -14,42 +14,43 @@ from train.figures.figure import Curve, Look, Panel
 from train.figures.palette import NEUTRAL, PALETTE
 from train.figures.panels import voltage_curves
 from train.page.recording import RecordedEpisode, Recording
+from train.page.signals import drawn_signals
 
 Array = NDArray[np.float64]
 
-TIP_PANELS = ("tip displacement, lag", "tip displacement, flap")
-
 
 def time_series(episode: RecordedEpisode) -> go.Figure:
-    """Tip displacement in lag and flap over the voltages of each controller, on one time axis."""
-    tips: list[list[Curve]] = [[], []]
-    for recording, look in _coloured(episode):
-        for row, displacement in enumerate(recording.tip.T):
-            tips[row].append(Curve(1e3 * recording.time, 1e6 * displacement, recording.name, look=look, listed=row == 0))
-    panels = [Panel(title, "", "µm", curves) for title, curves in zip(TIP_PANELS, tips, strict=True)]
+    """The signals of ``drawn_signals`` over the voltages of each controller, on one time axis."""
+    panels = []
+    for row, signal in enumerate(drawn_signals(episode)):
+        curves = [
+            Curve(1e3 * recording.time, values, recording.name, look=look, listed=row == 0)
+            for values, (recording, look) in zip(signal.series, _coloured(episode), strict=True)
+        ]
+        panels.append(Panel(signal.title, "", signal.unit, curves))
     low, high = (1.08 * limit for limit in episode.blade.config.voltage_limits)
     for recording in episode.controlled:
         curves = voltage_curves(1e3 * recording.time, recording.volts)
         panels.append(Panel(f"voltages, {recording.name}", "", "V", curves, y_limits=(low, high)))
     figure = _stacked(panels, "time, ms", 1e3 * float(episode.without_control.time[-1]))
+    if not episode.has_shape:
+        return figure
     return figure.update_layout(shapes=[screen.upright(0.0, width=1)])  # the instant of the blade, which the page moves
 
 
 def spectra(episode: RecordedEpisode) -> go.Figure:
-    """Amplitude spectral density of the tip in lag and flap, before and after; dotted: natural frequencies of the blade."""
+    """Amplitude spectral density of the same signals, before and after; dotted: natural frequencies."""
     modes = episode.blade.truth.natural_frequencies / (2.0 * np.pi)
-    highest = 1.1 * float(modes[-1])
-    tips: list[list[Curve]] = [[], []]
-    for recording, look in _coloured(episode):
-        name = f"{recording.name} ({'before' if recording is episode.without_control else 'after'})"
-        for row, displacement in enumerate(recording.tip.T):
-            frequency, density = amplitude_density(displacement, episode.blade.config.control_interval)
+    highest, panels = 1.1 * float(modes[-1]), []
+    for row, signal in enumerate(drawn_signals(episode)):
+        curves = []
+        for values, (recording, look) in zip(signal.series, _coloured(episode), strict=True):
+            name = f"{recording.name} ({'before' if recording is episode.without_control else 'after'})"
+            frequency, density = amplitude_density(values, episode.blade.config.control_interval)
             shown = frequency <= highest
-            tips[row].append(Curve(frequency[shown], 1e6 * density[shown], name, look=look, listed=row == 0))
-    panels = [
-        Panel(title, "", "µm/√Hz", curves, logarithmic=True, marked=() if row else modes.tolist(), marked_line="dotted")
-        for row, (title, curves) in enumerate(zip(TIP_PANELS, tips, strict=True))
-    ]
+            curves.append(Curve(frequency[shown], density[shown], name, look=look, listed=row == 0))
+        unit, marked = f"{signal.unit or '1'}/√Hz", () if row else modes.tolist()
+        panels.append(Panel(signal.title, "", unit, curves, logarithmic=True, marked=marked, marked_line="dotted"))
     return _stacked(panels, "frequency, Hz", highest)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import gymnasium as gym
@@ -15,6 +15,7 @@ from baselines import Controller, no_control
 from baselines.design.controller import ControllerArgument, as_controller, name_of
 from baselines.evaluation.loop import instants
 from beamenv.blade.build import Blade
+from beamenv.blade.model_blade import ModelBlade
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,8 @@ class Recording:
     """(K, 2), m: lag, flap."""
     volts: Array
     """(K, m), V: held over the interval that ends at each instant."""
+    readings: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(K, p), in the sensors' units, noise and all; none behind a wrapper that shows something else."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +47,11 @@ class RecordedEpisode:
     without_control: Recording
     pair: tuple[Recording, Recording]
     """Either may be ``without_control`` itself."""
+
+    @property
+    def has_shape(self) -> bool:
+        """Whether there is anything to be drawn in three dimensions: a model of one's own tells nothing of it."""
+        return not isinstance(self.blade, ModelBlade)
 
     @property
     def controlled(self) -> tuple[Recording, ...]:
@@ -66,10 +74,12 @@ def record(
         state = np.array(inner.state, dtype=np.float64)
         if not np.isfinite(state).all():
             break
-        rows.append((state, instant.info["tip_displacement"][0], instant.info["volts"][0]))
-    states, tip, volts = (np.stack(series) for series in zip(*rows, strict=True))
+        rows.append((state, instant.info["tip_displacement"][0], instant.info["volts"][0], np.asarray(instant.observation[0])))
+    states, tip, volts, observed = (np.stack(series) for series in zip(*rows, strict=True))
     name = name_of(as_controller(controller))
-    return Recording(name, inner.plant.control_interval * np.arange(len(rows)), states, tip, volts)
+    scale = 1.0 if inner.task.physical_units else inner.plant.sensor_full_scale
+    readings = scale * observed if env.observation_space == inner.observation_space else np.zeros((0, 0))
+    return Recording(name, inner.plant.control_interval * np.arange(len(rows)), states, tip, volts, readings)
 
 
 def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controller, Controller]) -> RecordedEpisode:

@@ -21,13 +21,18 @@ class Column:
     """For ``str.format``."""
     interval: bool = False
     """Whether it stands beside the value."""
+    fine: bool = False
+    """Whether values below 10 have three digits, whatever the form says."""
 
     def text(self, estimate: Estimate | None) -> str:
         """A value, with its interval where that is shown; a dash for None."""
         if estimate is None:
             return "–"
-        value, low, high = (number(self.factor * each, self.form) for each in (estimate.value, estimate.low, estimate.high))
+        value, low, high = (self._number(self.factor * each) for each in (estimate.value, estimate.low, estimate.high))
         return f"{value} [{low}, {high}]" if self.interval else value
+
+    def _number(self, value: float) -> str:
+        return number(value, "{:.3g}" if self.fine and abs(value) < 10.0 else self.form)
 
 
 EVALUATION = (
@@ -35,8 +40,8 @@ EVALUATION = (
     Column("settling_time", "settling (5 %), s", 1.0, "{:.3f}"),
     Column("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
     Column("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
-    Column("peak_voltage", "peak, V", 1.0, "{:.0f}"),
-    Column("rms_voltage", "RMS, V", 1.0, "{:.0f}"),
+    Column("peak_voltage", "peak, V", 1.0, "{:.0f}", fine=True),
+    Column("rms_voltage", "RMS, V", 1.0, "{:.0f}", fine=True),
     Column("saturation", "saturated, %", 100.0, "{:.1f}"),
 )
 """What tables show of an ``Evaluation``."""

@@ -33,7 +33,7 @@ COLUMNS = (
     Column("settled", "settled, %", 100.0, "{:.0f}"),
     Column("peak_tip", "peak tip, µm", 1e6, "{:.0f}"),
     Column("rms_tip", "RMS tip, µm", 1e6, "{:.1f}"),
-    Column("peak_voltage", "peak, V", 1.0, "{:.0f}"),
+    Column("peak_voltage", "peak, V", 1.0, "{:.0f}", fine=True),
     Column("effort", "effort, mJ s", 1e3, "{:.3g}"),
     Column("saturation", "saturated, %", 100.0, "{:.1f}"),
 )
