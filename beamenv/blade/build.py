@@ -103,10 +103,14 @@ class Blade:
 
         In the thesis' model, unless ``truth_modes`` are others, it is ``plant``.
         """
+        return self.behind_electronics(self.bare_truth)
+
+    @sealed_property
+    def bare_truth(self) -> Plant:
+        """Its true plant without the electronics."""
         config, plant = self.config, self.plant
-        if _is_thesis(config) and config.truth_modes in (None, config.modes):
-            return plant
-        return self._behind_electronics(self._loaded(self._reduced(self.true_modal, plant.sensor_full_scale)))
+        whole = _is_thesis(config) and config.truth_modes in (None, config.modes)
+        return self._loaded(plant if whole else self._reduced(self.true_modal, plant.sensor_full_scale))
 
     @sealed_property
     def further_loads(self) -> Array:
@@ -119,21 +123,31 @@ class Blade:
         shapes, further = self.config.loads, acting_on_velocities(self.true_modal.mode_shapes.T @ self.further_loads)
         return bare if not shapes else with_further_loads(bare, further, tuple(shape.signal for shape in shapes))
 
-    def _load_feedthrough(self, rows: SensorRows) -> Array:
-        """(p, k): what accelerometers feel of loads at once, and of the acceleration of the base."""
-        through = load_feedthrough(rows, self.true_modal, np.hstack([self.full.line_load, self.further_loads]))
+    @property
+    def all_loads(self) -> Array:
+        """(N, 2 + l): the generalised forces of the uniform loads and of the further ones."""
+        return np.hstack([self.full.line_load, self.further_loads])
+
+    def with_base(self, rows: SensorRows) -> Array:
+        """(p, 2 + l): what accelerometers feel of the acceleration of the base itself."""
+        felt = np.zeros((len(rows.item), 2 + len(self.config.loads)))
         for k, shape in enumerate(self.config.loads):
             if shape.shape == "base":
-                through[:, 2 + k] += rows.with_base @ along(shape.direction)
-        return through
+                felt[:, 2 + k] = rows.with_base @ along(shape.direction)
+        return felt
 
-    def _behind_electronics(self, bare: Plant) -> Plant:
-        """The plant behind amplifiers and filters, with the static share of modes that it leaves out; none of it in the thesis."""
+    def behind_electronics(self, bare: Plant, load_through: Array | None = None) -> Plant:
+        """The plant behind amplifiers and filters, with the static share of modes that it leaves out; none of it in the thesis.
+
+        ``load_through`` (p, k) is what readings show of loads at once; None: by the modes of the configured speed.
+        """
         config = self.config
         if _is_thesis(config):
             return bare
         electronics, rate = config.electronics, 2.0 * np.pi / config.control_interval
         bandwidth, cutoff, rows = electronics.amplifier_bandwidth, electronics.filter_cutoff, self.sensor_rows
+        if rows is not None and load_through is None:
+            load_through = load_feedthrough(rows, self.true_modal, self.all_loads) + self.with_base(rows)
         return behind_electronics(
             bare,
             charge_residual=self._charge_residual() if rows is None else rate_residual(rows, self.true_modal, self.full.forces),
@@ -141,7 +155,7 @@ class Blade:
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
             filter_cutoff=None if cutoff is None else cutoff * rate,
-            load_feedthrough=None if rows is None else self._load_feedthrough(rows),
+            load_feedthrough=load_through,
         )
 
     @sealed_property

@@ -88,7 +88,7 @@ class GivenBlade(Blade):
             control_interval=config.control_interval,
             reference_load=self.reference_load,
         )
-        return self._behind_electronics(replace(plant, input_weight=self.plant.input_weight))
+        return self.behind_electronics(replace(plant, input_weight=self.plant.input_weight))
 
     def _charge_residual(self) -> Array:
         """(p, m), C per V: the beam's static charges, strains beneath the patches above all, less what the file's modes show."""

@@ -3,7 +3,7 @@
 A point of a section at r = (x, y, 0) from the pitch axis, turned with the pretwist, is displaced by u + ϑ × r, with u the
 displacement of the axis and ϑ the rotation of the section. In axes that turn with the hub about ŷ its acceleration is
 
-    p̈ + 2Ω ŷ × ṗ − Ω² (p − ŷŷᵀp),
+    p̈ + 2Ω ŷ × ṗ − Ω² (p − ŷŷᵀp) + Ω̇ ŷ × p,
 
 and an accelerometer on it, whose axis n turns with the section, feels n of it and, since δn = ϑ × n, the share ϑ × n of that of the
 blade as it stands. Where it stands is taken without its steady deformation.
@@ -57,13 +57,13 @@ def along(direction: tuple[float, ...]) -> Array:
     return np.asarray(direction) / np.linalg.norm(direction)
 
 
-def felt_acceleration(rows: PointRows, direction: Array, speed: float) -> tuple[Array, Array, Array]:
+def felt_acceleration(rows: PointRows, direction: Array, speed: float, speeding_up: float = 0.0) -> tuple[Array, Array, Array]:
     """(N,) three times: what an accelerometer at a point, of axis ``direction`` (3,), feels per coefficient, per rate and per
-    second rate of the coefficients, on a blade that turns at ``speed`` (rad/s).
+    second rate of the coefficients, on a blade that turns at ``speed`` (rad/s), the faster by ``speeding_up`` (rad/s²).
     """
     moved, axis = rows.moved, np.array([0.0, 1.0, 0.0])
     in_plane = np.diag([1.0, 0.0, 1.0])
     coriolis = 2.0 * speed * np.cross(axis, moved, axisa=0, axisb=0, axisc=0)
-    steady = -(speed**2) * (in_plane @ rows.stands)
+    field = -(speed**2) * in_plane + speeding_up * np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])  # Ω̇ ŷ ×
     tilted = np.cross(rows.turned, direction, axisa=0, axisc=0)
-    return -(speed**2) * direction @ in_plane @ moved + steady @ tilted, direction @ coriolis, direction @ moved
+    return direction @ field @ moved + field @ rows.stands @ tilted, direction @ coriolis, direction @ moved

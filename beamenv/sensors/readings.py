@@ -28,10 +28,21 @@ from beamenv.sensors.rows import SensorRows
 Array = NDArray[np.float64]
 
 
+def outputs(displaced: Array, rate: Array, accelerated: Array, dynamics: Array) -> Array:
+    """C (p, 2r) of readings (p, r) of the first states and of the modal velocities, and (p, 2r) of the rates of all."""
+    return np.asarray(np.hstack([displaced, rate]) + accelerated @ dynamics)
+
+
 def load_feedthrough(rows: SensorRows, modal: ModalModel, line_load: Array) -> Array:
     """F (p, k): what accelerometers show of a load at once, by the modes of a plant."""
     shapes = modal.mode_shapes
     return np.asarray(on_velocities(rows.acceleration @ shapes) @ acting_on_velocities(shapes.T @ line_load))
+
+
+def static_feedthrough(rows: SensorRows, modal: ModalModel, forces: Array) -> Array:
+    """D₀ (p, m), of forces F (N, m) per V."""
+    shapes = modal.mode_shapes
+    return static_residual(rows.static_position, rows.position @ shapes, shapes.T @ forces, modal.natural_frequencies)
 
 
 def rate_residual(rows: SensorRows, modal: ModalModel, forces: Array) -> Array:
@@ -60,8 +71,8 @@ def with_readings(
     """
     shapes, omega = modal.mode_shapes, modal.natural_frequencies
     accelerated = on_velocities(rows.acceleration @ shapes)
-    C = np.hstack([rows.position @ shapes / omega, rows.rate @ shapes]) + accelerated @ plant.A
-    static = static_residual(rows.static_position, rows.position @ shapes, shapes.T @ forces, omega)
+    C = outputs(rows.position @ shapes / omega, rows.rate @ shapes, accelerated, plant.A)
+    static = static_feedthrough(rows, modal, forces)
     through = load_feedthrough(rows, modal, line_load)
     if full_scale is None:
         full_scale = _ranges(plant, C, through, rows, sensors, current_range)

@@ -31,6 +31,10 @@ class SensorRows(ReadOnly):
     """S (p, N)."""
     acceleration: Array
     """T (p, N)."""
+    coriolis: Array
+    """(p, N): what of S is in proportion to the speed, per rad/s."""
+    euler: Array
+    """(p, N): what is added to R while the speed changes, per rad/s²."""
     static_position: Array
     """(p, m) of R q per V in the static state, with strains that the trial functions cannot follow."""
     static_rate: Array
@@ -64,10 +68,23 @@ def sensor_rows(blade: OnBlade, sensors: Sequence[Sensor]) -> SensorRows:
     """The rows of sensors; ``ValueError`` for one that is not on the blade, or a group of patches that it has not."""
     each = [_rows(blade, sensor, f"blade.sensors[{k}]") for k, sensor in enumerate(sensors)]
     position, rate, acceleration, static_position, static_rate = (np.concatenate(parts) for parts in zip(*each, strict=True))
+    turning = [_turning(blade, sensor, f"blade.sensors[{k}]") for k, sensor in enumerate(sensors)]
     item = np.repeat(np.arange(len(each)), [len(parts[0]) for parts in each])
     felt = [along(each.direction) if isinstance(each, Accelerometer) else np.zeros(3) for each in sensors]
     signals = tuple(Signal(f"{sensors[k].kind} {j}", UNITS[sensors[k].kind]) for j, k in enumerate(item.tolist()))
-    return SensorRows(position, rate, acceleration, static_position, static_rate, np.array(felt)[item], item, signals)
+    coriolis, euler = np.array(turning)[item].swapaxes(0, 1)
+    return SensorRows(
+        position=position,
+        rate=rate,
+        acceleration=acceleration,
+        coriolis=coriolis,
+        euler=euler,
+        static_position=static_position,
+        static_rate=static_rate,
+        with_base=np.array(felt)[item],
+        item=item,
+        signals=signals,
+    )
 
 
 def _rows(blade: OnBlade, sensor: Sensor, name: str) -> tuple[Array, ...]:
@@ -89,6 +106,14 @@ def _rows(blade: OnBlade, sensor: Sensor, name: str) -> tuple[Array, ...]:
     if isinstance(sensor, Displacement):
         return _one((row, none, none), row @ blade.static, np.zeros(m))
     return _one((none, row, none), np.zeros(m), row @ blade.static)
+
+
+def _turning(blade: OnBlade, sensor: Sensor, name: str) -> Array:
+    """(2, N): what an accelerometer feels of a rate per rad/s of speed, and of a displacement per rad/s² of its change."""
+    if not isinstance(sensor, Accelerometer):
+        return np.zeros((2, blade.beam.space.size))
+    rows, direction = point_rows(blade.beam, sensor.position, sensor.point, name), along(sensor.direction)
+    return np.stack([felt_acceleration(rows, direction, 1.0)[1], felt_acceleration(rows, direction, 0.0, 1.0)[0]])
 
 
 def _one(rows: Three, static_position: Array, static_rate: Array) -> tuple[Array, ...]:

@@ -23,7 +23,7 @@ from beamenv.scenarios.of_models import check_scenario, design_model, true_model
 from beamenv.scenarios.scenario import Scenario
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task.designed import design_config, driven, same_electronics, with_modes
-from beamenv.task.scenario_checks import check_failures, check_loads, check_sensors, with_own_loads
+from beamenv.task.scenario_checks import check_failures, check_loads, with_own_loads
 from beamenv.task.sharing import shared
 from beamenv.task.task import Task
 
@@ -71,7 +71,6 @@ def resolve_task(
     true = shared(true)
     check_failures(chosen, true.plant)
     check_loads(chosen, true)
-    check_sensors(chosen, config)
     chosen = with_own_loads(chosen, true)
     task = Task(
         blade=true,

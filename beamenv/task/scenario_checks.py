@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from beamenv.blade.build import Blade
-from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.own_loads import of_blade
@@ -28,17 +27,9 @@ def with_own_loads(chosen: Scenario, true: Blade) -> Scenario:
     """The scenario with what its own loads leave to the blade; ``ValueError`` where none can act."""
     if not chosen.loads:
         return chosen
-    if chosen.plants.spin_up is not None or chosen.plants.truth is not None:
-        shapes = [load.shape for load in chosen.loads]
-        raise Refused("scenario.loads", shapes, "empty where the rotor runs up or a plant file says what moves")
+    if chosen.plants.truth is not None:
+        raise Refused("scenario.loads", [load.shape for load in chosen.loads], "empty where a plant file says what moves")
     return replace(chosen, loads=of_blade(chosen.loads, true.beam, true.reference_load))
-
-
-def check_sensors(chosen: Scenario, config: BladeConfig) -> None:
-    """``ValueError`` for a run-up of a blade with sensors that are listed."""
-    if chosen.plants.spin_up is not None and config.sensors:
-        kinds = [each.kind for each in config.sensors]
-        raise Refused("blade.sensors", kinds, "empty, the currents of patches, where the rotor runs up")
 
 
 def check_loads(chosen: Scenario, true: Blade, path: str = "scenario") -> None:

@@ -273,6 +273,10 @@ def test_a_function_that_takes_no_time_is_named():
         env.step(np.zeros(1))
 
 
-def test_a_run_up_takes_no_loads_of_one_s_own():
-    with pytest.raises(ValueError, match="scenario.loads is .* empty where the rotor runs up"):
-        resolve_task("airfoil-blade", scenario={"loads": [{}], "plants": {"spin_up": [10.0, 72.0]}})
+def test_a_force_on_a_blade_of_the_thesis_model_acts_at_rest_and_in_a_run_up():
+    """At the tip, F L³/3EI by 8 over 3 the displacement under the line load F/L."""
+    force = {"magnitude": 1.0}
+    for scenario in ({}, {"plants": {"spin_up": [0.0, 1.0]}}):
+        task = resolve_task(speed=0.0, blade={"model": "thesis"}, scenario={**scenario, "loads": [force]}, duration=0.01)
+        release, shown = task.bank.release[0], task.bank.tip[0]
+        assert (release @ shown)[2, 1] == pytest.approx(8.0 / 3.0 / 2.023 * (release @ shown)[1, 1], rel=0.05)

@@ -114,7 +114,8 @@ def test_a_gauge_over_the_actuator_shows_the_strain_of_a_sandwich():
     assert abs(gain(plant, plant.B, plant.D)[0, 0]) == pytest.approx(abs(wanted), rel=0.12)  # the sheet is narrower than the strip
 
 
-def test_an_accelerometer_on_a_turning_blade_feels_its_point_s_path_in_space():
+@pytest.mark.parametrize("speeding_up", [0.0, 700.0])
+def test_an_accelerometer_on_a_turning_blade_feels_its_point_s_path_in_space(speeding_up):
     """Second differences of the path of a point that vibrates, along an axis that turns with hub and section."""
     generator, speed, step = np.random.default_rng(1), 40.0, 1e-5
     rows = PointRows(generator.normal(size=(3, 2)), generator.normal(size=(3, 2)), np.array([0.1, 0.02, 1.5]))
@@ -123,12 +124,15 @@ def test_an_accelerometer_on_a_turning_blade_feels_its_point_s_path_in_space():
 
     def at(time: float) -> tuple[np.ndarray, np.ndarray]:
         now = q + rate * time + 0.5 * second * time**2
-        c, s = np.cos(speed * time), np.sin(speed * time)
+        turned = speed * time + 0.5 * speeding_up * time**2
+        c, s = np.cos(turned), np.sin(turned)
         hub = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
         return hub @ (rows.stands + rows.moved @ now), hub @ (direction + np.cross(rows.turned @ now, direction))
 
     before, here, after = (at(time)[0] for time in (-step, 0.0, step))
-    still = -(speed**2) * direction @ (rows.stands * [1.0, 0.0, 1.0])
+    still = direction @ (speeding_up * np.cross([0.0, 1.0, 0.0], rows.stands) - speed**2 * rows.stands * [1.0, 0.0, 1.0])
     wanted = at(0.0)[1] @ (before - 2.0 * here + after) / step**2 - still
-    felt = sum(row @ part for row, part in zip(felt_acceleration(rows, direction, speed), (q, rate, second), strict=True))
+    felt = sum(
+        row @ part for row, part in zip(felt_acceleration(rows, direction, speed, speeding_up), (q, rate, second), strict=True)
+    )
     assert felt == pytest.approx(wanted, rel=1e-3)

@@ -136,7 +136,6 @@ def test_full_scale_of_a_rotating_blade_counts_what_turning_brings():
             "blade.sensor_full_scale is 1e-06, but must be None",
         ),
         ({"blade": {**ACCELEROMETER, "electronics": {"filter_cutoff": None}}}, "blade.electronics.filter_cutoff is None"),
-        ({"blade": MIXED, "speed": 1.0, "scenario": {"plants": {"spin_up": [1.0, 5.0]}}}, "blade.sensors is .* rotor runs up"),
         ({"blade": {**MIXED, "model": "thesis"}}, "blade.sensors is .* model = 'thesis'"),
     ],
 )

@@ -72,3 +72,7 @@ class AboutRest(RunUp):
     def patches(self, time: Array) -> None:
         """The same at any speed."""
         return
+
+    def readings(self, time: Array) -> None:
+        """None: the thesis' model reads currents alone."""
+        return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -45,6 +45,8 @@ class AboutSteadyStates(RunUp):
     charges: Array
     strains: Array
     """Ψᵀ F (n, r, m), C_s Ψ (n, p, r), (n, k, r)."""
+    sensed: Array | None
+    """(n, 5, p, r) of listed sensors: what they show of η, of η̇ at no speed, of η̈, of η̇ per Ω and of η per Ω̇."""
 
     @classmethod
     def of(cls, blade: Blade, course: Cycloid) -> AboutSteadyStates:
@@ -52,7 +54,7 @@ class AboutSteadyStates(RunUp):
         config, beam, layout = blade.config, blade.beam, blade.config.patches
         modal, squares = blade.true_modal, _squares(course)
         rows: dict[str, list[Array]] = {}
-        sweeps, masses = [], []
+        sweeps, masses, sensed = [], [], []
         for square in squares.tolist():
             speed = float(np.sqrt(square))
             point, loads = beam.at(speed), base_loads(beam, speed)
@@ -70,12 +72,15 @@ class AboutSteadyStates(RunUp):
                 ("strains", surface_strain(beam, speed) @ shapes),
             ):
                 rows.setdefault(name, []).append(value)
+            if config.sensors:
+                sensed.append(_sensed(blade, speed) @ shapes)
             sweeps.append(sweep)
             masses.append(shapes.T @ point.mass)
         slopes = _derivative(squares) @ np.array(sweeps)
         rows["momentum_slope"] = list(np.einsum("nrN,nN->nr", np.array(masses), slopes))
         damping = np.diag(2.0 * config.damping_ratio * modal.natural_frequencies)
-        return cls(course=course, damping=damping, squares=squares, **{name: np.array(value) for name, value in rows.items()})
+        known = {name: np.array(value) for name, value in rows.items()}
+        return cls(course=course, damping=damping, squares=squares, sensed=np.array(sensed) if sensed else None, **known)
 
     def _at(self, values: Array, time: Array) -> Array:
         """Values (n, …) at times (…)."""
@@ -111,6 +116,21 @@ class AboutSteadyStates(RunUp):
     def patches(self, time: Array) -> tuple[Array, Array, Array]:
         """About the steady state then."""
         return self._at(self.forces, time), self._at(self.charges, time), self._at(self.strains, time)
+
+    def readings(self, time: Array) -> tuple[Array, Array, Array] | None:
+        """About the steady state then; accelerometers feel Coriolis' acceleration of the speed and Euler's of its change."""
+        if self.sensed is None:
+            return None
+        position, rate, acceleration, coriolis, euler = np.moveaxis(self._at(self.sensed, time), -3, 0)
+        speed, change = self.course.speed(time)[..., None, None], self.course.acceleration(time)[..., None, None]
+        return position + change * euler, rate + speed * coriolis, acceleration
+
+
+def _sensed(blade: Blade, speed: float) -> Array:
+    """(5, p, N): rows of listed sensors about the steady state at a speed, rad/s."""
+    rows = blade.changed(replace(blade.config, speed=speed)).sensor_rows
+    assert rows is not None
+    return np.stack([rows.position, rows.rate - speed * rows.coriolis, rows.acceleration, rows.coriolis, rows.euler])
 
 
 def _carried(shapes: Array, frequencies: Array, point: OperatingPoint) -> Array:

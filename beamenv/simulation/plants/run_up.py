@@ -95,6 +95,10 @@ class RunUp(ABC):
     def patches(self, time: Array) -> tuple[Array, Array, Array] | None:
         """F (…, r, m), C_s (…, p, r) and strains (…, k, r) at times; None where the speed does not change them, nor Ψ."""
 
+    @abstractmethod
+    def readings(self, time: Array) -> tuple[Array, Array, Array] | None:
+        """R, S, T (…, p, r) of listed sensors, y = R η + S η̇ + T η̈; None where the currents of all patches are read."""
+
     def restoring(self, time: Array) -> Array:
         """K + ½ Ω̇ G₁ (…, r, r)."""
         return self.stiffness(time) + 0.5 * self.course.acceleration(time)[..., None, None] * self.coupling(time)

@@ -24,6 +24,8 @@ from beamenv.configuration import Refused
 from beamenv.configuration.memory import check_room
 from beamenv.configuration.read_only import sealed
 from beamenv.plant.plant import Plant
+from beamenv.plant.reduction import acting_on_velocities, on_velocities
+from beamenv.sensors.readings import outputs, static_feedthrough
 from beamenv.simulation.plants.bank import BY_PLANT, Bank
 from beamenv.simulation.plants.coordinates import coordinates, widened
 from beamenv.simulation.plants.run_up import RunUp
@@ -81,8 +83,8 @@ def _worked_out(blade: Blade, design: Blade, run_up: RunUp, middles: Array) -> B
     except np.linalg.LinAlgError:
         course = [run_up.course.first, run_up.course.last]
         raise Refused("scenario.plants.spin_up", course, "speeds between which the blade keeps its stiffness (rad/s)") from None
-    inverses, n = _inverses(blade), len(reference.A)
-    plants = [plant_at(blade, run_up, time, mid[k], inverses) for k, time in enumerate(middles.tolist())]
+    n = len(reference.A)
+    plants = [plant_at(blade, run_up, time, mid[k]) for k, time in enumerate(middles.tolist())]
     bank = Bank.gather(reference, plants, run_up.course.speed(middles), None)
     incoming, outgoing = _changes(before, mid, n), _changes(mid, after, n)
     back = incoming.swapaxes(1, 2)
@@ -160,46 +162,42 @@ def _root(stiffness: Array) -> Array:
     return np.asarray(np.linalg.cholesky(stiffness), dtype=np.float64)
 
 
-def _inverses(blade: Blade) -> tuple[Array, Array]:
-    """(m, r) and (r, p): of the modal forces and charges at the configured speed."""
-    shapes = blade.true_modal.mode_shapes
-    forces, charges = shapes.T @ blade.full.forces, blade.full.charges @ shapes
-    return np.asarray(np.linalg.pinv(forces), dtype=np.float64), np.asarray(np.linalg.pinv(charges), dtype=np.float64)
-
-
-def plant_at(blade: Blade, run_up: RunUp, time: float, root: Array, inverses: tuple[Array, Array]) -> Plant:
-    """The plant at one time in energy coordinates [Uᵀη; η̇], U = ``root``; the electronics are those of any time.
-
-    ``inverses`` say what of the plant at the configured speed reaches amplifiers and filters.
-    """
-    reference, at = blade.truth, np.asarray(time)
-    r, b = len(root), 2 * len(root)
-    inverse = np.linalg.inv(root)
-    to_reference = np.eye(len(reference.A))  # energy coordinates of the configured speed from those of this one
-    to_reference[:r, :r] = reference.natural_frequencies[:, None] * inverse.T
-    A, B, C = (np.array(each) for each in (reference.A @ to_reference, reference.B, reference.C @ to_reference))
-    tip, strain = (np.array(rows @ to_reference) for rows in (reference.tip_displacement, reference.strain))
-    loads = np.array(reference.disturbance_input)
-    patches = run_up.patches(at)
-    if patches is not None:
-        (forces, charges, strained), (drive, sense) = patches, inverses
-        A[r:b, b:], B[r:b] = (forces @ (drive @ each) for each in (reference.A[r:b, b:], reference.B[r:b]))
-        A[b:, r:b], C[:, r:b] = (each @ sense @ charges for each in (reference.A[b:, r:b], reference.C[:, r:b]))
-        shapes = run_up.shapes(at)
-        strain[:, :r], tip[:, :r] = strained @ inverse.T, blade.full.tip @ shapes @ inverse.T
-        loads[r:b] = shapes.T @ blade.full.line_load
-    A[:b, :b] = 0.0
-    A[:r, r:b] = root.T
-    A[r:b, :r], A[r:b, r:b] = -run_up.restoring(at) @ inverse.T, -run_up.rate_matrix(at)
-    return replace(
-        reference,
-        A=sealed(A),
-        B=sealed(B),
-        C=sealed(C),
-        disturbance_input=sealed(loads),
-        tip_displacement=sealed(tip),
-        strain=sealed(strain),
+def plant_at(blade: Blade, run_up: RunUp, time: float, root: Array) -> Plant:
+    """The plant at one time in energy coordinates [Uᵀη; η̇], U = ``root``; the electronics are those of any time."""
+    at, full, none = np.asarray(time), blade.full, np.zeros_like(root)
+    inverse: Array = np.linalg.inv(root).astype(np.float64)
+    shapes, patches = run_up.shapes(at), run_up.patches(at)
+    forces, charges, strained = (
+        (shapes.T @ full.forces, full.charges @ shapes, full.strain @ shapes) if patches is None else patches
     )
+    moves = {
+        "A": np.block([[none, root.T], [-run_up.restoring(at) @ inverse.T, -run_up.rate_matrix(at)]]),
+        "B": acting_on_velocities(forces),
+        "disturbance_input": acting_on_velocities(shapes.T @ blade.all_loads),
+        "tip_displacement": _on_displacements(full.tip @ shapes, inverse),
+        "strain": _on_displacements(strained, inverse),
+    }
+    readings = run_up.readings(at)
+    if readings is None:
+        shows, through = {"C": on_velocities(charges)}, None
+    else:
+        shows, through = _shown(blade, (readings[0] @ inverse.T, *readings[1:]), moves)
+    plant = replace(blade.bare_truth, **{name: sealed(part) for name, part in (moves | shows).items()})  # type: ignore[arg-type]
+    return blade.behind_electronics(plant, through)
+
+
+def _on_displacements(rows: Array, inverse: Array) -> Array:
+    return np.asarray(np.hstack([rows @ inverse.T, np.zeros_like(rows)]))
+
+
+def _shown(blade: Blade, readings: tuple[Array, Array, Array], moves: dict[str, Array]) -> tuple[dict[str, Array], Array]:
+    """C and D of sensors that are listed, and F (p, k), what they show of loads at once."""
+    (displaced, rate, acceleration), rows = readings, blade.sensor_rows
+    assert rows is not None
+    accelerated = on_velocities(acceleration)
+    static = static_feedthrough(rows, blade.true_modal, blade.full.forces)
+    shows = {"C": outputs(displaced, rate, accelerated, moves["A"]), "D": accelerated @ moves["B"] + static}
+    return shows, accelerated @ moves["disturbance_input"] + blade.with_base(rows)
 
 
 def _changes(before: Array, after: Array, states: int) -> Array:
