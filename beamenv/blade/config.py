@@ -26,6 +26,7 @@ from beamenv.configuration import (
     checked,
     configuration,
 )
+from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
@@ -115,9 +116,9 @@ class BeamConfig:
     """Trial functions of each field along the span; None: 16, or 10 in the thesis' model."""
     section: Annotated[AnySection | None, Variant("shape", SHAPES)] = None
     """A section of any shape, in a file a table with a ``shape`` and its fields; None: the box of width, depth and thickness."""
-    twist_table: Annotated[Steps | None, TABLE] = None
+    twist_table: Annotated[Steps | None, TABLE, InsteadOf("pretwist_deg", 0.0)] = None
     """Pretwist along the span in place of ``pretwist_deg``: pairs of the share of the span, from 0 to 1, and degrees."""
-    chord_table: Annotated[Steps | None, TABLE] = None
+    chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
 
     @property

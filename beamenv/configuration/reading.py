@@ -13,6 +13,7 @@ from pydantic_core import ArgsKwargs, SchemaValidator, ValidationError
 from typing_extensions import dataclass_transform
 
 from beamenv.configuration.composite import Items, Variant, Variants
+from beamenv.configuration.instead import settled
 from beamenv.configuration.kinds import Choice, Kind, Table
 from beamenv.configuration.sentence import Refused, an, sentence, unknown_field
 
@@ -35,7 +36,7 @@ def configuration(path: str, slots: bool = True, eq: bool = True) -> Callable[[t
 
         @functools.wraps(given)
         def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807 - it becomes the constructor
-            _construct(self, args, kwargs, path)
+            _construct(self, args, settled(made, kwargs, path, usual=True), path)
 
         __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined] # a nested table needs no constructor of its own
         made.__init__ = __init__
@@ -67,7 +68,7 @@ def read(base: T, given: Any, path: str | None = None) -> T:
     if not isinstance(given, Mapping):
         raise Refused(path, given, f"a table of fields or {an(cls.__name__)}")
     values = {each.name: getattr(base, each.name) for each in fields(cls)}
-    for name, value in given.items():
+    for name, value in settled(cls, given, path).items():
         if name not in values:
             raise unknown_field(path, name, list(values))
         values[name] = _read_field(cls, name, values[name], value, f"{path}.{name}")

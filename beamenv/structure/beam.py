@@ -11,6 +11,7 @@ from pydantic import InstanceOf
 
 from beamenv.configuration import Count, Flag, Number, Positive, Refused, checked, configuration
 from beamenv.configuration.arrays import real_numbers
+from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
@@ -75,9 +76,9 @@ class RotatingBeam:
     """Angle of the root section's chord from the plane of rotation."""
     taper: Positive = 1.0
     """Root chord over tip chord, and root depth over tip depth (Eq. 2.39)."""
-    twist_table: Annotated[Steps | None, TABLE] = None
+    twist_table: Annotated[Steps | None, TABLE, InsteadOf("pretwist_deg", 0.0)] = None
     """Pretwist along the span in place of an even one: pairs of the share of the span, from 0 to 1, and degrees."""
-    chord_table: Annotated[Steps | None, TABLE] = None
+    chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of an even taper: pairs of the share of the span and the size over that of the root."""
     model: Annotated[str, MODEL] = "blade"
     """"blade": as it is; "thesis": as the thesis computes it."""
@@ -97,6 +98,7 @@ class RotatingBeam:
         check_table("beam.twist_table", self.twist_table)
         check_table("beam.chord_table", self.chord_table, least=0.0)
         self.section.check_thickness(self.narrowest, "section.thickness")
+        self.section.check_corners(self.narrowest, "section.")
         checked_flow(self.model, self.shear_flow)
         if self.model == "thesis":
             self.section.check_one_cell()

@@ -281,6 +281,26 @@ REFUSED = {
         {"shape": "airfoil", "chord": 0.3, "thickness": 0.001, "profile": "Clark Y"},
         r"profile is 'Clark Y'.*NACA and four",
     ),
+    "coordinates in percent": (
+        {"shape": "airfoil", "chord": 0.3, "thickness": 0.001, "coordinates": [[100, 0.1], [50, 6], [0, 0], [50, -6], [100, -0.1]]},
+        r"coordinates\[0\] is \[100\.0, 0\.1\], but must be a point over the chord, .* percentages",
+    ),
+    "coordinates in metres": (
+        {"shape": "airfoil", "chord": 0.3, "thickness": 0.001, "coordinates": [[0.3, 0.01], [0.1, 0.02], [0, 0], [0.1, -0.02]] * 2},
+        r"coordinates is .*, but must be points over the chord, .* not in metres: the last lie at x = 0\.3",
+    ),
+    "webs of one name": (
+        {**BOX, "webs": [{"position": 0.3}, {"position": 0.6}]},
+        r"section\.webs\[1\]\.name is 'web', but must be another name than those of the other walls: right, top, left, bottom, web",
+    ),
+    "walls that meet like a needle": (
+        {"shape": "walls", "thickness": 0.002, "lines": {"a": [[0, 0], [0.2, 0], [0.1, 0.01]]}},
+        r"section\.lines is \[\[0\.0, 0\.0\], .*, 0\.01\]\], but must be points whose walls meet at 10° or more: .* 5\.71°",
+    ),
+    "a piece shorter than its corners": (
+        {"shape": "walls", "thickness": 0.002, "lines": {"a": [[0, 0], [0.2, 0], [0.2, 0.001], [0.4, 0.001]]}},
+        r"section\.thickness is 0\.002, but must be below 0\.001 m: piece 2 of wall 'a' is 0\.001 m long, beside a corner of 90°",
+    ),
     "a skin that fills its tail": (
         {"shape": "airfoil", "chord": 0.3, "thickness": 0.01},
         r"thickness is 0\.01, but must be below 0\.004",
@@ -349,3 +369,14 @@ def test_walls_that_close_a_cell_are_refused_for_a_polygon_has_them():
     around = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1], [0.0, 0.0]]
     with pytest.raises(ValueError, match="walls that close no cell: closed ones are a polygon"):
         WallsSection({"all": around}, 0.002)
+
+
+def test_half_a_needles_walls_take_what_their_mitre_says():
+    """A piece between a loose end and a corner of interior angle β has room up to h = 2 L tan(β/2), and the mesh says the same."""
+    length, angle = 0.02, np.radians(25.0)
+    end = [0.2 - length * np.cos(angle), length * np.sin(angle)]
+    limit = 2.0 * length * np.tan(0.5 * angle)
+    lines = {"a": [[0.0, 0.0], [0.2, 0.0], end]}
+    assert classical(WallsSection(lines, 0.999 * limit))[0, 0] > 0.0
+    with pytest.raises(ValueError, match=f"below {limit:.4g} m: piece 2"):
+        WallsSection(lines, 1.001 * limit)

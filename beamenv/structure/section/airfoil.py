@@ -22,6 +22,14 @@ PIECES = 30
 
 NACA = re.compile(r"(?:NACA[ -]?)?(\d{4})", re.IGNORECASE)
 
+BEYOND = 0.05
+"""Over the chord: how far a profile may reach ahead of its leading edge at 0, as cambered ones do, and behind its trailing edge."""
+
+LEAST_TAIL = 0.5
+"""Of the chord: where the tail closes the contour at the earliest."""
+
+OVER_CHORD = "with x from 0 at the leading edge to 1 at the trailing edge"
+
 THICKNESS = (0.2969, -0.1260, -0.3516, 0.2843, -0.1015)
 """Of √x, x, x², x³ and x⁴ in the half thickness over five times that of the profile (Abbott and von Doenhoff 1959, Eq. 6.2)."""
 
@@ -35,12 +43,14 @@ class AirfoilSection(ClosedSection):
     ``ValueError`` for another name, coordinates that do not go round so or cross themselves, and walls too thick.
     """
 
+    drawn_by = "coordinates"
+
     chord: Metres
     thickness: Metres
     profile: Annotated[str, Text()] = "NACA 0012"
     """Its name; of coordinates, any."""
     coordinates: Annotated[tuple[tuple[float, float], ...] | None, Points(least=5, most=MOST_CORNERS)] = None
-    trailing_edge: Annotated[float, Number(ge=0.5, le=1.0)] = 0.96
+    trailing_edge: Annotated[float, Number(ge=LEAST_TAIL, le=1.0)] = 0.96
     """Of the chord: where the tail closes the contour. Nearer to a sharp trailing edge the walls would fill it."""
     webs: Annotated[tuple[Web, ...], Items(Web)] = ()
     thicknesses: Thicknesses = ()
@@ -52,11 +62,22 @@ class AirfoilSection(ClosedSection):
             raise Refused("profile", self.profile, "NACA and four digits, say 'NACA 0012', or have coordinates")
         if self.coordinates is None and self._digits[2] == 0.0:
             raise Refused("profile", self.profile, "one of some thickness, its last two digits")
+        self._check_shares()
         sides = self._sides()
         if min(map(len, sides)) < 3 or meets_itself(np.concatenate([sides[0], sides[1][1:]])):
             allowed = "points from the trailing edge over the top to the leading edge and back below, that meet nowhere"
             raise Refused("coordinates", self.coordinates, allowed)
         self.check_walls()
+
+    def _check_shares(self) -> None:
+        """``ValueError`` for coordinates that are not over the chord: in percent, say, or in metres."""
+        for k, (x, y) in enumerate(self.coordinates or ()):
+            if not (-BEYOND <= x <= 1.0 + BEYOND and -1.0 <= y <= 1.0):
+                raise Refused(f"coordinates[{k}]", [x, y], f"a point over the chord, {OVER_CHORD}: divide percentages by 100")
+        farthest = max((x for x, _ in self.coordinates or ()), default=1.0)
+        if farthest < LEAST_TAIL:
+            allowed = f"points over the chord, {OVER_CHORD}, and not in metres: the last lie at x = {farthest:g}"
+            raise Refused("coordinates", self.coordinates, allowed)
 
     @property
     def vertices(self) -> Array:

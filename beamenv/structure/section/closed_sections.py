@@ -41,17 +41,18 @@ class ClosedSection(Section):
         return web_chains(self.webs, contour, self.own_thicknesses, self.thickness)
 
     def check_walls(self) -> None:
-        """``ValueError`` for webs that do not fit, or named as a wall is, thicknesses of walls that are none, and thick walls."""
+        """``ValueError`` for webs that do not fit, or named as another wall is, thicknesses of walls that are none, thick walls."""
+        taken = dict.fromkeys(self.walls)
         for k, web in enumerate(self.webs):
-            if web.name in self.walls:
-                raise Refused(
-                    f"webs[{k}].name", web.name, f"another name than those of the walls: {', '.join(dict.fromkeys(self.walls))}"
-                )
+            if web.name in taken:
+                raise Refused(f"webs[{k}].name", web.name, f"another name than those of the other walls: {', '.join(taken)}")
+            taken[web.name] = None
         names = self.wall_names
         for wall, _ in self.thicknesses:
             if wall not in names:
                 raise Refused("thicknesses", wall, f"for walls of the section: {', '.join(names)}")
         self.check_thickness()
+        self.check_corners()
 
 
 @configuration("section")
@@ -133,6 +134,8 @@ class PolygonSection(ClosedSection):
     Raises ``ValueError`` for fewer than three corners, two that coincide, a clockwise order, a mid-line that crosses or touches
     itself, a number of wall names other than that of the edges, or a wall too thick.
     """
+
+    drawn_by = "corners"
 
     corners: Annotated[tuple[tuple[float, float], ...], Points(least=3, most=MOST_CORNERS, unit="m")]
     edge_walls: Annotated[tuple[str, ...], Texts()]

@@ -277,7 +277,12 @@ def _grown(length: Array, intrusion: Array, thickness: float, wall: str) -> Arra
     """How far (S, 2), m, the corners at both ends of a piece disturb it; ``ValueError`` where they leave no wall between them."""
     free = length - intrusion.sum(axis=1)
     if np.any(free <= 0.0):
-        raise Refused("thickness", thickness, f"small enough that the corners leave some of the {wall} wall between them")
+        shortest = int((intrusion.sum(axis=1) / length).argmax())
+        most, left = (
+            thickness * length[shortest] / intrusion[shortest].sum(),
+            f"a piece of the {wall} wall, {length[shortest]:.4g} m",
+        )
+        raise Refused("section.thickness", thickness, f"below {most:.4g} m, that the corners at its ends leave some of {left} long")
     return np.minimum(np.maximum(CORNER_ELEMENT * thickness, 2.0 * intrusion), intrusion + 0.4 * free[:, None])
 
 

@@ -33,11 +33,12 @@ class OpenSection(Section):
         return dict(self.thicknesses)
 
     def check_walls(self) -> None:
-        """``ValueError`` for thicknesses of walls that are none."""
+        """``ValueError`` for thicknesses of walls that are none, and for corners that leave no room."""
         names = self.wall_names
         for wall, _ in self.thicknesses:
             if wall not in names:
                 raise Refused("thicknesses", wall, f"for walls of the section: {', '.join(names)}")
+        self.check_corners()
 
 
 @configuration("section")
@@ -189,6 +190,8 @@ class WallsSection(OpenSection):
 
     Raises ``ValueError`` for walls that cross, or that touch no other.
     """
+
+    drawn_by = "lines"
 
     lines: Annotated[tuple[tuple[str, tuple[tuple[float, float], ...]], ...], Lines()]
     thickness: Metres

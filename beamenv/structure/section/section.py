@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from beamenv.configuration import Choice, Instance, Number, Refused, Text, checked
 from beamenv.structure.model import checked_flow
 from beamenv.structure.scale import in_scale
+from beamenv.structure.section.corners import check_corners
 from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.section.solid_sections import SolidSections
@@ -35,6 +36,8 @@ class Section(ABC):
     """m, of walls that have none of their own."""
     closed = True
     """Whether the first chain closes."""
+    drawn_by: ClassVar[str] = "width"
+    """The field that says where corners are."""
 
     @property
     def own_thicknesses(self) -> dict[str, float]:
@@ -115,6 +118,10 @@ class Section(ABC):
         if not thickest < limit:
             where = "" if scale == 1.0 else " at its narrow end"
             raise Refused(name, thickest, f"below {limit:.6g} m{where}, where walls meet")
+
+    def check_corners(self, scale: float = 1.0, path: str = "") -> None:
+        """``ValueError`` for corners too sharp, or that leave nothing of a piece in a section of ``scale`` times the size."""
+        check_corners(self.chains, self.drawn_by, scale, path)
 
     def wall_width(self, wall: str) -> float:
         """Length (m) along the contour of a wall; ``ValueError`` unless it is in one part."""
