@@ -5,7 +5,7 @@ from __future__ import annotations
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.patches import PatchLayout
 from beamenv.patches.group import PatchGroup
-from beamenv.patches.material import PatchMaterial
+from beamenv.patches.material import CERAMIC_STRENGTH, PatchMaterial
 from beamenv.sensors.kinds import Displacement
 from beamenv.structure import Lamina
 from beamenv.structure.section.airfoil import AirfoilSection
@@ -41,6 +41,7 @@ _WAFER = PatchMaterial(
     d12=-179e-12,
     thickness=0.25e-3,
     electrode_spacing=0.25e-3,
+    failure_strain=CERAMIC_STRENGTH * 16.4e-12,
 )
 
 

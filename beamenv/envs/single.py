@@ -163,10 +163,10 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
 
     ## Episode End
 
-    1. Termination: the blade fails, that is its spanwise strain exceeds 0.45 %, what an MFC is rated for, or its state is no
-       longer finite. The default scenario stays tens of times below. Which strain, says `blade={"strain_limit": ...}`: that of
-       `"vibration"` alone, or the `"total"`, with that of steady rotation, as on the preset `sound-blade`. A blade that steady
-       rotation alone would fail, at any speed that the scenario takes it to, is refused.
+    1. Termination: the blade fails, that is its spanwise strain exceeds what its patches bear, 0.45 % of MFC and less of ceramics,
+       or its state is no longer finite. The default scenario stays tens of times below. Which strain, says
+       `blade={"strain_limit": ...}`: that of `"vibration"` alone, or the `"total"`, with that of steady rotation, as on the preset
+       `sound-blade`. A blade that steady rotation alone would fail, at any speed that the scenario takes it to, is refused.
     2. Truncation: `duration` is over.
 
     ## Arguments

@@ -12,7 +12,7 @@ from beamenv.configuration import Choice, Flag, Number, Patches, Refused, checke
 from beamenv.configuration.composite import Items
 from beamenv.configuration.kinds import JsonSchema
 from beamenv.patches.group import PatchGroup, Positions
-from beamenv.patches.material import PATCH_MATERIALS, PatchMaterial
+from beamenv.patches.material import MFC_STRAIN, PATCH_MATERIALS, PatchMaterial
 from beamenv.structure.walls.inlay import Inlay
 
 Side = Literal["actuators", "sensors"]
@@ -153,6 +153,11 @@ class PatchLayout:
         """The patches as foreign material in the walls or on them, those that are passive."""
         groups = [(side, group) for side in SIDES for group in self.groups(side) if group.passive]
         return tuple(inlay for side, group in groups for inlay in group.inlays(side, beam_length))
+
+    @property
+    def failure_strain(self) -> float:
+        """At which the first of its sheets breaks: the least of their limits, whether or not they are passive."""
+        return min((group.patch.failure_strain for side in SIDES for group in self.groups(side)), default=MFC_STRAIN)
 
     def channels(self, side: Side) -> int:
         """How many voltages or currents one side has."""

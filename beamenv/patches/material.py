@@ -16,6 +16,13 @@ from beamenv.structure.walls.materials import Lamina, strain_rotation
 
 Array = NDArray[np.float64]
 
+MFC_STRAIN = 0.0045
+"""The greatest tensile strain an MFC is rated for (4500 ppm, Smart Material's data sheet); the laminate beneath breaks later."""
+
+CERAMIC_STRENGTH = 140.4e6
+"""N/m²: at which bare sheets of PZT-5A break in three-point bending (Anton, Erturk and Inman, Bending Strength of Piezoelectric
+Ceramics and Single Crystals for Multifunctional Load-Bearing Applications, IEEE Trans. UFFC 59, 2012)."""
+
 FIBRE_ANGLE_DEG = 90.0
 """Fibres run along the span. The thesis prints θp = 0, which would leave −1.1 C/m² along the span and is not meant."""
 
@@ -33,6 +40,8 @@ class PatchMaterial:
     """m."""
     electrode_spacing: Annotated[float, Number(gt=0.0, unit="m")]
     """m: between the fingers of an MFC's electrodes, the thickness of a PZT sheet."""
+    failure_strain: Annotated[float, Number(gt=0.0, le=1.0, unit="m/m")] = MFC_STRAIN
+    """At which it breaks, m/m; an MFC's unless said otherwise. The least of a blade's sheets ends its episodes."""
 
     def piezoelectric_stress(self) -> Array:
         """E = d Q (2,): stress along and across the axis 1 per field under plane stress, C/m²."""
@@ -85,6 +94,7 @@ MFC = PatchMaterial(
     d12=-210e-12,
     thickness=0.3e-3,
     electrode_spacing=0.5e-3,
+    failure_strain=MFC_STRAIN,
 )
 """M-8557-P1 (thesis Table 5.1; density from the data sheet, the thesis prints the part number)."""
 
@@ -94,8 +104,10 @@ PZT = PatchMaterial(
     d12=-140e-12,
     thickness=0.3e-3,
     electrode_spacing=0.3e-3,
+    failure_strain=CERAMIC_STRENGTH / 124e9,
 )
-"""Monolithic sheet poled through its thickness: d31 in both directions (thesis Table 5.1)."""
+"""Monolithic sheet poled through its thickness: d31 in both directions (thesis Table 5.1). It breaks at 0.113 %, the strength of
+PZT-5A by its own modulus, which is twice that of PZT-5A."""
 
 PIC255 = PatchMaterial(
     lamina=Lamina.isotropic(E=1.0 / 16.1e-12, nu=0.34, density=7800.0),
@@ -103,8 +115,9 @@ PIC255 = PatchMaterial(
     d12=-180e-12,
     thickness=0.5e-3,
     electrode_spacing=0.5e-3,
+    failure_strain=CERAMIC_STRENGTH * 16.1e-12,
 )
 """A soft piezoceramic, poled through a thickness of 0.5 mm: s11 = 16.1·10⁻¹² m²/N, d31 = −180 pm/V and density of PI Ceramic's
-data; Poisson's ratio is that of soft PZT."""
+data; Poisson's ratio is that of soft PZT. It breaks at 0.226 %, by the strength of PZT-5A, another soft one."""
 
 PATCH_MATERIALS: Mapping[str, PatchMaterial] = MappingProxyType({"MFC": MFC, "PZT": PZT, "PIC255": PIC255})

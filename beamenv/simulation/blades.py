@@ -22,7 +22,6 @@ from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDi
 from beamenv.simulation.signals.electronics import Electronics
 from beamenv.simulation.signals.faults import fault_draws
 from beamenv.simulation.signals.own_loads import OwnLoads
-from beamenv.simulation.strain_limit import FAILURE_STRAIN as FAILURE_STRAIN
 from beamenv.simulation.strain_limit import safe_energy, strained_too_much
 
 Array = NDArray[np.float64]
@@ -60,7 +59,7 @@ class Blades:
         self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
         self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
         self._strained = self.bank.strain.shape[-2] > 0
-        self._safe_energy = safe_energy(self.bank.strain, self.bank.standing)
+        self._safe_energy = safe_energy(self.bank.strain, self.bank.standing, self.bank.failure_strain)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
         self.own_loads = (
@@ -359,5 +358,7 @@ class Blades:
         if not most <= self._safe_energy:  # a NaN is not safe either
             rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
             state, index = np.atleast_2d(self.moving)[rows], self.plants.index[rows]
-            np.atleast_1d(failed)[rows] = strained_too_much(self.bank.strain[index], self.bank.standing[index], state)
+            np.atleast_1d(failed)[rows] = strained_too_much(
+                self.bank.strain[index], self.bank.standing[index], self.bank.failure_strain[index], state
+            )
         return failed

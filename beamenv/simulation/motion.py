@@ -18,7 +18,7 @@ class Motion(NamedTuple):
     reward: Array
     """(…,)"""
     failed: NDArray[np.bool_]
-    """(…,) strained beyond ``strain_limit.FAILURE_STRAIN``, or no longer finite."""
+    """(…,) strained beyond what the blade bears (``strain_limit``), or no longer finite."""
     volts: Array
     """(…, m), V, asked for, after saturation: what the patches get unless delay, hysteresis or failure are between."""
     tip_displacement: Array

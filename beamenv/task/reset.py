@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from beamenv.configuration import checked_table
 from beamenv.configuration.arrays import real_numbers
 from beamenv.scenarios.scenario import Scenario, with_load
-from beamenv.simulation.strain_limit import FAILURE_STRAIN
 from beamenv.task.scenario_checks import check_loads
 from beamenv.task.task import Task
 
@@ -37,8 +36,7 @@ def _initial_state(task: Task, value: Any, rows: int) -> Array:
     if state.shape[-1] < n:
         state = np.concatenate([state, np.zeros((*state.shape[:-1], n - b))], axis=-1)
     strain = np.abs(task.blade.standing_strain + state @ plant.strain.T).max(initial=0.0)
-    if not (np.isfinite(state).all() and strain <= FAILURE_STRAIN):
-        raise ValueError(
-            f"options.initial_state strains the blade by {strain:.3g}, but must be finite and stay below {FAILURE_STRAIN:g}."
-        )
+    limit = task.config.patches.failure_strain
+    if not (np.isfinite(state).all() and strain <= limit):
+        raise ValueError(f"options.initial_state strains the blade by {strain:.3g}, but must be finite and stay below {limit:.3g}.")
     return state

@@ -7,8 +7,9 @@ from scipy.linalg import expm
 
 import beamenv
 from beamenv import RotatingBeamEnv
+from beamenv.patches.material import MFC_STRAIN
 from beamenv.scenarios.load_cases import static_deflection
-from beamenv.simulation.blades import FAILURE_STRAIN, reward_scale
+from beamenv.simulation.blades import reward_scale
 
 
 def quiet(**arguments):
@@ -189,7 +190,7 @@ def test_the_episode_terminates_when_the_blade_is_strained_beyond_failure():
     for _ in range(1000):
         observation, _, terminated, truncated, _ = env.step(np.zeros(4))
         strain = np.abs(env.plant.strain @ env.state).max()
-        assert terminated == (strain > FAILURE_STRAIN)
+        assert terminated == (strain > MFC_STRAIN)
         assert observation in env.observation_space
         if terminated:
             break
@@ -204,7 +205,7 @@ def test_default_episodes_stay_far_from_failure():
     for _ in range(300):
         envs.step(np.zeros((1000, 4)))
         strains.append(np.abs(envs.unwrapped.state @ envs.unwrapped.plant.strain.T).max())
-    assert 10.0 * max(strains) < FAILURE_STRAIN
+    assert 10.0 * max(strains) < MFC_STRAIN
 
 
 def rollout(env, seed, steps=80):

@@ -89,7 +89,7 @@ def frequencies(
     print_table(table)
     for each, state in zip(speeds, steady, strict=True):
         if each > 0.0 and config.model != "thesis":
-            Console().print(_turning(each, state), soft_wrap=True)
+            Console().print(_turning(each, state, config.patches.failure_strain), soft_wrap=True)
     if note:
         Console().print(note, soft_wrap=True)
 
@@ -104,12 +104,10 @@ def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
     }
 
 
-def _turning(speed: float, state: Any) -> str:
+def _turning(speed: float, state: Any, limit: float) -> str:
     """What steady rotation does to the blade, in one sentence."""
-    from beamenv.simulation.strain_limit import FAILURE_STRAIN
-
-    strain, rated = 100.0 * state.strain, 100.0 * FAILURE_STRAIN
-    beyond = f", beyond the {rated:g} % that patches are rated for" if abs(strain) > rated else ""
+    strain, rated = 100.0 * state.strain, 100.0 * limit
+    beyond = f", beyond the {rated:.3g} % that patches are rated for" if abs(strain) > rated else ""
     return (
         f"turning steadily at {speed:g} rad/s: tip {1e3 * state.stretch:.3g} mm further out, untwisted by {state.untwist:.3g}°; "
         f"spanwise strain up to {strain:.2g} %, at {state.strain_at:.3g} m{beyond}"

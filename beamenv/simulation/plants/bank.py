@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import ReadOnly, read_only, sealed
+from beamenv.patches.material import MFC_STRAIN
 from beamenv.plant.energy import energy_coordinates, in_energy_coordinates
 from beamenv.plant.plant import Plant, normalised
 from beamenv.scenarios.load_cases import static_deflection
@@ -53,6 +54,8 @@ class Bank(ReadOnly):
     """(K, n, d): state to the design plant's coordinates; None where the two blades' displacements cannot be compared."""
     standing: Array
     """(K, k): strains without vibration that count towards failure."""
+    failure_strain: Array
+    """(K,): at which each plant's blade fails."""
     steady: Array
     """(K, 4): stretch, untwist, largest strain and its place, as ``SteadyDeformation`` has them; of plants that follow one another
     those of the first."""
@@ -126,6 +129,7 @@ class Bank(ReadOnly):
             effort_weight=sealed(np.stack([unit.input_weight * unit.control_interval for unit in units])),
             to_design=to_design,
             standing=sealed(np.zeros((len(plants), len(plant.strain)))),
+            failure_strain=sealed(np.full(len(plants), MFC_STRAIN)),
             steady=sealed(np.zeros((len(plants), 4))),
             own=turned,
         )
@@ -186,6 +190,18 @@ def _one_after_the_other(parts: Sequence[Array | None]) -> Array | None:
     return np.concatenate(there) if len(there) == len(parts) else None
 
 
-BY_PLANT = ("axes", "readout", "feedthrough", "tip", "strain", "release", "speeds", "effort_weight", "standing", "steady")
+BY_PLANT = (
+    "axes",
+    "readout",
+    "feedthrough",
+    "tip",
+    "strain",
+    "release",
+    "speeds",
+    "effort_weight",
+    "standing",
+    "failure_strain",
+    "steady",
+)
 """Its arrays that have a row for each plant, the operators' aside."""
 _ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale", "reference_load")

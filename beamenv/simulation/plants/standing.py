@@ -13,7 +13,6 @@ from beamenv.blade.build import Blade
 from beamenv.plant.reduction import steady_and_strain
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.run_up import RunUp
-from beamenv.simulation.strain_limit import FAILURE_STRAIN
 from beamenv.structure.steady_deformation import steady_deformation
 
 Array = NDArray[np.float64]
@@ -29,9 +28,11 @@ def about_steady_states(bank: Bank, blades: Sequence[Blade]) -> Bank:
     """
     for blade in blades:
         if blade.config.strain_limit == "total":
-            check_strain(blade.full.steady.strain, blade.config.speed)
+            check_strain(blade.full.steady.strain, blade.config.speed, blade.config.patches.failure_strain)
     steady = np.array([astuple(blade.full.steady) for blade in blades])
-    return replace(bank, steady=steady, standing=np.stack([blade.standing_strain for blade in blades]))
+    standing = np.stack([blade.standing_strain for blade in blades])
+    limits = np.array([blade.config.patches.failure_strain for blade in blades])
+    return replace(bank, steady=steady, standing=standing, failure_strain=limits)
 
 
 def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
@@ -41,7 +42,8 @@ def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
     ``ValueError`` where one of these steady states alone is beyond the blade's strain limit.
     """
     first = steady_deformation(blade.beam, run_up.course.first)
-    bank = replace(bank, steady=np.tile(astuple(first), (len(bank), 1)))
+    limits = np.full(len(bank), blade.config.patches.failure_strain)
+    bank = replace(bank, steady=np.tile(astuple(first), (len(bank), 1)), failure_strain=limits)
     if blade.config.strain_limit == "vibration":
         return bank
     times = np.linspace(0.0, run_up.course.duration, len(bank), endpoint=False)
@@ -51,12 +53,12 @@ def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
     return replace(bank, standing=standing_strains(blade, run_up.course.speed(times)) + moving)
 
 
-def check_strain(strain: float, speed: float) -> None:
-    """``ValueError`` for a strain, of a steady state at a speed in rad/s, that fails the blade."""
-    if not abs(strain) <= FAILURE_STRAIN:
+def check_strain(strain: float, speed: float, limit: float) -> None:
+    """``ValueError`` for a strain, of a steady state at a speed in rad/s, that fails a blade which bears so much."""
+    if not abs(strain) <= limit:
         raise ValueError(
             f"blade.strain_limit is 'total', but the blade's steady state at {speed:.4g} rad/s alone strains it by "
-            f"{100.0 * abs(strain):.2g} %, beyond the {100.0 * FAILURE_STRAIN:g} % at which it fails."
+            f"{100.0 * abs(strain):.2g} %, beyond the {100.0 * limit:.3g} % at which it fails."
         )
 
 
@@ -70,7 +72,7 @@ def standing_strains(blade: Blade, speeds: Array) -> Array:
     nodes = np.sqrt(0.5 * (low + high) + 0.5 * (high - low) * places)
     states = [steady_and_strain(blade.beam, float(speed)) for speed in nodes]
     for speed, (state, _) in zip(nodes, states, strict=True):
-        check_strain(state.strain, speed)
+        check_strain(state.strain, speed, blade.config.patches.failure_strain)
     coefficients = chebyshev.chebfit(places, np.stack([strain for _, strain in states]), NODES - 1)
     reached = (2.0 * speeds**2 - low - high) / max(high - low, np.finfo(np.float64).tiny)
     return np.asarray(chebyshev.chebval(reached, coefficients).T)
