@@ -14,7 +14,7 @@ import numpy as np
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
-from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
+from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, clause, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.named import expanded
@@ -168,7 +168,7 @@ def environment_json(environment: Any) -> str:
     try:
         return json.dumps(given, sort_keys=True, default=_plain)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {error}.") from None
+        raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {clause(error)}.") from None
 
 
 def _plain(value: Any) -> Any:
