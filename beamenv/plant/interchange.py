@@ -13,7 +13,7 @@ import control
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Refused, clause
+from beamenv.configuration import Refused
 from beamenv.configuration.sentence import unknown_field
 from beamenv.plant.state_space import plant_of_arguments
 
@@ -44,8 +44,8 @@ def plant_of_system(system: control.StateSpace, about: dict[str, Any]) -> Any:
     if not isinstance(system, control.StateSpace):
         try:
             system = control.ss(system)
-        except Exception as error:  # noqa: BLE001 - python-control complains of what is no system in ways of its own
-            raise ValueError(f"system is no control.StateSpace, nor what control.ss makes one of: {clause(error)}.") from None
+        except Exception:  # noqa: BLE001 - python-control complains of what is no system in ways of its own
+            raise Refused("system", system, "a control.StateSpace, or what control.ss makes one of") from None
     if system.dt is True:
         raise ValueError("system has dt = True, but must say how long a sample is, in s, or be in continuous time.")
     for name in ("A", "B", "C", "D", "dt"):

@@ -213,7 +213,7 @@ REFUSED = {
     "the model has no field 'colour': its fields are A, B, C, D, dt, interval": lambda: Plant.from_state_space(A, B, C, colour=1),
     "the model has no field 'colour': its fields are A, B, C, D, dt, interval,": lambda: Plant.from_control(SYSTEM, colour=1),
     "dt is 0.1, but must be left out: system has its own": lambda: Plant.from_control(SYSTEM, dt=0.1),
-    "system is no control.StateSpace, nor what control.ss makes one of: ": lambda: Plant.from_control("tf"),
+    "system is 'tf', but must be a control.StateSpace, or what control.ss makes one of": lambda: Plant.from_control("tf"),
     "system is 'tf', but must be a control.StateSpace": lambda: Plant.from_control("tf", Plant.from_control(SYSTEM)),
     "like is 3, but must be a Plant": lambda: Plant.from_control(SYSTEM, 3),
     "Plant has no field 'colour': its fields are A, B, C, D, disturbance_input": lambda: Plant.from_control(
