@@ -125,6 +125,12 @@ class Truth:
         """The true plant, or the one that all drawn ones depart from."""
         return self.bank.plant
 
+    def check_state_told(self) -> None:
+        """``ValueError`` where the true state cannot be told to a law in the coordinates of its design."""
+        if self.bank.to_design is None:
+            why = "each of the plants has its own" if self.design.config is None else "their trial functions differ"
+            raise ValueError(f"the true blade's state cannot be told in the design's coordinates: {why}.")
+
     def __repr__(self) -> str:
         return f"Truth({self.steps} steps; {self.bank!r})"
 

@@ -10,7 +10,7 @@ from typing import Any, Literal, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import shown
+from beamenv.configuration import clause, shown
 
 Array = NDArray[np.float64]
 Observes = Literal["observation", "state", "observation and speed", "observation and truth"]
@@ -58,7 +58,7 @@ class FunctionController:
         try:
             action = np.asarray(given)
         except (TypeError, ValueError, RuntimeError) as error:  # torch raises the last of a tensor that wants a gradient
-            raise ValueError(f"controller = {self.name} gives what is no array: {error}") from None
+            raise ValueError(f"controller = {self.name} gives what is no array: {clause(error)}.") from None
         if np.shape(observation)[:-1] == (1,) and action.ndim == 1:  # of a blade alone, a row says enough
             action = action[None]
         if action.ndim != np.ndim(observation) or action.shape[:-1] != np.shape(observation)[:-1]:

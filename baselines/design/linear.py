@@ -13,7 +13,7 @@ from baselines.design.instruments import Instruments, checked_instruments
 from baselines.design.law import Law
 from baselines.design.matrix import keep_matrices, real_matrix, rows
 from baselines.design.verification import verified
-from beamenv.configuration import Refused
+from beamenv.configuration import Refused, clause
 from beamenv.plant.plant import Plant
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ def _matrices(system: Any, instruments: Instruments) -> tuple[Any, Any, Any, Any
         try:
             system = control.ss(system)
         except (TypeError, ValueError) as error:
-            raise ValueError(f"A is a system that control.ss does not convert: {error}") from None
+            raise ValueError(f"A is a system that control.ss does not convert: {clause(error)}.") from None
     if system.dt is not True and not (system.dt and np.isclose(system.dt, instruments.interval, rtol=1e-6)):
         raise ValueError(
             f"A is a system with dt = {system.dt!r}, but must be in discrete time and sampled as the plant is, "

@@ -14,7 +14,6 @@ from baselines.design.law import Law
 from baselines.evaluation.conditions import check_alike
 from baselines.evaluation.loop import Environment, attribute
 from baselines.evaluation.spaces import check_spaces
-from beamenv.blade.model_blade import ModelBlade
 from beamenv.configuration import Refused, shown
 from beamenv.task import Task
 
@@ -50,9 +49,8 @@ def check_fit(controller: Controller, env: Any) -> None:
 
 def check_state_told(controller: Controller, task: Task) -> None:
     """``ValueError`` for a law of the true state where plants move whose states are not in the design's coordinates."""
-    if getattr(controller, "observes", "observation") == "state" and task.bank.to_design is None:
-        why = "each of the plants has its own" if isinstance(task.blade, ModelBlade) else "their trial functions differ"
-        raise ValueError(f"the true blade's state cannot be told in the design's coordinates: {why}.")
+    if getattr(controller, "observes", "observation") == "state":
+        task.truth.check_state_told()
 
 
 def _reads_the_sensors(controller: Controller) -> bool:

@@ -29,6 +29,9 @@ MOST_STATES = 60
 SHARE = 0.25
 """Of the rows, held back."""
 
+EXPLAINED = 0.05
+"""Of the variance of a reading on the rows held back: below it its voltages might as well be those of another measurement."""
+
 Progress = Callable[[str, float], None]
 """Is told what is being done and which share of the whole is done."""
 
@@ -46,7 +49,8 @@ def identify(
     ``order`` is its number of states; "auto" takes as many as rows held back, the last share ``held_back`` of them, need to be
     predicted by. ``collocated`` is for piezoelectric sensors, of current in A, that lie where the actuators do, one each: the ratio
     of what they are per strain and per volt, 1 where both are the same patch; modes then have their energy in joules. ``progress``
-    is told what is done. Raises ``ValueError`` for another order or share, for a measurement too short, and as ``Measurement`` and
+    is told what is done. Raises ``ValueError`` for another order or share, for a measurement too short, for one whose
+    voltages have nothing to do with its readings, and as ``Measurement`` and
     ``read_measurement`` do.
     """
     measurement = data if isinstance(data, Measurement) else read_measurement(data)
@@ -80,8 +84,19 @@ def identify(
         fit=fit_of(model, scaled, learned),
         collocated=collocated,
     )
+    _check_explained(whole)
     told("done", 1.0)
     return whole
+
+
+def _check_explained(found: Identified) -> None:
+    """``ValueError`` where a free run of the model tells next to nothing of the rows held back."""
+    explained = float((1.0 - (1.0 - found.fit.free_run.clip(0.0)) ** 2).max())
+    if explained < EXPLAINED:
+        raise ValueError(
+            f"nothing could be identified: voltages explain {100.0 * explained:.2g} % of the variance of any reading on the rows "
+            f"held back, but must explain {100.0 * EXPLAINED:g} %; are these the columns, and were the voltages large enough?"
+        )
 
 
 def _checked_order(order: object) -> int:

@@ -19,7 +19,7 @@ from beamenv.configuration.heeded import check_heeded
 from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
-from beamenv.configuration.sentence import Refused, shown
+from beamenv.configuration.sentence import Refused, clause, shown
 
 __all__ = [
     "Choice",
@@ -48,6 +48,7 @@ __all__ = [
     "check_heeded",
     "checked",
     "checked_table",
+    "clause",
     "configuration",
     "read",
     "shown",

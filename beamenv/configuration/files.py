@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from beamenv.configuration.sentence import Refused, cut, shown
+from beamenv.configuration.sentence import Refused, clause, shown
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -77,8 +77,7 @@ def parsed_table(text: str, source: str) -> dict[str, Any]:
     try:
         content = _json(text) if source.lower().endswith(".json") else _toml(text)
     except (ValueError, RecursionError) as error:  # of syntax, and of integers of too many digits
-        why = cut(" ".join(str(error).split()).rstrip("."))
-        raise ValueError(f"file {shown(source)} cannot be read: {why}.") from None
+        raise ValueError(f"file {shown(source)} cannot be read: {clause(error)}.") from None
     if not isinstance(content, dict):
         raise Refused(f"file {shown(source)}", content, "a table of fields")
     return {name: value for name, value in content.items() if name != SCHEMA}

@@ -36,6 +36,11 @@ def cut(text: str) -> str:
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
 
 
+def clause(error: object) -> str:
+    """What an error says as a part of a sentence: on one line, without a full stop at its end."""
+    return cut(" ".join(str(error).split()).rstrip("."))
+
+
 def unknown_field(path: str, name: Any, known: Sequence[str]) -> ValueError:
     """What is said of a key that a table does not have."""
     return ValueError(f"{path} has no field {shown(name)}: its fields are {', '.join(known)}.")
@@ -53,9 +58,16 @@ def sentence(error: ValidationError, path: str, known: Sequence[str]) -> ValueEr
     if first["type"] == "value_error":
         cause = first["ctx"]["error"]
         if isinstance(cause, Refused):
-            return Refused(f"{where}.{cause.name}" if where else cause.name, cause.value, cause.allowed)
+            return Refused(joined(where, cause.name), cause.value, cause.allowed)
         return ValueError(str(cause))
     return Refused(where, first["input"], _allowed(first))
+
+
+def joined(path: str, name: str) -> str:
+    """A field's path from that of its table; what both have in common, the path's end and the name's beginning, is said once."""
+    parts, own = path.split("."), name.split(".")
+    common = next((k for k in range(min(len(parts), len(own)), 0, -1) if parts[-k:] == own[:k]), 0)
+    return ".".join([*parts, *own[common:]]) if path else name
 
 
 def _named(location: tuple[int | str, ...], known: Sequence[str]) -> tuple[int | str, ...]:

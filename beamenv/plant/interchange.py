@@ -12,6 +12,7 @@ import control
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.configuration import clause
 from beamenv.plant.state_space import plant_of_model
 
 Array = NDArray[np.float64]
@@ -42,7 +43,7 @@ def plant_of_system(system: control.StateSpace, about: dict[str, Any]) -> Any:
         try:
             system = control.ss(system)
         except (TypeError, ValueError) as error:
-            raise ValueError(f"system is no control.StateSpace, nor what control.ss makes one of: {error}") from None
+            raise ValueError(f"system is no control.StateSpace, nor what control.ss makes one of: {clause(error)}.") from None
     if system.dt is True:
         raise ValueError("system has dt = True, but must say how long a sample is, in s, or be in continuous time.")
     clock = None if system.dt in (None, 0) else float(system.dt)

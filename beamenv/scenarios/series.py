@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.configuration import Number, Numbers, Refused
+from beamenv.configuration import Number, Numbers, Refused, clause
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.sensors.kinds import LARGEST
 
@@ -70,7 +70,7 @@ def read_series(path: str, name: str) -> tuple[float, ...]:
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:
-        raise ValueError(f"{name} is {path!r}, a file that cannot be read: {error}.") from None
+        raise ValueError(f"{name} is {path!r}, a file that cannot be read: {clause(error)}.") from None
     while lines and not lines[-1].strip():
         lines.pop()
     first = 1 if lines and _number(lines[0]) is None and any(mark.isalpha() for mark in lines[0]) else 0

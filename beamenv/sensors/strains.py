@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Refused
+from beamenv.configuration import Refused, clause
 from beamenv.patches import PatchLayout
 from beamenv.patches.operators import CLASSICAL, LOCAL_STATIONS, stations_under, work_on_section
 from beamenv.sensors.kinds import StrainGauge
@@ -32,7 +32,7 @@ def footprint(beam: RotatingBeam, gauge: StrainGauge, name: str) -> Inlay:
         inlay = Inlay(gauge.wall, start, gauge.length, gauge.width, Ply(_FOIL, 0.0), thickness, gauge.offset, gauge.face)
         beam.room.check_fit(inlay)
     except ValueError as error:
-        raise Refused(name, f"at {gauge.position:g} m on {gauge.wall}", f"on the blade and its walls: {error}") from None
+        raise Refused(name, f"at {gauge.position:g} m on {gauge.wall}", f"on the blade and its walls: {clause(error)}") from None
     return inlay
 
 

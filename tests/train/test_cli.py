@@ -145,7 +145,7 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("evaluate", "lqg", "--scenario", "storm"), "storm"),
         (("evaluate", "none", "--seeds", "2", "--scenario", "quiet"), "moves nothing"),
         (("train", "dreamer"), "dreamer"),
-        (("train", "ppo", "--minutes", "0"), "seconds"),
+        (("train", "ppo", "--minutes", "0"), "minutes"),
         (("train", "ppo", "--updates", "0"), "updates"),
         (("train", "ppo", "--updates", "1", "--minutes", "1"), "minutes and updates"),
         (("train", "ppo", "--scenario", "storm"), "storm"),
@@ -182,3 +182,28 @@ def test_an_interruption_gets_one_sentence_and_the_status_that_shells_know(inter
     monkeypatch.setattr("train.cli.speed.measured", interrupted)
     result = run("speed")
     assert (result.exit_code, result.stdout, result.stderr) == (status, "", "beamenv: interrupted.\n")
+
+
+def test_pictures_end_in_png_and_minutes_are_named(tmp_path):
+    for command in ("section", "place"):
+        refused = run(command, "--picture", str(tmp_path / "made" / "it.jpg"))
+        assert refused.exit_code == 2
+        assert refused.stderr.endswith("it.jpg', but must be a file that ends in .png.\n")
+    assert run("train", "ppo", "--minutes", "0").stderr == "beamenv: minutes is 0.0, but must be a positive number.\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_an_interrupted_training_says_the_whole_command_that_resumes_it(kept, tmp_path, monkeypatch):
+    def interrupted(job, folder, *rest):
+        if kept:
+            folder.mkdir()
+            (folder / "checkpoint.pt").touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("train.learning.job.run", interrupted)
+    monkeypatch.chdir(tmp_path)
+    told = run("train", "ppo", "--seed", "3", "--overwrite", "--folder", "my ppo", "--preset", "sound-blade").stderr
+    again = "with `beamenv train ppo --seed 3 --folder 'my ppo' --resume --preset sound-blade` it resumes"
+    early = "it was too early for a checkpoint, so nothing is kept"
+    assert told == f"beamenv: interrupted: {again if kept else early}.\n"

@@ -59,12 +59,21 @@ def test_other_formats_are_written(command, tmp_path, form):
     assert (tmp_path / f"lqg.{form}").stat().st_size > 1000
 
 
+def test_the_format_is_what_the_output_ends_in(command, tmp_path):
+    assert command("lqg", "--output", "law.mat").exit_code == 0
+    assert (tmp_path / "law.mat").read_bytes()[:6] == b"MATLAB"
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         (("lqr",), "LQR (true state) (LinearController) cannot be exported: it observes the blade's true state"),
         (("mpc",), "it solves a quadratic program at every instant"),
         (("lqg", "--format", "ada"), "format is 'ada', but must be one of c, onnx, mat."),
+        (
+            ("lqg", "--format", "c", "--output", "law.mat"),
+            "output is 'law.mat', but must be a file that ends in .c with the format 'c'.",
+        ),
         (("lqg", "--precision", "half"), "precision is 'half', but must be one of double, single."),
         (("lqg", "--name", "int"), "name is 'int', but must be a letter, then letters, digits and underscores"),
         (("lqg", "--name", "a-b"), "name is 'a-b', but must be a letter, then letters, digits and underscores"),

@@ -55,3 +55,16 @@ def test_bad_input_is_one_sentence_and_leaves_no_folder(tmp_path):
     assert result.stderr.count("\n") == 1
     assert "column 'y' is nan on line 3" in result.stderr
     assert not (tmp_path / "mine").exists()
+
+
+def test_voltages_of_another_measurement_identify_nothing_and_leave_no_folder(tmp_path):
+    """A structure that loads move, and voltages that it never saw."""
+    volts, readings = record(1, 8.0).volts, record(9, 8.0).readings
+    data = tmp_path / "data.csv"
+    table = np.column_stack([INTERVAL * np.arange(len(volts)), volts, readings])
+    np.savetxt(data, table, delimiter=",", header="time,u1,u2,y1,y2", comments="")
+    result = CliRunner().invoke(app, ["identify", str(data), "--folder", str(tmp_path / "mine")])
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1
+    assert "nothing could be identified: voltages explain" in result.stderr
+    assert not (tmp_path / "mine").exists()

@@ -35,6 +35,97 @@ def test_a_benchmark_of_a_model_holds_the_model_in_its_configuration(file, tmp_p
     np.testing.assert_array_equal(told["environment"]["plant"]["A"], [[0.0, 30.0], [-30.0, -0.6]])
 
 
+@pytest.fixture(name="uneven")
+def _uneven(tmp_path):
+    """Two voltages and three sensors that feel them, one of them with another unit."""
+    path = tmp_path / "uneven.npz"
+    A = [[0.0, 30.0, 0.0], [-30.0, -0.6, 0.0], [0.0, 0.0, -60.0]]
+    B = [[0.0, 0.0], [1.0, 0.3], [1.0, -0.9]]
+    C = [[0.0, 1.0, 0.2], [0.3, 0.0, -0.8], [0.1, 0.5, 0.3]]
+    np.savez(path, A=A, B=B, C=C, D=[[0.01, 0.0], [0.0, 0.01], [0.01, 0.01]], interval=0.02)
+    return path
+
+
+def test_a_benchmark_runs_what_can_be_had_of_a_model(uneven, tmp_path):
+    result = run("benchmark", "--plant", uneven, "--quick", "--seeds", 2, "--jobs", 1, "--folder", tmp_path / "quick")
+    assert result.exit_code == 0, result.output
+    told = json.loads((tmp_path / "quick" / "benchmark.json").read_text())
+    assert {row["controller"] for row in told["rows"]} >= {"none", "lqg", "lqg-load", "multiple-model", "clairvoyant"}
+    assert all(row["estimates"] for row in told["rows"])
+
+
+def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_reason(uneven, tmp_path):
+    chosen = ("--scenario", "open", "--controller", "lqg", "--seeds", 2, "--jobs", 1)
+    result = run("benchmark", "--plant", uneven, *chosen, "--folder", tmp_path / "open")
+    assert result.exit_code == 0, result.output
+    told = json.loads((tmp_path / "open" / "benchmark.json").read_text())
+    assert {row["scenario"] for row in told["rows"]} == {"mid-failure"}
+    (sentence,) = told["left_out"]
+    assert sentence.startswith("scenarios drift, gust-speed, unknown-everything left out: they are of the rotor, the plies,")
+    assert f"beamenv: {sentence}" in result.stderr.splitlines()
+    assert sentence in (tmp_path / "open" / "table.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("chosen", "words"),
+    [
+        (
+            ("--scenario", "nominal", "--scenario", "spin-up"),
+            "scenario 'spin-up' cannot be had of this plant: scenario.plants",
+        ),
+        (("--scenario", "rotor"), "scenario 'rotor' cannot be had of this plant: scenario.rotor.harmonics is"),
+        (("--scenario", "nominal", "--controller", "velocity"), "plant has 2 actuators and 3 sensors, which velocity feedback"),
+        (("--scenario", "nominal", "--controller", "scheduled-lqg"), "plant is a model of one's own, but scheduled-lqg asks for"),
+        (
+            ("--scenario", "nominal", "--controller", "gradient-generalist"),
+            "controller 'gradient-generalist' cannot be had of this plant: their training was on other plants.",
+        ),
+    ],
+)
+def test_what_is_asked_for_by_name_and_cannot_be_of_a_model_is_refused_before_any_work(chosen, words, uneven, tmp_path):
+    result = run("benchmark", "--plant", uneven, *chosen, "--seeds", 2, "--folder", tmp_path / "none")
+    assert result.exit_code == 2
+    (line,) = result.stderr.splitlines()
+    assert line.startswith(f"beamenv: {words}")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_scenario_that_breaks_more_than_a_model_has_is_left_out(file):
+    from train.benchmark import benchmark
+
+    table = benchmark(scenarios=["unseen"], controllers=["lqg"], seeds=2, environment={"plant": str(file)})
+    assert "two-dead-actuators" not in table.scenarios and not table.sentences
+    assert any("two-dead-actuators left out: scenario.failures.dead_actuators is 2, but" in each for each in table.left_out)
+
+
+def test_laws_of_the_true_state_are_left_out_where_several_plants_move(uneven, tmp_path):
+    from train.benchmark import benchmark
+
+    (tmp_path / "mine" / "ensemble").mkdir(parents=True)
+    content = dict(np.load(uneven))
+    for name, factor in (("plant", 1.0), ("ensemble/000", 0.97), ("ensemble/001", 1.03)):
+        np.savez(tmp_path / "mine" / f"{name}.npz", **{**content, "A": factor * content["A"]})
+    names = ["none", "lqg", "lqr", "clairvoyant", "informed-lqg"]
+    with pytest.raises(ValueError, match="^the true blade's state cannot be told in the design's coordinates: each of the plants"):
+        benchmark(scenarios=["nominal"], controllers=names, seeds=2, environment={"plant": str(tmp_path / "mine")})
+    names.remove("lqr")
+    table = benchmark(scenarios=["nominal"], controllers=names, seeds=2, environment={"plant": str(tmp_path / "mine")})
+    assert not table.sentences and all(table.row("nominal", name).measured for name in names)
+
+
+def test_a_training_on_a_model_that_has_changed_is_not_resumed(file, tmp_path):
+    words = ("train", "gradient", "--plant", file, "--updates", 1, "--folder", tmp_path / "agent")
+    assert run(*words).exit_code == 0
+    content = dict(np.load(file))
+    assert run("evaluate", tmp_path / "agent", "--plant", file, "--seeds", 2).exit_code == 0
+    moved = tmp_path / "elsewhere.npz"
+    np.savez(moved, **content)  # where a file lies is not what it says
+    assert run("train", "gradient", "--plant", moved, "--updates", 1, "--folder", tmp_path / "agent", "--resume").exit_code == 0
+    np.savez(file, **{**content, "B": 1.1 * content["B"]})
+    result = run(*words, "--resume")
+    assert result.exit_code == 2 and "holds another training: resume with the same arguments" in result.stderr
+
+
 def test_what_asks_for_a_rotor_is_refused_in_one_sentence(file):
     result = run("evaluate", "scheduled-lqg", "--plant", file, "--seeds", 2)
     assert result.exit_code == 2

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +14,13 @@ import numpy as np
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.files import to_dict
-from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, shown
+from beamenv.configuration import Count, FileName, Flag, Refused, Table, Texts, checked, checked_table, clause, shown
 from beamenv.configuration.files import ENDINGS
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.named import expanded
-from beamenv.scenarios.of_models import fits_models
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.task import resolve_task
+from train.benchmark.applicable import applicable
 from train.benchmark.bench import Setting
 from train.benchmark.cells import Cell, Job, read_cell, write_cell
 from train.benchmark.claim import RUNS, claim
@@ -72,6 +72,9 @@ def benchmark(
     - ``validation``: on the seeds and the bank of plants that contenders are chosen on, in place of those they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
 
+    Of a model of one's own, the "plant" of the ``environment``, what can be had is run, and ``left_out`` of the table says what
+    cannot and why. What is asked for by its name and cannot be had is refused before anything runs.
+
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
     A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, when
     no scenario is left, for a folder with a benchmark of other settings, which it would replace, and for one in which nothing can
@@ -89,7 +92,9 @@ def benchmark(
     if folder is not None:
         check_folder(folder)
     listed = [each.first(runs) for each in listed_controllers(controllers, own, models, trusted, trained)]
-    return of_listed(listed, scenarios, seeds, folder, jobs=jobs, arguments=arguments, validation=validation, progress=progress)
+    asked = {*(scenarios or ()), *(controllers or ())}
+    options: dict[str, Any] = {"jobs": jobs, "arguments": arguments, "validation": validation, "progress": progress}
+    return of_listed(listed, scenarios, seeds, folder, asked=asked, **options)
 
 
 def checked_progress(progress: Any) -> Progress | None:
@@ -110,18 +115,27 @@ def of_listed(
     arguments: str = "{}",
     validation: bool = False,
     progress: Progress | None = None,
+    asked: Collection[str] = (),
 ) -> BenchmarkTable:
-    """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON."""
-    known, refused = read_scenarios(scenarios, of_models=json.loads(arguments).get("plant") is not None)
+    """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON; of a model of one's own what
+    is ``asked`` for by its name must be had.
+    """
+    known, refused = read_scenarios(scenarios)
+    environment = json.loads(arguments)
+    fit = None if environment.get("plant") is None else applicable(known, listed, environment, _titles(asked))
+    known = known if fit is None else {name: known[name] for name in fit.tasks}
     settings = [Setting(name, each, seeds, arguments, validation) for name, each in known.items()]
     queue = [job for setting in settings for each in listed for job in jobs_of(each, setting)]
+    if fit is not None:
+        queue = [job for job in queue if (job.setting.name, job.controller) not in fit.without]
+        listed = [each for each in listed if each.name in {job.controller for job in queue}]
     check_paths(queue)
     made = configuration(settings, listed)
     with nullcontext() if folder is None else alone_in(folder):
         if folder is not None:
             claim(folder, made)
         cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
-        table = tabulate(cells, listed, refused, made)
+        table = replace(tabulate(cells, listed, refused, made), left_out=() if fit is None else fit.sentences)
         if folder is not None:
             write_all(folder, table)
     return table
@@ -154,7 +168,7 @@ def environment_json(environment: Any) -> str:
     try:
         return json.dumps(given, sort_keys=True, default=_plain)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {error}.") from None
+        raise ValueError(f"environment is not allowed, for a cell's file could not hold it: {clause(error)}.") from None
 
 
 def _plain(value: Any) -> Any:
@@ -168,14 +182,10 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{shown(value)} is of type {type(value).__name__}")
 
 
-def read_scenarios(names: Sequence[str] | None, of_models: bool = False) -> tuple[dict[str, Scenario], dict[str, str]]:
-    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read; all of them if None, or all
-    that can be of a model of one's own.
-    """
+def read_scenarios(names: Sequence[str] | None) -> tuple[dict[str, Scenario], dict[str, str]]:
+    """Scenarios by name, files by that of the file, and what is wrong with those that cannot be read; all of them if None."""
     read = {name: _read(name) for name in expanded(["all"] if names is None else names)}
-    if of_models and names is None:
-        read = {name: each for name, each in read.items() if isinstance(each, Scenario) and fits_models(each)}
-    titles = {name: Path(name).stem if name.endswith(ENDINGS) else name for name in read}
+    titles = {name: _title(name) for name in read}
     known = {checked("scenario", titles[name], FileName()): each for name, each in read.items() if isinstance(each, Scenario)}
     refused = {name: each for name, each in read.items() if isinstance(each, str)}
     if doubled := [name for name in read if list(titles.values()).count(titles[name]) > 1]:
@@ -183,6 +193,14 @@ def read_scenarios(names: Sequence[str] | None, of_models: bool = False) -> tupl
     if not known:
         raise ValueError(" ".join(refused.values()) or "scenarios is empty, but a benchmark needs at least one.")
     return known, refused
+
+
+def _title(name: str) -> str:
+    return Path(name).stem if name.endswith(ENDINGS) else name
+
+
+def _titles(names: Collection[str]) -> set[str]:
+    return {_title(name) for name in names}
 
 
 def _read(name: str) -> Scenario | str:

@@ -77,6 +77,8 @@ class BenchmarkTable:
     """Scenarios that could not be read, and why."""
     configuration: Mapping[str, Any]
     """How it was made, as JSON can hold it."""
+    left_out: tuple[str, ...] = ()
+    """In a sentence each, what cannot be had of a model of one's own."""
 
     @property
     def scenarios(self) -> tuple[str, ...]:

@@ -77,7 +77,8 @@ def benchmark(
     """Every controller in every scenario on the same held-out episodes; with --quick a few, with --submit one of yours.
 
     An interrupted run resumes from what its folder holds; a folder with a benchmark of other settings is refused. What cannot be
-    measured is reported in one sentence each, the rest is measured, and the status is then 1.
+    measured is reported in one sentence each, the rest is measured, and the status is then 1. What cannot be had of a --plant is
+    left out with its reason, which is no failure; asked for by name, it is refused.
     """
     with one_sentence(RESUMES):
         chosen = {
@@ -103,7 +104,7 @@ def benchmark(
         home = usual if folder is None else folder
         table = _measured(
             scenarios=scenario or (QUICK_SCENARIOS if quick else None),
-            controllers=controller or (quick_controllers() if quick else None),
+            controllers=controller or (quick_controllers(plant) if quick else None),
             seeds=episodes,
             runs=runs or (QUICK_RUNS if quick else None),
             folder=home,
@@ -201,5 +202,7 @@ def _show(table: BenchmarkTable, folder: Path | None) -> None:
         print_json(as_json(table))
     else:
         show_table(table, folder)
+    for sentence in table.left_out:
+        print(f"beamenv: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
     for where, sentence in table.sentences.items():
         print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice

@@ -31,7 +31,9 @@ def export(
     controller: Annotated[
         str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
     ],
-    format: Annotated[str, typer.Option("--format", help="c, onnx or mat.")] = "c",
+    format: Annotated[
+        str | None, typer.Option("--format", help="c, onnx or mat; what the output ends in if left out, or else c.")
+    ] = None,
     output: Annotated[
         Path | None, typer.Option(help="The file; the controller's name with the format's ending if left out.")
     ] = None,
@@ -48,14 +50,17 @@ def export(
 ) -> None:
     """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
     with one_sentence():
-        from beamenv.configuration import Choice, Refused, checked
+        from beamenv.configuration import Refused
         from beamenv.task import resolve_task
         from train.controllers.choice import chosen
         from train.export import FORMATS, export, exported
         from train.export.exported import identifier
+        from train.export.writing import checked_format
         from train.shared.files import check_file
 
-        checked("format", format, Choice(tuple(FORMATS)))
+        ending = "" if output is None else output.suffix.lower().removeprefix(".")
+        format = format or (ending if ending in FORMATS else "c")
+        format = checked_format(format, output or Path(), "output")
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
         task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)

@@ -80,7 +80,9 @@ def _limit(limit: float) -> float:
 def bar() -> Iterator[Callable[[str, float], None]]:
     """What is being done, on standard error."""
     columns = TextColumn("{task.description:>12}", markup=False), BarColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    screen = Console(stderr=True)
+    # elsewhere bad input is to leave its one line alone
+    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as progress:
         task = progress.add_task("reading", total=1.0)
         yield lambda what, done: progress.update(task, description=what, completed=done)
 

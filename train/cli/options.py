@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -47,10 +48,10 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None, 
 
 
 @contextmanager
-def one_sentence(interrupted: str = "") -> Iterator[None]:
+def one_sentence(interrupted: str | Callable[[], str] = "") -> Iterator[None]:
     """Bad input ends with its one sentence on standard error and status 2, not with a traceback.
 
-    So does an interruption, with what then holds and the status that shells know it by.
+    So does an interruption, with what then holds, said or asked for, and the status that shells know it by.
     """
     try:
         yield
@@ -60,7 +61,8 @@ def one_sentence(interrupted: str = "") -> Iterator[None]:
         print(f"beamenv: {_said(error)}", file=sys.stderr)  # noqa: T201 - the command's own voice
         raise typer.Exit(2) from None
     except KeyboardInterrupt as error:
-        print(f"beamenv: interrupted{interrupted and ': '}{interrupted}.", file=sys.stderr)  # noqa: T201
+        holds = interrupted if isinstance(interrupted, str) else interrupted()
+        print(f"beamenv: interrupted{holds and ': '}{holds}.", file=sys.stderr)  # noqa: T201
         raise typer.Exit(status_of(error)) from None
 
 
@@ -69,6 +71,20 @@ def _said(error: ValueError | OSError) -> str:
     if isinstance(error, OSError) and error.strerror:
         return f"file {shown(error.filename)} cannot be used: {error.strerror}."
     return str(error)
+
+
+def same_command(context: typer.Context, **changed: Any) -> str:
+    """The command that was given, with some of its parameters changed, as a shell takes it."""
+    words = ["beamenv", str(context.info_name)]
+    for parameter in context.command.params:
+        value = changed.get(str(parameter.name), context.params.get(str(parameter.name)))
+        if parameter.param_type_name == "argument":
+            words += [str(value)]
+        elif value is True:
+            words += parameter.opts[:1]
+        elif value not in (None, False, parameter.default):
+            words += [parameter.opts[0], str(value)]
+    return shlex.join(words)
 
 
 def print_table(table: Table) -> None:

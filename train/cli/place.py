@@ -15,7 +15,7 @@ from rich.table import Table
 
 from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json, print_table
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
-from train.shared.files import check_file
+from train.shared.files import check_picture
 
 
 def place(
@@ -47,7 +47,7 @@ def place(
         from beamenv.blade.presets import blade_config
 
         if drawn is not None:
-            check_file(drawn, "picture")
+            check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
         config = config if passive else replace(config, patches=config.patches.without_mass())
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}

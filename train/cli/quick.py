@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from beamenv.task import Task
     from train.benchmark.table import BenchmarkTable
 
 QUICK_SCENARIOS = ("nominal", "delay", "failure", "mid-failure", "delay-failure")
@@ -30,17 +32,28 @@ def told() -> str:
     )
 
 
-def quick_controllers() -> list[str]:
-    """The laws, and the generalists that ship for the default blade."""
+def quick_controllers(plant: Path | None = None) -> list[str]:
+    """The laws, and the generalists that ship for the default blade; of a model of one's own those that can be had of it."""
     from beamenv.plant.fingerprint import fingerprint
     from beamenv.task import resolve_task
     from train.controllers.policy_files import read_about
     from train.controllers.shipped import shipped
 
-    own = fingerprint(resolve_task().design_plant)
+    task = resolve_task(plant=plant)
+    own = fingerprint(task.design_plant)
     general = [each for each in shipped() if each.scenario == "generalist"]
     fit = [each.agent for each in general if own in read_about(each.folder).get("plants", {}).values()]
-    return [*QUICK_LAWS, *dict.fromkeys(f"{name}-generalist" for name in fit)]
+    return [*(name for name in QUICK_LAWS if _can_be_had(name, task)), *dict.fromkeys(f"{name}-generalist" for name in fit)]
+
+
+def _can_be_had(name: str, task: Task) -> bool:
+    from train.controllers.named import named
+
+    try:
+        named(name).check_for(task)
+    except ValueError:
+        return False
+    return True
 
 
 def wide(table: BenchmarkTable) -> str:

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, print_table
-from train.shared.files import check_file
+from train.shared.files import check_picture
 
 ROWS = ("γx", "γy", "w′", "θx′", "θy′", "φ′")
 MEANING = ("shear along x", "shear along y", "extension", "bending in flap", "bending in lag", "torsion")
@@ -36,7 +36,7 @@ def section(
 
         at = checked("at", at, Number(ge=0.0, le=1.0))
         if picture is not None:
-            check_file(picture, "picture")
+            check_picture(picture)
         config = blade_config(preset, load_config(blade) if blade else None)
         beam = config.beam.build(model=config.model)
         size = float(beam.planform.scale(np.array([at * beam.length]))[0])

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from beamenv.configuration import FileName, checked
-from train.cli.options import BladeOption, PlantOption, PresetOption, SpeedOption, environment_arguments, one_sentence
+from beamenv.configuration import FileName, Number, checked
+from train.cli.options import BladeOption, PlantOption, PresetOption, SpeedOption, environment_arguments, one_sentence, same_command
 from train.learning.recipes import NAMES
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 def train(
+    context: typer.Context,
     agent: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe.")],
     scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all but those kept for judging.")] = "nominal",
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
@@ -48,7 +49,8 @@ def train(
 
     The folder gets the policy, its learning curve, checkpoints and TensorBoard's files.
     """
-    with one_sentence("the same command with --resume resumes from the folder's last checkpoint"):
+    home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
+    with one_sentence(lambda: _resumed_by(context, home)):
         from train.cli.progress import Progressbar
         from train.controllers.policy_files import read_about
         from train.learning.job import Job, run
@@ -59,7 +61,6 @@ def train(
         chosen = chosen if device is None else chosen.on(device)
         budget = _budget(minutes, updates, chosen.updates)
         environment = environment_arguments(preset, speed, blade, plant)
-        home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
         job = Job(agent, chosen, scenario, seed, budget, environment, start)
         total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")
         with Progressbar({agent: total}, unit) as bar:
@@ -67,6 +68,15 @@ def train(
         Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)
         if not read_about(places[0])["finished"]:
             raise KeyboardInterrupt
+
+
+def _resumed_by(context: typer.Context, folder: Path) -> str:
+    """What is said of an interrupted training."""
+    from train.learning.checkpoint import NAME
+
+    if not (folder / NAME).is_file():
+        return "it was too early for a checkpoint, so nothing is kept"
+    return f"with `{same_command(context, folder=folder, overwrite=False, resume=True)}` it resumes"
 
 
 def _budget(minutes: float | None, updates: int | None, otherwise: int) -> Budget:
@@ -77,4 +87,4 @@ def _budget(minutes: float | None, updates: int | None, otherwise: int) -> Budge
         return Budget(updates=otherwise if updates is None else updates)
     if updates is not None:
         raise ValueError("minutes and updates must not both be given.")
-    return Budget(seconds=60.0 * minutes)
+    return Budget(seconds=60.0 * checked("minutes", minutes, Number(gt=0.0)))

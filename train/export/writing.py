@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from beamenv.configuration import Choice, checked
+from beamenv.configuration import Choice, Refused, checked
 from beamenv.configuration.writing import write_whole
 from beamenv.plant.plant import Plant
 from train.export.c_source import c_source
@@ -37,18 +37,26 @@ def export(
 ) -> Exported:
     """Write a controller to ``path``: from what sensors show, A in general, to voltages, V, as in an environment around ``plant``.
 
-    ``format`` is "c", a self-contained C99 file, or "onnx" or "mat"; None: what the file's name ends in. ``precision`` is "double"
-    or "single", and ``name`` what functions and types are called; None: the controller's own. ``plant`` is that of the design,
-    such as ``env.unwrapped.design_plant``: it has the full scale of the sensors, the limits of the drive and the interval. ``note``
-    stands in the file.
+    ``format`` is "c", a self-contained C99 file, or "onnx" or "mat", and none that the ending of the file's name contradicts; None:
+    what that says. ``precision`` is "double" or "single", and ``name`` what functions and types are called; None: the controller's
+    own. ``plant`` is that of the design, such as ``env.unwrapped.design_plant``: it has the full scale of the sensors, the limits
+    of the drive and the interval. ``note`` stands in the file.
 
     Raises ``ValueError`` of one sentence for a controller that cannot be exported, and why: one that needs the true state or a
     solver, or that is a function of which nobody knows what it does.
     """
     path = as_path("path", path)
-    ending = path.suffix.removeprefix(".") if format is None else format
-    ending = checked("format", ending, Choice(tuple(FORMATS)))
+    ending = checked_format(path.suffix.removeprefix(".") if format is None else format, path, "path")
     check_file(path, "path")
     found = exported(controller, plant, precision=precision, name=name, note=note)
     write_whole(path, FORMATS[ending](found))
     return found
+
+
+def checked_format(format: Any, path: Path, name: str) -> str:
+    """The format; ``ValueError`` for an unknown one, and for a file, the argument ``name``, that ends as those of another do."""
+    format = str(checked("format", format, Choice(tuple(FORMATS))))
+    ending = path.suffix.lower().removeprefix(".")
+    if ending in FORMATS and ending != format:
+        raise Refused(name, str(path), f"a file that ends in .{format} with the format {format!r}")
+    return format

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from beamenv.configuration import Refused, shown
+from beamenv.configuration.files import checked_path
 from beamenv.configuration.writing import write_whole
 
 SPACE = 16_000_000
@@ -20,6 +21,8 @@ SPACE = 16_000_000
 
 PICTURE = 1_000_000
 """… where a single file is written."""
+
+PICTURES = (".png",)
 
 PROBE = 4096
 """Bytes of the file that is written on trial."""
@@ -71,6 +74,11 @@ def check_file(path: Path, name: str, space: int = PICTURE) -> None:
     check_folder(path.parent, name, space)
     if path.is_dir():
         raise ValueError(f"{name} = {str(path)!r} must be a file, or not be there yet, but is a folder.")
+
+
+def check_picture(path: Path, name: str = "picture") -> None:
+    """As ``check_file``; and it ends in .png, for that is what is drawn."""
+    check_file(checked_path(name, path, PICTURES), name)
 
 
 def read_json(path: Path) -> Any:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
+from beamenv.configuration import clause
 from beamenv.scenarios.drawing import whole_intervals
 from beamenv.scenarios.own_loads import Load
 from beamenv.scenarios.series import interval_means
@@ -149,7 +150,7 @@ def _called(function: Any, time: float) -> Any:
     try:
         return function(time)
     except TypeError as error:
-        raise ValueError(f"scenario.loads: function({time:g}) cannot be called: {error}.") from None
+        raise ValueError(f"scenario.loads: function({time:g}) cannot be called: {clause(error)}.") from None
 
 
 def _number(value: Any, time: float) -> float:

@@ -22,7 +22,7 @@ def write_report(path: Path, table: BenchmarkTable) -> None:
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
         title="Controllers of a rotating blade across scenarios",
-        note="\n".join([*(each.sentence for each in findings(table)), *wrong]),
+        note="\n".join([*(each.sentence for each in findings(table)), *table.left_out, *wrong]),
         table=page_table(table),
         further={each.heading: further_table(each) for each in sections(table)},
         heat_map=heat_map(table),

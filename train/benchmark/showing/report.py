@@ -82,6 +82,7 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
         "configuration": dict(table.configuration),
         "findings": judged,
         "refused": dict(table.refused),
+        "left_out": list(table.left_out),
         "contests": [contest_json(each) for each in contests(table)],
         "aggregates": [aggregate_json(each) for each in aggregates(table)],
         "headroom": [headroom_json(each) for each in headrooms(table)],
@@ -119,6 +120,8 @@ def markdown(table: BenchmarkTable) -> str:
     """Findings, overview, a table for each scenario, what went wrong, and how it was made."""
     parts = [found(table), *(each.markdown() for each in sections(table)), *overviews(table), legend(table)]
     parts += [f"### {escaped(name)}\n\n{scenario_table(table.within(name))}" for name in table.scenarios]
+    if table.left_out:
+        parts.append("### What was left out\n\n" + "\n".join(f"- {escaped(each)}" for each in table.left_out))
     if table.sentences:
         lines = "\n".join(f"- {escaped(where)}: {escaped(sentence)}" for where, sentence in table.sentences.items())
         parts.append(f"### What went wrong\n\n{lines}")

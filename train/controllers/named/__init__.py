@@ -2,8 +2,8 @@
 
 Such a module has a ``KIND``, one of ``KINDS``, a ``TIER`` of information, and ``build(known)``, which returns the controller and is
 given what that tier knows and no more: a ``beamenv.Design`` at 0, a ``beamenv.Prior`` at 1 and 2, the ``Truth`` at 3
-(``beamenv.knowledge``). It may have ``suits(scenario)``: false where the controller has nothing to do. ``lqg_load.py`` is called
-"lqg-load".
+(``beamenv.knowledge``). It may have ``suits(scenario)``: false where the controller has nothing to do; and ``check(known)``, which
+says beforehand, as a ``ValueError`` of one sentence, why there is no such controller. ``lqg_load.py`` is called "lqg-load".
 """
 
 from __future__ import annotations
@@ -33,6 +33,10 @@ def any_scenario(scenario: Scenario) -> bool:
     return True
 
 
+def nothing_asked(known: Any) -> None:
+    """Of a controller that asks for nothing in particular."""
+
+
 @dataclass(frozen=True, slots=True)
 class NamedController:
     """A controller by its short name. Raises ValueError for a kind that is not in ``KINDS`` and a tier that is none."""
@@ -45,11 +49,17 @@ class NamedController:
     """Of information, in ``beamenv.knowledge.TIERS``."""
     suits: Callable[[Scenario], bool] = any_scenario
     """Whether it is meant for a scenario: the benchmark leaves out the others."""
+    check: Callable[[Any], None] = nothing_asked
+    """``ValueError`` where what its tier is told has not what it asks for; at once, and not of all that may go wrong."""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise Refused(f"{self.name}.KIND", self.kind, f"one of {', '.join(KINDS)}")
         checked(f"{self.name}.TIER", self.tier, Count(0, max(TIERS)))
+
+    def check_for(self, task: Task) -> None:
+        """``ValueError`` where it is clear before anything is built that there is no such controller for a task."""
+        self.check(checked_task(task).told(self.tier))
 
     def build_for(self, task: Task) -> Controller:
         """The controller for a task, in its units, built from what its tier is told.
@@ -74,7 +84,8 @@ def discover() -> Mapping[str, NamedController]:
             raise ValueError(
                 f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND, TIER and build(known)."
             )
-        found[name] = NamedController(name, content.KIND, content.build, content.TIER, getattr(content, "suits", any_scenario))
+        optional = getattr(content, "suits", any_scenario), getattr(content, "check", nothing_asked)
+        found[name] = NamedController(name, content.KIND, content.build, content.TIER, *optional)
     return MappingProxyType(found)
 
 

@@ -7,6 +7,11 @@ KIND = "fixed"
 TIER = 3
 
 
+def check(truth: Truth) -> None:
+    """It asks for the true state."""
+    truth.check_state_told()
+
+
 def build(truth: Truth) -> Controller:
     """The regulator, with an observer for the load."""
     return lqr(truth.design.plant, persistent_load=PersistentLoad())

@@ -1,10 +1,16 @@
 """Positive position feedback on the sensors' charge, its gains those of least stationary cost."""
 
 from baselines import Controller, positive_position_feedback
+from baselines.laws.velocity_feedback import pairing
 from beamenv import Design
 
 KIND = "fixed"
 TIER = 0
+
+
+def check(design: Design) -> None:
+    """It asks for pairs of actuators and sensors."""
+    pairing(design.plant, "positive position feedback")
 
 
 def build(design: Design) -> Controller:

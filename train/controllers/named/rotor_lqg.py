@@ -7,6 +7,11 @@ KIND = "fixed"
 TIER = 0
 
 
+def check(design: Design) -> None:
+    """It asks for a rotor."""
+    design.blade_config("rotor-lqg")
+
+
 def build(design: Design) -> Controller:
     """Tuned to the speed of the design; the lasting load also takes up what is slow in turbulence."""
     loads = (RotorHarmonics(design.blade_config("rotor-lqg").speed), PersistentLoad())

@@ -14,6 +14,11 @@ RANGE = np.linspace(0.5, 1.5, 7)
 speed's own optimum at most."""
 
 
+def check(prior: Prior) -> None:
+    """It asks for a rotor."""
+    prior.design.blade_config("scheduled-lqg")
+
+
 def build(prior: Prior) -> Controller:
     """An LQG of all that is known of the blade for each of seven speeds, mixed in between."""
     config = prior.design.blade_config("scheduled-lqg")
