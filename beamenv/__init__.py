@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from beamenv.blade.build import build_plant
     from beamenv.blade.config import BeamConfig, BladeConfig
     from beamenv.blade.design import Design
+    from beamenv.blade.modal_plant_of import modal_plant_of
     from beamenv.blade.presets import PRESETS, blade_config
     from beamenv.envs.batch import RotatingBeamVectorEnv
     from beamenv.envs.history import SensorHistory, VectorSensorHistory
@@ -58,6 +59,7 @@ _HOMES = {
     "VectorPlacementWrapper": "envs.placement",
     "ModalPlant": "plant.modal_plant",
     "load_plant": "plant.files",
+    "modal_plant_of": "blade.modal_plant_of",
     "save_plant": "plant.files",
     "Plant": "plant.plant",
     "SampledPlant": "plant.plant",
@@ -100,6 +102,7 @@ __all__ = [
     "blade_config",
     "build_plant",
     "load_plant",
+    "modal_plant_of",
     "sample",
     "save_plant",
     "scenario",

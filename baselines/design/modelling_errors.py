@@ -12,6 +12,7 @@ import numpy as np
 from baselines.design.controller import Array
 from beamenv.blade.build import Blade
 from beamenv.blade.given import GivenBlade
+from beamenv.blade.modal_plant_of import further_signals
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant
 
@@ -49,7 +50,8 @@ def _mistaken(blade: Blade, generator: np.random.Generator) -> ModalPlant:
     rows = np.hstack(parts)
     mistaken = omega * (1.0 + of_frequency * generator.uniform(-1.0, 1.0, r))
     further = _further(omega, np.pi / blade.config.control_interval, generator)
-    like = rows[generator.integers(r // 2, r, len(further))]  # of a further mode: one of the known upper half, with other signs
+    alike = generator.integers(r // 2, r, len(further))  # of a further mode: one of the known upper half, with other signs
+    like = rows[alike]
     rows = np.vstack([rows, like * generator.choice([-1.0, 1.0], like.shape)])
     every = np.append(mistaken, further)
     gyroscopic = np.zeros((len(every), len(every)))
@@ -64,6 +66,7 @@ def _mistaken(blade: Blade, generator: np.random.Generator) -> ModalPlant:
         line_load=line_load,
         tip=tip.T,
         strain=strain.T,
+        **further_signals(blade, np.hstack([shapes, shapes[:, alike]])[:, order]),
     )
 
 

@@ -150,7 +150,7 @@ class Blade:
             load_through = load_feedthrough(rows, self.true_modal, self.all_loads) + self.with_base(rows)
         return behind_electronics(
             bare,
-            charge_residual=self._charge_residual() if rows is None else rate_residual(rows, self.true_modal, self.full.forces),
+            charge_residual=self._charge_residual(),
             tip_residual=self._residual(self.full.tip),
             amplifier=None if bandwidth is None else 2.0 * np.pi * bandwidth,
             filter_order=electronics.filter_order,
@@ -171,7 +171,10 @@ class Blade:
         return np.asarray(response.charges + self.full.charges @ self._static - response.smooth_charges)
 
     def _charge_residual(self) -> Array:
-        """(p, m), C per V: static charges that the modes of the true plant do not show."""
+        """(p, m), C per V: static charges that the modes of the true plant do not show, or what of other readings is a rate."""
+        rows = self.sensor_rows
+        if rows is not None:
+            return rate_residual(rows, self.true_modal, self.full.forces)
         return self._less_modes(self._static_charges(), self.full.charges)
 
     def _residual(self, rows: Array) -> Array:

@@ -5,6 +5,8 @@ the configuration's. So is the weight of effort R: it is the energy that the pat
 file has no stiffness to compute it from, and costs on both compare. Charges that modes beyond the file take up at once are those of
 the beam's patches, less the share of the file's modes; they hardly displace the blade, and how is not known.
 
+Loads of one's own and sensors that are listed are those that the file has (``given_signals``); every file has its patches' charges.
+
 A file has no mode shapes along the span either. What needs them is told by the beam's: pictures, the strain where the file has no
 rows for it, and the state in the coordinates of a design. Each mode of the file is taken for the one mode of the beam that answers
 like it (``counterparts``); one without such a counterpart is not seen in pictures, strains nothing, and no design has it.
@@ -24,15 +26,19 @@ from scipy.optimize import linear_sum_assignment
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.given_signals import check_listed, loads_of, rows_of
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Refused, read
 from beamenv.configuration.files import of_file
 from beamenv.configuration.read_only import sealed, sealed_property
 from beamenv.configuration.sentence import shown
 from beamenv.plant.electronics import static_residual
+from beamenv.plant.further_loads import with_further_loads
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.plant.plant import Plant
-from beamenv.plant.reduction import FullModel, ModalModel, reduced_plant
+from beamenv.plant.reduction import FullModel, ModalModel, acting_on_velocities, on_velocities, reduced_plant
+from beamenv.sensors.readings import with_readings
+from beamenv.sensors.rows import SensorRows
 
 Array = NDArray[np.float64]
 
@@ -63,15 +69,23 @@ class GivenBlade(Blade):
         return ModalModel(self.given.natural_frequencies, self._shapes(), gyroscopic)
 
     @sealed_property
-    def truth(self) -> Plant:
-        """The plant that moves."""
+    def given_rows(self) -> SensorRows | None:
+        """What the sensors that are listed show of the file's modes; None where the currents of all patches are read."""
+        rows = self.sensor_rows
+        return None if rows is None else rows_of(self.given, self.config, rows)
+
+    @sealed_property
+    def bare_truth(self) -> Plant:
+        """The plant that moves, without the electronics."""
         config, model, omega = self.config, self.given, self.given.natural_frequencies
         strain = self.full.strain @ self.true_modal.mode_shapes if model.strain is None else model.strain
+        modal = ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic)  # its trial functions are its modes
+        rows, full_scale = self.given_rows, self.plant.sensor_full_scale
         plant = reduced_plant(
-            ModalModel(omega, np.eye(len(omega)), self.true_modal.gyroscopic),  # its trial functions are its modes
+            modal,
             FullModel(
                 forces=model.actuation,
-                charges=model.charges,
+                charges=model.charges if len(model.charges) else np.zeros((1, len(omega))),
                 line_load=model.line_load,
                 tip=model.tip,
                 strain=strain,
@@ -83,16 +97,50 @@ class GivenBlade(Blade):
             effort_weight=config.effort_weight,
             white_load=config.white_load,
             sensor_noise_fraction=config.sensor_noise_fraction,
-            sensor_full_scale=float(self.plant.sensor_full_scale[0]),
+            sensor_full_scale=float(full_scale[0]) if rows is None else 1.0,
             voltage_limits=config.voltage_limits,
             control_interval=config.control_interval,
             reference_load=self.reference_load,
         )
-        return self.behind_electronics(replace(plant, input_weight=self.plant.input_weight))
+        plant = replace(plant, input_weight=self.plant.input_weight)
+        if rows is None:
+            return self._loaded(plant)
+        read = with_readings(
+            plant,
+            rows,
+            modal,
+            sensors=config.sensors,
+            forces=model.actuation,
+            line_load=model.line_load,
+            noise=config.sensor_noise_fraction,
+            current_range=config.sensor_full_scale,
+            full_scale=full_scale,
+            filtered=True,
+        )
+        return self._loaded(read)
+
+    @sealed_property
+    def truth(self) -> Plant:
+        """The plant that moves."""
+        rows, bare = self.given_rows, self.bare_truth
+        if rows is None:
+            return self.behind_electronics(bare)
+        accelerated = on_velocities(rows.acceleration)
+        return self.behind_electronics(bare, accelerated @ bare.disturbance_input + self.with_base(rows))
+
+    def _loaded(self, bare: Plant) -> Plant:
+        """The plant under further loads as the file has them."""
+        shapes = self.config.loads
+        if not shapes:
+            return bare
+        further = acting_on_velocities(loads_of(self.given, self.config))
+        return with_further_loads(bare, further, tuple(shape.signal for shape in shapes))
 
     def _charge_residual(self) -> Array:
         """(p, m), C per V: the beam's static charges, strains beneath the patches above all, less what the file's modes show."""
-        model = self.given
+        model, rows = self.given, self.given_rows
+        if rows is not None:
+            return static_residual(rows.static_rate, rows.rate, model.actuation, model.natural_frequencies)
         return static_residual(self._static_charges(), model.charges, model.actuation, model.natural_frequencies)
 
     def _residual(self, rows: Array) -> Array:
@@ -128,8 +176,6 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
     there = len(model.natural_frequencies)
     if modes is not None and modes > there:
         raise Refused("scenario.plants.modes", modes, f"None or at most the {there} that the plant {source!r} has")
-    if config.sensors:
-        raise Refused("blade.sensors", [each.kind for each in config.sensors], f"empty: the plant {source!r} has currents alone")
     patches = config.patches
     wanted = patches.channels("actuators"), patches.channels("sensors")
     has = model.actuation.shape[1], len(model.charges)
@@ -145,6 +191,9 @@ def given_blade(config: BladeConfig, model: ModalPlant, source: str, modes: int 
         raise Refused(
             "blade.strain_limit", config.strain_limit, f"'vibration', for the plant {source!r} has strains of vibration alone"
         )
+    with of_file(source):
+        loads_of(model, config)
+        check_listed(model, config)
     return GivenBlade(config, model.first(modes))
 
 
@@ -208,4 +257,4 @@ def counterparts(given: Array, given_frequencies: Array, own: Array, own_frequen
 
 def _answers(parts: tuple[Array, ...], like: tuple[Array, ...]) -> Array:
     """(k, r): what modes do with voltages and loads, and what is seen of them, each over the largest of ``like``."""
-    return np.hstack([part / np.abs(other).max() for part, other in zip(parts, like, strict=True)]).T
+    return np.hstack([part / np.abs(other).max() for part, other in zip(parts, like, strict=True) if other.size]).T

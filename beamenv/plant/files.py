@@ -1,7 +1,9 @@
 """Plant files: NumPy's ``.npz`` with an array for each field of a ``ModalPlant``, in its units; and those that ship, by name.
 
 A file needs ``natural_frequencies``, ``gyroscopic``, ``actuation``, ``charges``, ``line_load`` and ``tip``; it may have ``strain``,
-``damping_ratio``, ``speed``, ``blade`` and ``origin``.
+``damping_ratio``, ``speed``, ``blade``, ``origin``, further loads (``further_loads`` and ``load_places``) and further sensors
+(``sensor_position``, ``sensor_rate``, ``sensor_acceleration`` and ``sensor_list``, perhaps ``sensor_static`` and
+``sensor_static_rate``).
 """
 
 from __future__ import annotations

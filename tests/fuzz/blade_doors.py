@@ -12,7 +12,7 @@ from beamenv.blade.electronics import ElectronicsConfig
 from beamenv.patches import PatchLayout
 from beamenv.patches.material import MFC, PatchMaterial
 from beamenv.plant.files import load_plant
-from beamenv.plant.modal_plant import ModalPlant
+from beamenv.plant.modal_plant import SENSED, STATIC, ModalPlant
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.scenarios.tables import Acquisition, Drive, Failures, PlantVariation, Rotor
@@ -186,11 +186,14 @@ DOORS = [
     constructor(
         ModalPlant,
         modal(),
-        ("gyroscopic",),
+        ("gyroscopic", "load_places", "sensor_list"),
         lambda made: {**vars_of(made), "damping_ratio": NOTHING},
         **{
-            name: maybe(ARRAY) if name in ("strain", "damping_ratio") else ARRAY
-            for name in ("natural_frequencies", "gyroscopic", "actuation", "charges", "line_load", "tip", "strain", "damping_ratio")
+            name: maybe(ARRAY) if name in ("strain", "damping_ratio", "further_loads", *SENSED, *STATIC) else ARRAY
+            for name in (
+                *("natural_frequencies", "gyroscopic", "actuation", "charges", "line_load", "tip", "strain", "damping_ratio"),
+                *("further_loads", *SENSED, *STATIC),
+            )
         },
     ),
     Door(
@@ -226,6 +229,13 @@ DOORS = [
         {"config": instance(BladeConfig)},
         lambda: {"config": small.config()},
         public="build_plant",
+    ),
+    Door(
+        "modal_plant_of",
+        beamenv.modal_plant_of,
+        {"config": instance(BladeConfig)},
+        lambda: {"config": small.config()},
+        public="modal_plant_of",
     ),
     Door(
         "Prior",

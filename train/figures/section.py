@@ -45,31 +45,41 @@ def section_figure(config: BladeConfig, found: SectionProperties, at: float) -> 
         for k in range(len(elements.edges)):
             half = 0.5 * elements.thickness[k]
             axis.fill(*(1e3 * _piece(elements, k, -half, half)).T, facecolor=WALL, edgecolor=WALL, linewidth=0.3)
+        beneath: list[Inlay] = []
         for (side, inlays), colour in zip(sides, PALETTE[:2], strict=True):
-            _draw_patches(axis, elements, side, inlays, colour, extent)
+            _draw_patches(axis, elements, side, inlays, colour, extent, beneath)
+            beneath = inlays
         for name, (x, y), sign in (
             ("tension centre", found.tension_centre, "+"),
             ("shear centre", found.shear_centre, "x"),
             ("mass centre", found.mass_centre, "o"),
         ):
             axis.plot(1e3 * x, 1e3 * y, sign, color=INK, markerfacecolor="none", markersize=7, label=name)
-        axis.set(xlabel="x, along the chord, mm", ylabel="y, mm", aspect="equal", title=f"section at {at:g} of the span")
+        axis.set(
+            xlabel="x, along the chord, mm",
+            ylabel="y, mm",
+            aspect="equal",
+            title=f"section at {at:g} of the span, patches of every station",
+        )
         axis.margins(0.06, 0.15)
         figure.legend(loc="outside lower center", ncols=5, handlelength=1.2, columnspacing=1.2)
     return figure
 
 
-def _draw_patches(axis: Any, elements: Mesh, side: str, inlays: list[Inlay], colour: str, extent: float) -> None:
+def _draw_patches(
+    axis: Any, elements: Mesh, side: str, inlays: list[Inlay], colour: str, extent: float, beneath: list[Inlay]
+) -> None:
+    """Of those that lie where some of ``beneath`` do, at another station, the half that is nearer to the face."""
     label: str | None = side
     for inlay in inlays:
         for k, edge in enumerate(elements.edges):
             if not edge.lies_under(inlay):
                 continue
             low, high = inlay.depths(float(elements.thickness[k]))
-            if high - low < THINNEST * extent:
-                low, high = (high - THINNEST * extent, high) if inlay.face == "outer" else (low, low + THINNEST * extent)
-                shift = THINNEST * extent if inlay.bonded else 0.0
-                low, high = (low + shift, high + shift) if inlay.face == "outer" else (low - shift, high - shift)
+            if (least := THINNEST * extent) > high - low:  # on a face it grows away from the wall, in a wall into it
+                low, high = (low, low + least) if inlay.bonded == (inlay.face == "outer") else (high - least, high)
+            if any(other.face == inlay.face and edge.lies_under(other) for other in beneath):
+                low, high = (0.5 * (low + high), high) if inlay.face == "outer" else (low, 0.5 * (low + high))
             axis.fill(*(1e3 * _piece(elements, k, low, high)).T, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label)
             label = None
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
 from beamenv.blade.given import GivenBlade
+from beamenv.blade.modal_plant_of import further_signals
 from beamenv.plant.modal_plant import ModalPlant
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.banks import varied_blades
@@ -80,4 +81,5 @@ def changed(blade: Blade, frequency: Array, seen: Array, damping: Array) -> Moda
         tip=(full.tip @ shapes)[:, order],
         strain=(full.strain @ shapes)[:, order],
         damping_ratio=damping[order],
+        **further_signals(blade, shapes[:, order]),
     )
