@@ -106,7 +106,7 @@ def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path |
 
         first = speed[0] if speed else None
         model = resolve_task(**environment_arguments(preset, first, blade, plant)).plant
-        frequencies, ratios = (each[:count] for each in swinging(np.linalg.eigvals(model.A)))
+        frequencies, ratios = (each[:count] for each in swinging(np.linalg.eigvals(model.A).astype(np.complex128)))
     if as_json:
         told = {"unit": "rad/s", "natural_frequencies": frequencies.tolist(), "damping_ratios": ratios.tolist()}
         print_json({"plant": str(plant), **told, "assumed": list(model.assumed)})
