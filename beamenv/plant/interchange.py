@@ -5,15 +5,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import fields, replace
 from typing import Any, TypeVar
 
 import control
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import clause
-from beamenv.plant.state_space import plant_of_model
+from beamenv.configuration import Refused
+from beamenv.configuration.sentence import unknown_field
+from beamenv.plant.state_space import plant_of_arguments
 
 Array = NDArray[np.float64]
 Plant = TypeVar("Plant", bound=Any)
@@ -42,12 +44,15 @@ def plant_of_system(system: control.StateSpace, about: dict[str, Any]) -> Any:
     if not isinstance(system, control.StateSpace):
         try:
             system = control.ss(system)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"system is no control.StateSpace, nor what control.ss makes one of: {clause(error)}.") from None
+        except Exception:  # noqa: BLE001 - python-control complains of what is no system in ways of its own
+            raise Refused("system", system, "a control.StateSpace, or what control.ss makes one of") from None
     if system.dt is True:
         raise ValueError("system has dt = True, but must say how long a sample is, in s, or be in continuous time.")
+    for name in ("A", "B", "C", "D", "dt"):
+        if name in about:
+            raise Refused(name, about[name], "left out: system has its own")
     clock = None if system.dt in (None, 0) else float(system.dt)
-    return plant_of_model(system.A, system.B, system.C, system.D, dt=clock, **about)
+    return plant_of_arguments({"A": system.A, "B": system.B, "C": system.C, "D": system.D, "dt": clock, **about})
 
 
 def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) -> Plant:
@@ -59,6 +64,7 @@ def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) 
     magnitudes of the blade's own poles, one of each pair. Raises ``ValueError`` for a sampled system,
     other numbers of inputs or outputs, a feedthrough that is not from voltages to currents, or strain rows of another length.
     """
+    _check_changes(system, like, changes)
     (n, m), p, k, q = like.B.shape, len(like.C), like.disturbance_input.shape[1], len(like.tip_displacement)
     if system.dt not in (None, 0):
         raise ValueError(f"system has dt = {system.dt!r}, but must be in continuous time.")
@@ -89,6 +95,7 @@ def sampled_from_control(system: control.StateSpace, like: Plant, **changes: Any
     if it has another number of them, ``changes`` must give the ``cost`` (n+m+2, n+m+2). Raises ``ValueError`` for another clock,
     other numbers of inputs, outputs or states, and for a feedthrough that is not from voltages to currents.
     """
+    _check_changes(system, like, changes)
     (_, m), p, k = like.B.shape, len(like.C), like.disturbance_input.shape[1]
     clock = getattr(system, "dt", None)
     if clock is not True and not (clock and np.isclose(clock, like.interval, rtol=1e-6)):
@@ -107,6 +114,16 @@ def sampled_from_control(system: control.StateSpace, like: Plant, **changes: Any
         )
     parts = {"A": A, "B": B[:, :m], "C": C, "D": D[:, :m], "disturbance_input": B[:, m:], "cost": cost}
     return replace(like, **{**parts, **changes})
+
+
+def _check_changes(system: Any, like: Any, changes: Mapping[str, Any]) -> None:
+    """``ValueError`` for what is no system, and for a change of what ``like`` does not have."""
+    if not isinstance(system, control.StateSpace):
+        raise Refused("system", system, "a control.StateSpace")
+    known = [each.name for each in fields(like)]
+    for name in changes:
+        if name not in known:
+            raise unknown_field(type(like).__name__, name, known)
 
 
 def _loads(plant: Any) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import io
 import os
 from collections.abc import Mapping
@@ -17,11 +16,10 @@ from beamenv.configuration.files import checked_path, content_of, of_file, parse
 from beamenv.configuration.sentence import shown, unknown_field
 from beamenv.plant.plant import Plant
 from beamenv.plant.signals import Signal
-from beamenv.plant.state_space import plant_of_model
+from beamenv.plant.state_space import FIELDS, plant_of_model
 
 ENDINGS = (".npz", ".mat", ".json")
 
-FIELDS = tuple(inspect.signature(plant_of_model).parameters)
 NEEDED = ("A", "B", "C")
 SIGNALS = ("disturbances", "sensors")
 NUMBERS = ("dt", "interval")

@@ -167,9 +167,9 @@ class Plant(ReadOnly):
         """The plant of ẋ = A x + B u, y = C x + D u, or with ``dt`` (s) of x⁺ = A x + B u. What may be said ``about`` it, and what
         is taken to be so where it is not, tells ``beamenv.plant.state_space.plant_of_model``.
         """
-        from beamenv.plant.state_space import plant_of_model
+        from beamenv.plant.state_space import plant_of_arguments
 
-        return plant_of_model(A, B, C, D, **about)
+        return plant_of_arguments({"A": A, "B": B, "C": C, "D": D, **about})
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Plant:
@@ -185,7 +185,9 @@ class Plant(ReadOnly):
         """
         from beamenv.plant.interchange import plant_from_control, plant_of_system
 
-        return plant_of_system(system, changes) if like is None else plant_from_control(system, like, **changes)
+        if like is None:
+            return plant_of_system(system, changes)
+        return plant_from_control(system, checked("like", like, Instance(cls)), **changes)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -249,7 +251,7 @@ class SampledPlant(ReadOnly):
         """A sampled plant with the dynamics of a ``control.StateSpace``, and all else as ``like`` has it; see ``interchange``."""
         from beamenv.plant.interchange import sampled_from_control
 
-        return sampled_from_control(system, like, **changes)
+        return sampled_from_control(system, checked("like", like, Instance(cls)), **changes)
 
 
 def _check_clock(plant: Any, name: str) -> None:

@@ -17,6 +17,24 @@ ALIKE = 1e-6
 """Distance of two poles over their magnitude, up to which they count as equal: eigenvectors then are any of their span."""
 
 
+UNSTABLE, UNDAMPED = "is unstable", "has no damping"
+DRIFTS = "drifts without end (a rigid body, an integrator)"
+MUST_END = ", but every mode must die away by itself"
+REMEDIES = {
+    UNSTABLE: f"{MUST_END}.",
+    UNDAMPED: f"{MUST_END}: say how well it is damped.",
+    DRIFTS: f"{MUST_END}: leave it out, or hold it by a spring.",
+}
+"""What is said of each to end the sentence."""
+
+MARGINAL = 1e-9
+"""Damping ratio below which none can be told from none at all."""
+
+AT_REST, NOTHING = 1e-7, 1e-14
+"""Frequencies over that of the fastest pole: below the first, poles drift unless they die away without a swing, for two equal ones
+at zero are rounded to a pair of some 10⁻⁸; below the second, no pole can be told from one at zero."""
+
+
 def check_modes(A: Array, B: Array, C: Array, interval: float | None) -> None:
     """``ValueError`` that names the first mode which does not die away, which no voltage reaches or no sensor sees.
 
@@ -27,15 +45,28 @@ def check_modes(A: Array, B: Array, C: Array, interval: float | None) -> None:
     balanced, (scale, _) = matrix_balance(A, permute=False, separate=True)
     reached = _reached(balanced, _unit(B / scale[:, None]), poles)
     seen = _reached(balanced.T, _unit((C * scale).T), poles)
+    fastest = float(np.abs(rates[poles != 0.0] if interval is not None else rates).max(initial=0.0))
+    slow = np.abs(rates) <= AT_REST * fastest
+    drifting = (np.abs(rates) <= NOTHING * fastest) | (slow if np.any(rates[slow].real > -0.5 * np.abs(rates[slow])) else False)
     one_each = [k for k in np.argsort(np.abs(rates)) if poles[k].imag >= 0.0]
     for number, k in enumerate(one_each, start=1):
-        for wrong, what in (
-            (not rates[k].real < 0.0, "that is unstable, but every mode must die away by itself."),
-            (not reached[k], "that no voltage reaches: leave it out of the model."),
-            (not seen[k], "that no sensor sees: leave it out of the model."),
-        ):
-            if wrong:
-                raise ValueError(f"A has {_named(number, rates[k])} {what}")
+        if wrong := (([DRIFTS] if drifting[k] else _lasts(rates[k])) + _out_of_reach(reached[k], seen[k])):
+            raise ValueError(f"A has {_named(number, rates[k])} that {' and that '.join(wrong)}{_remedy(wrong[0])}")
+
+
+def _lasts(rate: complex) -> list[str]:
+    """Why a mode that does not drift does not die away, if it does not."""
+    if rate.real < -MARGINAL * abs(rate):
+        return []
+    return [UNSTABLE] if rate.real > MARGINAL * abs(rate) else [UNDAMPED]
+
+
+def _out_of_reach(reached: bool, seen: bool) -> list[str]:
+    return [what for there, what in ((reached, "no voltage reaches"), (seen, "no sensor sees")) if not there]
+
+
+def _remedy(what: str) -> str:
+    return REMEDIES.get(what, ": leave it out of the model.")
 
 
 def _reached(A: Array, inputs: Array, poles: Complex) -> list[bool]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import inspect
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Number, Refused, checked
+from beamenv.configuration.sentence import unknown_field
 from beamenv.plant.continuous import continuous
 from beamenv.plant.hold import hold
 from beamenv.plant.model_arguments import checked_inputs, checked_limits, checked_matrices, checked_rows, named_signals, root_of
@@ -131,6 +133,18 @@ def plant_of_model(
         if not all(np.isfinite(part).all() for part in parts if isinstance(part, np.ndarray)):
             raise np.linalg.LinAlgError
     return replace(plant, assumed=tuple(assumed))
+
+
+FIELDS = tuple(inspect.signature(plant_of_model).parameters)
+"""What may be said of a model."""
+
+
+def plant_of_arguments(given: Mapping[str, Any]) -> Plant:
+    """The plant of the arguments of ``plant_of_model`` by their names; ``ValueError`` for one that it does not have."""
+    for name in given:
+        if name not in FIELDS:
+            raise unknown_field("the model", name, FIELDS)
+    return plant_of_model(**given)
 
 
 @contextmanager

@@ -13,9 +13,8 @@ from beamenv.blade.files import load_config
 from beamenv.blade.given import given_blade
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.blade.presets import blade_config
-from beamenv.configuration import Flag, Number, Refused, checked
+from beamenv.configuration import Flag, Refused, checked
 from beamenv.configuration.files import ENDINGS
-from beamenv.configuration.numbers import UNBOUNDED
 from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
@@ -23,6 +22,7 @@ from beamenv.scenarios.of_models import check_scenario, design_model, true_model
 from beamenv.scenarios.scenario import Scenario
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task.designed import design_config, driven, same_electronics, with_modes
+from beamenv.task.length import episode_steps
 from beamenv.task.scenario_checks import check_failures, check_loads, with_own_loads
 from beamenv.task.sharing import shared
 from beamenv.task.task import Task
@@ -55,10 +55,8 @@ def resolve_task(
         return _of_model(plant, preset, speed, blade, design, scenario, duration, physical_units, spread)
     if spread is not None:
         raise Refused("spread", spread, "None without a plant: what varies of a blade is in the scenario's plants")
-    duration = DURATION if duration is None else duration
     config = blade_config(preset, _of_file(blade), speed)
-    interval = config.control_interval
-    duration = checked("duration", duration, Number(gt=interval / 2, le=UNBOUNDED * interval, unit="s"))
+    steps = episode_steps(duration, DURATION, config.control_interval, "blade.control_interval")
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
     truth, modes = chosen.plants.truth, chosen.plants.modes
@@ -76,7 +74,7 @@ def resolve_task(
         blade=true,
         design_blade=true if designed == config else shared(same_electronics(designed, true)),
         scenario=chosen,
-        steps=round(duration / interval),
+        steps=steps,
         physical_units=physical_units,
     )
     return shared(task)
@@ -100,16 +98,14 @@ def _of_model(
     check_scenario(chosen)
     true = true_model(plant, spread, chosen)
     model = true.model
-    interval = model.control_interval
-    seconds = DURATION * model.time_scale if duration is None else duration
-    seconds = checked("duration", seconds, Number(gt=interval / 2, le=UNBOUNDED * interval, unit="s"))
+    steps = episode_steps(duration, DURATION * model.time_scale, model.control_interval, "plant.control_interval")
     check_failures(chosen, model)
     check_loads(chosen, true)
     task = Task(
         blade=true,
         design_blade=true if design is None else design_model(design, true, chosen),
         scenario=chosen,
-        steps=round(seconds / interval),
+        steps=steps,
         physical_units=checked("physical_units", physical_units, Flag()),
     )
     return shared(task)

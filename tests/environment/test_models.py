@@ -270,3 +270,14 @@ def test_a_training_through_the_plant_meets_the_plants_of_a_spread(plant, tmp_pa
     assert len(task.prior.bank) == 8
     places = run(job, tmp_path / "agent", lambda progress: None)
     assert all((place / "weights.npz").is_file() for place in places)
+
+
+def test_an_interval_longer_than_an_episode_is_told_by_its_own_name():
+    given = {"A": 100.0 * A, "B": B, "C": C, "interval": 1.0}
+    with pytest.raises(ValueError, match=r"^plant.control_interval is 1.0, but must be shorter than 0.05984 s, so that the usual"):
+        resolve_task(plant=given)
+    assert resolve_task(plant=given, duration=3.0).steps == 3
+    with pytest.raises(ValueError, match=r"^duration is 0.2, but must be a number above 0.5 .*for plant.control_interval is 1"):
+        resolve_task(plant=given, duration=0.2)
+    with pytest.raises(ValueError, match=r"^blade.control_interval is 1.0, but must be shorter than 1 s, so that the usual"):
+        resolve_task(blade={"control_interval": 1.0})

@@ -5,6 +5,7 @@ import json
 from functools import cache
 from pathlib import Path
 
+import control
 import numpy as np
 from hypothesis import strategies as st
 from scipy.io import savemat
@@ -20,6 +21,7 @@ ARRAYS = (
     *("sensor_noise", "full_scale", "actuator_limits", "tip_displacement"),
 )
 WORDS = ("sensor_names", "sensor_units")
+SYSTEMS = {"small": control.ss(*MODEL.values())}
 
 
 def valid():
@@ -77,6 +79,14 @@ DOORS = [
         },
         valid,
         told=("model", "interval", "voltage"),
+        plain=False,
+    ),
+    Door(
+        "Plant.from_control",
+        lambda system, **about: Plant.from_control(SYSTEMS.get(system, system) if isinstance(system, str) else system, **about),
+        {"system": ANYTHING, **dict.fromkeys(ARRAYS, ANYTHING), **dict.fromkeys(WORDS, ANYTHING), "interval": NUMBER},
+        lambda: {"system": "small", **{name: value for name, value in valid().items() if name not in (*MODEL, "dt")}},
+        told=("model", "voltage", "D"),
         plain=False,
     ),
     *map(of_file, (".npz", ".mat", ".json")),

@@ -115,7 +115,7 @@ def test_a_system_that_is_no_such_sampled_plant_is_refused(plant):
         SampledPlant.from_control(plant.to_control(), like=held)
     with pytest.raises(ValueError, match="^system has dt = 0.001, but must be sampled as like is"):
         SampledPlant.from_control(sample(plant, 1e-3).to_control(), like=held)
-    with pytest.raises(ValueError, match="^system has dt = None"):
+    with pytest.raises(ValueError, match="^system is None, but must be a control.StateSpace"):
         SampledPlant.from_control(None, like=held)
     with pytest.raises(ValueError, match="^system has 6 inputs and 3 outputs"):
         SampledPlant.from_control(held.to_control()[:3, :], like=held)

@@ -7,7 +7,7 @@ import control
 import numpy as np
 import pytest
 from scipy.io import savemat
-from scipy.linalg import block_diag, solve_continuous_lyapunov
+from scipy.linalg import block_diag, expm, solve_continuous_lyapunov
 
 from baselines import lqg, no_control, reference_lqg, stationary_cost
 from beamenv import Plant, blade_config, build_plant, sample
@@ -26,6 +26,7 @@ def oscillator(omega, damping):
 A = block_diag(oscillator(30.0, 0.01), oscillator(95.0, 0.02))
 B = np.array([[0.0], [1.0], [0.0], [0.7]])
 C = np.array([[0.0, 1.0, 0.0, 0.9], [1.0, 0.0, -0.5, 0.0]])
+SYSTEM = control.ss(A, B, C, np.zeros((2, 1)))
 
 
 def turn(rotation, radius):
@@ -196,6 +197,28 @@ def test_laws_are_built_of_a_model_with_accelerometers():
 
 REFUSED = {
     "A has mode 1 at 2 rad/s (0.3183 Hz) that is unstable": lambda: Plant.from_state_space([[0, 1], [-4, 0.1]], [0, 1], [1, 0]),
+    "A has mode 1 at 2 rad/s (0.3183 Hz) that is unstable and that no voltage reaches, but every": lambda: Plant.from_state_space(
+        np.diag([2.0, -3.0]), [0, 1], [1, 1]
+    ),
+    "A has mode 1 at 2 rad/s (0.3183 Hz) that has no damping, but every mode must die away": lambda: Plant.from_state_space(
+        [[0, 1], [-4, 0]], [0, 1], [1, 0]
+    ),
+    "A has mode 1 at 2 rad/s (0.3183 Hz) that has no damping, but": lambda: Plant.from_state_space(
+        expm(0.1 * np.array([[0, 1], [-4, 0]])), [0, 1], [1, 0], dt=0.1
+    ),
+    "A has mode 1 at 0 rad/s (0 Hz) that drifts without end (a rigid body, an integrator), but every": lambda: (
+        Plant.from_state_space([[0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1], [0, 0, -900, -1]], [0, 1, 0, 1], [1, 0, 1, 0])
+    ),
+    "A has mode 1 at 0 rad/s (0 Hz) that drifts without end": lambda: Plant.from_state_space(np.eye(1), [1], [1], dt=0.1),
+    "the model has no field 'colour': its fields are A, B, C, D, dt, interval": lambda: Plant.from_state_space(A, B, C, colour=1),
+    "the model has no field 'colour': its fields are A, B, C, D, dt, interval,": lambda: Plant.from_control(SYSTEM, colour=1),
+    "dt is 0.1, but must be left out: system has its own": lambda: Plant.from_control(SYSTEM, dt=0.1),
+    "system is 'tf', but must be a control.StateSpace, or what control.ss makes one of": lambda: Plant.from_control("tf"),
+    "system is 'tf', but must be a control.StateSpace": lambda: Plant.from_control("tf", Plant.from_control(SYSTEM)),
+    "like is 3, but must be a Plant": lambda: Plant.from_control(SYSTEM, 3),
+    "Plant has no field 'colour': its fields are A, B, C, D, disturbance_input": lambda: Plant.from_control(
+        SYSTEM, Plant.from_control(SYSTEM), colour=1
+    ),
     "A has mode 2 at 2 rad/s (0.3183 Hz) that no voltage reaches": lambda: Plant.from_state_space(
         np.diag([-1.0, -2.0]), [1, 0], [1, 1]
     ),
@@ -246,6 +269,38 @@ def test_a_model_moves_as_python_control_says():
     shown = [blades.begin(generator).observation, *(blades.step(np.array([each]), generator).observation for each in voltages)]
     held = control.forced_response(control.c2d(system, 0.01), inputs=np.append(voltages, 0.0), timepts=0.01 * np.arange(201))
     np.testing.assert_allclose(np.array(shown).T, held.outputs, rtol=1e-8, atol=1e-9)
+
+
+LASTING = {
+    "is unstable": [[0.0, 9.0], [-9.0, 0.02]],
+    "has no damping": [[0.0, 9.0], [-9.0, 0.0]],
+    "drifts without end": [[0.0, 1.0], [0.0, 0.0]],
+}
+
+
+@pytest.mark.parametrize("what", LASTING)
+@pytest.mark.parametrize("seed", range(3))
+def test_modes_that_last_are_named_alike_at_every_door_and_in_any_coordinates(what, seed, tmp_path):
+    generator = np.random.default_rng(seed)
+    basis, own = generator.normal(size=(4, 4)), block_diag(LASTING[what], [[0.0, 40.0], [-40.0, -0.8]])
+    moved = basis @ own @ np.linalg.inv(basis)
+    inputs, outputs = basis @ [[0.0], [1.0], [0.0], [1.0]], np.array([[1.0, 0.0, 1.0, 0.0]]) @ np.linalg.inv(basis)
+    np.savez(tmp_path / "mine.npz", A=moved, B=inputs, C=outputs)
+    held = control.c2d(control.ss(moved, inputs, outputs, 0.0), 0.02)
+    for door in (
+        lambda: Plant.from_state_space(moved, inputs, outputs),
+        lambda: Plant.from_control(control.ss(moved, inputs, outputs, 0.0)),
+        lambda: Plant.from_control(held),
+        lambda: Plant.from_file(tmp_path / "mine.npz"),
+    ):
+        with pytest.raises(ValueError, match=rf"A has mode 1 at \S+ rad/s \(\S+ Hz\) that {what}.*, but every mode must die away"):
+            door()
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e-5, 1e-7])
+def test_lightly_damped_modes_are_models(ratio):
+    plant = Plant.from_state_space([[0.0, 30.0], [-30.0, -60.0 * ratio]], [0.0, 1.0], [0.0, 1.0])
+    assert stationary_cost(plant, lqg(plant)) < 0.2 * stationary_cost(plant, no_control(plant))
 
 
 @pytest.mark.parametrize("words", REFUSED)

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed_property
 from beamenv.structure.planform import Planform
-from beamenv.structure.section.mesh import mesh
-from beamenv.structure.section.section import Section
+from beamenv.structure.section.section import Section, mesh_of
 from beamenv.structure.section.solid_sections import SolidSections
 from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Laminate, Layup
@@ -145,16 +144,20 @@ def _solid_sections(
     rates = np.concatenate([np.full(len(piece.sizes), piece.rate) for piece in planform.pieces])
     fitting = np.concatenate([np.full(len(piece.sizes), piece.start < planform.covered) for piece in planform.pieces])
     needed = fitting if fitting.any() else ~fitting
-    elements = mesh(section.placed_chains, np.tile(sizes, len(codes)), strips, np.tile(needed, len(codes)))
+    every = tuple(np.tile(sizes, len(codes)).tolist()), tuple(strips), tuple(np.tile(needed, len(codes)).tolist())
+    elements = mesh_of(section, *every)
     laminates = dict[Laminate, int]()
     which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
+    under = [(edge.wall, tuple(edge.lies_under(kind) for kind in kinds)) for edge in elements.edges]
     for row, code in enumerate(codes.tolist()):
-        for k, edge in enumerate(elements.edges):
-            laminate = hosts[edge.wall]
-            for bit, kind in enumerate(kinds):
-                if code >> bit & 1 and edge.lies_under(kind):
-                    laminate = kind.let_into(laminate)
-            which[row, k] = laminates.setdefault(laminate, len(laminates))
+        known: dict[tuple[str, tuple[bool, ...]], int] = {}
+        for k, (wall, lies) in enumerate(under):
+            if (wall, lies) not in known:
+                laminate = hosts[wall]
+                for bit, kind in enumerate(kinds):
+                    laminate = kind.let_into(laminate) if code >> bit & 1 and lies[bit] else laminate
+                known[wall, lies] = laminates.setdefault(laminate, len(laminates))
+            which[row, k] = known[wall, lies]
     return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), np.tile(rates, len(codes)))
 
 

@@ -66,7 +66,9 @@ class Mesh(Sealed):
     """(K,): whether an element is of a chain that does not close."""
 
     def rows(self, rows: NDArray[np.intp]) -> Mesh:
-        """The elements at some of the sizes."""
+        """The elements at some of the sizes, ascending."""
+        if len(rows) == len(self.points):
+            return self
         by_size = ("points", "directions", "last_points", "last_directions", "tangents")
         return replace(self, **{name: getattr(self, name)[rows] for name in by_size})
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import lru_cache
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -12,11 +13,12 @@ from beamenv.configuration import Choice, Instance, Number, Refused, Text, check
 from beamenv.structure.model import checked_flow
 from beamenv.structure.scale import in_scale
 from beamenv.structure.section.corners import check_corners
-from beamenv.structure.section.mesh import mesh
+from beamenv.structure.section.mesh import Mesh, mesh
 from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.section.solid_sections import SolidSections
 from beamenv.structure.section.span_walls import SpanWalls, classical
 from beamenv.structure.walls.chain import Chain
+from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate, Layup
 from beamenv.structure.walls.wall_kinematics import SHEAR_THEORIES
 
@@ -24,6 +26,9 @@ Array = NDArray[np.float64]
 
 Metres = Annotated[float, Number(gt=0.0, unit="m")]
 THEORY = Choice(SHEAR_THEORIES)
+
+REMEMBERED = 32
+"""Sections of which the walls' widths and the elements are."""
 
 
 class Section(ABC):
@@ -125,12 +130,10 @@ class Section(ABC):
 
     def wall_width(self, wall: str) -> float:
         """Length (m) along the contour of a wall; ``ValueError`` unless it is in one part."""
-        checked("wall", wall, Text())
-        for chain in self.chains:
-            part = chain.part(wall)
-            if part is not None:
-                return float(chain.lengths[part[0] : part[1]].sum())
-        raise Refused("wall", wall, f"one wall of the section: {', '.join(self.wall_names)}")
+        width = _widths(self).get(checked("wall", wall, Text()))
+        if width is None:
+            raise Refused("wall", wall, f"one wall of the section: {', '.join(self.wall_names)}")
+        return width
 
     def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:
         """Classical stiffness (4, 4) for (w', θx', θy', φ'): EA, EI_flap, EI_lag, GJ on the diagonal and the couplings.
@@ -172,3 +175,21 @@ class Section(ABC):
         which = np.array([[laminates.index(hosts[edge.wall]) for edge in elements.edges]])
         with in_scale("section"):
             return SectionProperties.of(SolidSections.build(elements, laminates, which, pretwist=0.0))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _widths(section: Section) -> dict[str, float]:
+    """Length (m) of each wall that is in one part."""
+    found: dict[str, float] = {}
+    for chain in section.chains:
+        for wall in dict.fromkeys(chain.walls):
+            part = chain.part(wall)
+            if part is not None and wall not in found:
+                found[wall] = float(chain.lengths[part[0] : part[1]].sum())
+    return found
+
+
+@lru_cache(maxsize=REMEMBERED)
+def mesh_of(section: Section, sizes: tuple[float, ...], strips: tuple[Strip, ...], needed: tuple[bool, ...]) -> Mesh:
+    """As ``mesh`` of the section's ``placed_chains``: blades of other plies, as those of a bank are, share it."""
+    return mesh(section.placed_chains, np.array(sizes), strips, np.array(needed))
