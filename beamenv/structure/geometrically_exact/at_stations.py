@@ -22,8 +22,8 @@ from beamenv.structure.geometrically_exact.rotations import rotation, rotation_v
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows, shape_tables
 from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS
-from beamenv.structure.section.element_sums import MONOMIALS
 from beamenv.structure.section.elements import RIGID
+from beamenv.structure.section.integrals import MONOMIALS
 from beamenv.structure.trial_functions import Stations, TrialSpace
 
 Array = NDArray[np.float64]

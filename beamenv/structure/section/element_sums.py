@@ -13,20 +13,16 @@ from beamenv.structure.section.elements import (
     RIGID,
     layers,
     lobatto_nodes,
-    places,
     rigid_motion,
     stiffness_in_section,
     strain_of_tables,
 )
+from beamenv.structure.section.integrals import MONOMIALS, integrals
 from beamenv.structure.section.lines import Lines
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.trial_functions import gauss_rule
 from beamenv.structure.walls.laminate import Laminate, Ply
 
 Array = NDArray[np.float64]
-
-MONOMIALS = 6
-"""1, x, y, x², xy, y²."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -172,42 +168,22 @@ class _Totals:
 
     def add(self, mesh: Mesh, layer: _Layer, pretwist: float) -> None:
         """∫ table × table over the layer, contracted with what a pair of tables means in energy."""
-        along, weight_along = gauss_rule(mesh.order + 1)
-        thickness = mesh.thickness[layer.in_mesh[0] % len(mesh.edges)]
-        depth, weight = gauss_rule(ACROSS + 1 if layer.high - layer.low > 0.4 * thickness else 2)
-        half = 0.5 * (layer.high - layer.low)
-        here = places(mesh, layer.in_mesh, along, layer.low + half * (1.0 + depth), weight_along, half * weight)
-        tables = here.tables()
-        nodes, count = here.value.shape[-1], len(layer.in_mesh)
-        pairs = (tables * here.weight[..., None]).swapaxes(-1, -2) @ tables
-        shapes = pairs[:, : 4 * nodes, : 4 * nodes].reshape(count, 4, nodes, 4, nodes)
-        with_beam = pairs[:, : 4 * nodes, 4 * nodes :].reshape(count, 4, nodes, 3)
-        of_beam = pairs[:, 4 * nodes :, 4 * nodes :]
+        sums = integrals(mesh, layer.in_mesh, layer.low, layer.high)
         stiffness = stiffness_in_section(layer.ply, mesh.tangents.reshape(-1, 2)[layer.in_mesh])
         B, S, Z = strain_of_tables(pretwist)
         stressed_B, stressed_S, stressed_Z = (_stressed(stiffness, rows) for rows in (B, S[None], Z))
-        at, value = layer.members, shapes[:, 3, :, 3]
-        values, square = shapes[:, :, :, 3], shapes.transpose(0, 1, 3, 2, 4).reshape(count, 16, nodes, nodes)
-        self.warping[at] += _summed(_meaning(B, stressed_B), square)
-        self.cross[at] += _summed(_meaning(B, stressed_S), values)
-        self.derivative[at] += _summed(_meaning(S[None], stressed_S), value[:, None])
-        by_pair = with_beam.transpose(0, 1, 3, 2)[..., None]
-        self.beam_strain[at] += _summed(_meaning(B, stressed_Z), by_pair.reshape(count, 12, nodes, 1))
-        self.derivative_strain[at] += _summed(_meaning(S[None], stressed_Z), by_pair[:, 3])
-        self.beam[at] += _summed(_meaning(Z, stressed_Z), of_beam.reshape(count, 9, 1, 1))
-        monomials = np.stack([np.ones_like(here.x), here.x, here.y, here.x**2, here.x * here.y, here.y**2], axis=1)
-        weighted = monomials * here.weight[:, None]
-        sums = weighted @ tables
-        of_shapes = sums[..., : 4 * nodes].reshape(count, MONOMIALS, 4, nodes).transpose(0, 2, 1, 3)
-        parts = (
-            (stressed_B, of_shapes.reshape(count, 4, -1, 1)),
-            (stressed_S, of_shapes[:, 3].reshape(count, 1, -1, 1)),
-            (stressed_Z, sums[..., 4 * nodes :].transpose(0, 2, 1)[..., None]),
-        )
-        spanwise = [_summed(stressed[:, :, None, 5], integrals).reshape(count, MONOMIALS, -1) for stressed, integrals in parts]
+        at, count = layer.members, len(layer.in_mesh)
+        self.warping[at] += _summed(_meaning(B, stressed_B), sums.square)
+        self.cross[at] += _summed(_meaning(B, stressed_S), sums.values)
+        self.derivative[at] += _summed(_meaning(S[None], stressed_S), sums.value[:, None])
+        self.beam_strain[at] += _summed(_meaning(B, stressed_Z), sums.with_beam)
+        self.derivative_strain[at] += _summed(_meaning(S[None], stressed_Z), sums.value_with_beam)
+        self.beam[at] += _summed(_meaning(Z, stressed_Z), sums.of_beam)
+        parts = ((stressed_B, sums.moments), (stressed_S, sums.moments_of_value), (stressed_Z, sums.moments_of_beam))
+        spanwise = [_summed(stressed[:, :, None, 5], moments).reshape(count, MONOMIALS, -1) for stressed, moments in parts]
         self.moments[at] += np.concatenate(spanwise, axis=-1)
-        self.mass[at] += layer.ply.material.density * value
-        self.inertia[at] += layer.ply.material.density * weighted.sum(axis=-1)
+        self.mass[at] += layer.ply.material.density * sums.value
+        self.inertia[at] += layer.ply.material.density * sums.area
 
 
 def _stressed(stiffness: Array, rows: Array) -> Array:

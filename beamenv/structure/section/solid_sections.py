@@ -18,8 +18,9 @@ from beamenv.configuration.read_only import Sealed, sealed, sealed_property
 from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS, Meaning, saint_venant_strains
 from beamenv.structure.section.central_solution import Factorised, central_solution
 from beamenv.structure.section.distortion import distortion_shapes
-from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
+from beamenv.structure.section.element_sums import ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
+from beamenv.structure.section.integrals import MONOMIALS
 from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.trial_functions import gauss_rule
 from beamenv.structure.walls.inlay import Strip
