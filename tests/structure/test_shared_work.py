@@ -7,6 +7,8 @@ from beamenv.blade.build import Blade, changed_blade
 from beamenv.blade.presets import blade_config
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, Web
 from beamenv.structure.section import equations
+from beamenv.structure.section.integrals import _remembered
+from beamenv.structure.section.section import mesh_of
 
 SECTION = BoxSection(0.20, 0.06, 0.004, webs=(Web(0.35),))
 
@@ -28,6 +30,21 @@ def test_blades_of_other_plies_share_their_elements():
     one, two = (Blade(each).beam.exact.sections.solid for each in (config, other))
     assert one.mesh is two.mesh
     assert not np.array_equal(one.stiffness, two.stiffness)
+
+
+def test_what_is_remembered_changes_no_bit():
+    """A blade before and after another of its shape, and with nothing remembered."""
+    config = blade_config("airfoil-blade")
+    other = changed_blade(config, speed=1.0, ply_angle=1.05, modulus=0.97, mass=1.02, damping_ratio=0.01)
+    energies = []
+    for forgets in (True, False, True):
+        if forgets:
+            _remembered.cache_clear()
+            mesh_of.cache_clear()
+        energies.append(Blade(config).beam.exact.sections.solid.energy)
+        assert not np.array_equal(Blade(other).beam.exact.sections.solid.energy, energies[-1])
+    assert np.array_equal(energies[0], energies[1])
+    assert np.array_equal(energies[0], energies[2])
 
 
 def test_a_wall_that_is_none_has_no_width():
