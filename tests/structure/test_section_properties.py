@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, PolygonSection, RotatingBeam
-from beamenv.structure.section import central_solution, element_sums, elements, equations, lines
+from beamenv.structure.section import central_solution, element_sums, elements, equations, integrals, lines
 from beamenv.structure.section.mesh import mesh
 from beamenv.structure.section.solid_sections import SolidSections
 from beamenv.structure.walls.inlay import Strip
@@ -120,7 +120,7 @@ def test_higher_order_through_the_wall_changes_the_stiffness_of_the_thick_box_li
     """Fifth instead of third: less than 0.3 % of the root of the product of the diagonals, at 60°, where walls warp most."""
     layup = LAYUPS[kind](60)
     third = THICK_BOX.properties(layup).stiffness
-    for module in (elements, element_sums, lines):
+    for module in (elements, element_sums, integrals, lines):
         monkeypatch.setattr(module, "ACROSS", 5)
     for module in (lines, central_solution, equations):
         monkeypatch.setattr(module, "PER_LINE", 18)
