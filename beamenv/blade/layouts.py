@@ -69,6 +69,7 @@ def with_positions(config: BladeConfig, positions: Mapping[Side, int | Positions
 
 def named(config: BladeConfig, side: Side, name: str) -> Positions:
     """A layout of ``NAMES`` with as many patches as the blade has on that side; ``ValueError`` for an invalid name."""
+    config.patches.only(side)  # several groups, or none, are refused by their own name
     count = len(positions_of(config, side))
     if name == "uniform":
         return tuple(Bounds.of(config.patches, config.beam.length, count, None, side).uniform().tolist())

@@ -168,7 +168,11 @@ def _moved(side: Side, groups: Groups, patches: int | Sequence[float]) -> Groups
     given: Any = patches
     if len(groups) == 1:
         return (replace(groups[0], positions=given),)
+    if not groups and not isinstance(patches, int) and not len(patches):
+        return ()
     counts = [group.count for group in groups]
+    if not groups:
+        raise Refused(f"blade.patches.{side}", patches, "left out where the blade has none of them to be placed")
     if isinstance(patches, int) or len(patches) != sum(counts):
         raise Refused(f"blade.patches.{side}", patches, f"{sum(counts)} positions (m), {counts} of its groups in turn")
     there = iter(patches)

@@ -64,7 +64,8 @@ def checked_limits(given: ArrayLike | None, m: int, assumed: list[str]) -> Array
     )
     low, high = limits
     if not (np.all(low <= 0.0) and np.all(high >= 0.0) and np.all(high > low) and np.abs(limits).max() <= STRONGEST_DRIVE):
-        raise Refused("actuator_limits", limits.tolist(), f"a lower limit from {-STRONGEST_DRIVE:g} to 0 V and an upper one from 0 to {STRONGEST_DRIVE:g} V, apart")
+        allowed = f"a lower limit from {-STRONGEST_DRIVE:g} to 0 V and an upper one from 0 to {STRONGEST_DRIVE:g} V, apart"
+        raise Refused("actuator_limits", limits.tolist(), allowed)
     return limits
 
 

@@ -15,6 +15,13 @@ def poles_of_sampled(transition: Array, interval: float) -> NDArray[np.complex12
     return np.asarray(found[np.argsort(np.abs(found))])
 
 
+def swinging(poles: NDArray[np.complex128]) -> tuple[Array, Array]:
+    """Natural frequencies (r,), rad/s, ascending, and damping ratios (r,) of the pairs among a system's poles."""
+    pairs = poles[poles.imag > 0.0]
+    pairs = pairs[np.argsort(np.abs(pairs))]
+    return np.abs(pairs), -pairs.real / np.abs(pairs)
+
+
 def damping_ratios(poles: NDArray[np.complex128]) -> Array:
     """ζ = −Re s/|s| (r,) of a real system's 2r poles, by ascending |s|: of one of each pair, and of every second one that has no
     conjugate, a real one or, of a sampled system, one that alternates from sample to sample.

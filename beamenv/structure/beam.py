@@ -14,6 +14,7 @@ from beamenv.configuration.arrays import real_numbers
 from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
+from beamenv.structure.breaks import breakpoints, breaks
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
@@ -39,14 +40,6 @@ the energy; here it is near the least for boxes, isotropic and of 30° plies."""
 
 CLAMP_PIECE = 5.0
 """Piece of the span beside the clamp that has stations of its own, in reaches."""
-
-THICK_INLAY = 0.1
-"""Of a wall's thickness: where thicker inlays begin and end strains jump, which polynomials along the span cannot follow. Sheets of
-0.3 mm on a strip of 2 mm would move its tip 13 % too far per volt. The thesis' patches are a thirtieth of their walls: left to the
-polynomials they move the tip 0.1 to 1.2 % less than with breaks, and no frequency is more than 3e-5 off."""
-
-TOO_CLOSE = 2e-3
-"""Of the span: breaks nearer to one another, to the clamp or to the tip are left out, for their functions are hardly new ones."""
 
 TERMS = Count(1, 30)
 SPEED = Number(ge=0.0, unit="rad/s")
@@ -136,18 +129,8 @@ class RotatingBeam:
             warping=self.model == "blade",
             plane=not self.layup.walls and self.section.stays_plane,
             clamp_reach=CLAMP_REACH * self.section.perimeter,
-            breaks=self._breaks if self.model == "blade" and self.shear != "rigid" else (),
+            breaks=breaks(self.section, self.length, self.inlays) if self.model == "blade" and self.shear != "rigid" else (),
         )
-
-    @property
-    def _breaks(self) -> tuple[float, ...]:
-        """Where inlays begin and end that change their walls much."""
-        thick = [each for each in self.inlays if each.thickness > THICK_INLAY * self.section.thickness_of(each.wall)]
-        edges = self.breakpoints([edge for each in thick for edge in (each.start, each.start + each.length)])
-        found = [0.0]
-        for edge in edges[1:-1].tolist():
-            found += [edge] if edge - found[-1] > TOO_CLOSE * self.length else []
-        return tuple(edge for edge in found[1:] if edge < (1.0 - TOO_CLOSE) * self.length)
 
     @cached_property
     def exact(self) -> ExactBeam:
@@ -207,8 +190,7 @@ class RotatingBeam:
 
     def breakpoints(self, edges: list[float]) -> Array:
         """Ascending span coordinates of root, tip and the given edges, without repetition."""
-        ends = np.unique(np.clip([0.0, *edges, self.length], 0.0, self.length))
-        return ends[np.append(True, np.diff(ends) > SHORTEST * self.length)]
+        return breakpoints(edges, self.length)
 
     def walls_at(self, z: Array, cuts: tuple[Strip, ...] = ()) -> SpanWalls:
         """The walls at stations z (m) by the thesis' kinematics, split at the edges of strips too."""

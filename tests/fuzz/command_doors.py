@@ -64,7 +64,7 @@ def reached(*given, **named):
 COMMANDS = {
     "frequencies": (
         (),
-        {"--preset": "thesis", "--speed": "20", "--count": "2", "--blade": "blade.toml"},
+        {"--preset": "thesis", "--speed": "20", "--count": "2", "--blade": "blade.toml", "--plant": None},
         ("--json", "--no-gyroscopic", "--no-patches"),
         (),
     ),

@@ -6,15 +6,26 @@ import pytest
 
 import beamenv
 from baselines import Measurement, evaluate, identify, lqg
+from beamenv.blade.presets import SOUND_EDGES
 
 SEEDS = range(3_000_000, 3_000_032)
 RATIO = 5 / 3  # thickness of the actuators' field, 0.5 mm, over the sensors', 0.3 mm
 INTERVAL = 5e-4
 
 
-def measured(seconds, seed):
+def groups():
+    """The patches of ``sound-blade``, the second of each kind at 45°: it twists the blade and feels it twist."""
+    first, second, *others = SOUND_EDGES
+    return [{"positions": [first, *others]}, {"positions": [second], "angle_deg": 45.0}]
+
+
+TWISTED = {"patches": {"actuators": groups(), "sensors": [{**group, "wall": "bottom"} for group in groups()]}}
+
+
+def measured(seconds, seed, blade=None):
     """``sound-blade`` at 2 kHz in white loads, voltages random and held, currents with the noise of the environment."""
-    env = gym.make(beamenv.ENV_ID, preset="sound-blade", scenario="white", duration=seconds, physical_units=True, dtype="float64")
+    lab = {"preset": "sound-blade", "blade": blade, "scenario": "white", "duration": seconds}
+    env = gym.make(beamenv.ENV_ID, **lab, physical_units=True, dtype="float64")
     rng, rows = np.random.default_rng(seed), []
     reading, _ = env.reset(seed=seed)
     volts = np.clip(rng.normal(0.0, 450.0, (round(seconds / INTERVAL), 4)), -1500.0, 1500.0)
@@ -34,6 +45,24 @@ def test_lqg_on_a_plant_of_twenty_seconds_is_within_three_percent_of_lqg_on_the_
     assert len(set(nearest)) == len(found.modes) >= 9  # the torsion of 920 rad/s is hardly seen
     assert np.all(np.abs(found.modes.frequency / truth.natural_frequencies[nearest] - 1.0) < 3e-3)
     assert found.sensor_noise == pytest.approx(0.02 * truth.sensor_full_scale, rel=0.05)
+    assert_nearly_as_good(found, truth, envs)
+
+
+@pytest.mark.slow
+def test_all_eleven_modes_are_identified_where_a_sheet_at_an_angle_twists_the_blade():
+    found = identify(measured(20.0, seed=1, blade=TWISTED), collocated=RATIO)
+    envs = gym.make_vec(beamenv.ENV_ID, num_envs=32, preset="sound-blade", blade=TWISTED, dtype="float64")
+    truth = envs.unwrapped.plant
+    nearest = np.abs(found.modes.frequency - truth.natural_frequencies[:, None]).argmin(axis=1)
+    assert len(set(nearest)) == len(truth.natural_frequencies) == 11
+    error = np.abs(found.modes.frequency[nearest] - truth.natural_frequencies)
+    assert np.all(error < 2e-3 * truth.natural_frequencies)
+    assert np.all(error < 4.0 * found.modes.frequency_spread[nearest])
+    assert_nearly_as_good(found, truth, envs)
+
+
+def assert_nearly_as_good(found, truth, envs):
+    """The LQG of the plant that was found costs at most 3 % more than that of the true one."""
     best = evaluate(lqg(truth), envs, SEEDS)
     for known in ({}, {"input_weight": truth.input_weight}):  # the price of a volt by rule, then the environment's own
         plant = found.plant(actuator_limits=1500.0, full_scale=truth.sensor_full_scale, **known)

@@ -181,6 +181,7 @@ FIELDS = {
     "load_noise": BAD_NOISE,
     "sensor_noise": [-1e-9, [1e-9]],
     "parts": [],
+    "reads": ["velocity"],
 }
 
 

@@ -130,3 +130,41 @@ def test_the_instrument_stays_when_sensors_move():
     assert np.array_equal(uniform.sensor_noise, moved.sensor_noise)
     assert np.array_equal(uniform.sensor_noise, build_plant(config).sensor_noise)
     assert replace(problem.config, sensor_full_scale=None, patches=config.patches) == config
+
+
+LISTED = {
+    "charges": {"sensors": [{"kind": "charge"}]},
+    "currents": {"sensors": [{"kind": "current", "noise": 0.05}]},
+    "an accelerometer besides": {"sensors": [{"kind": "accelerometer"}, {"kind": "charge"}]},
+    "an accelerometer alone": {"patches": {"sensors": []}, "sensors": [{"kind": "accelerometer"}]},
+}
+
+
+@pytest.mark.parametrize(
+    ("side", "listed"), [("sensors", "charges"), ("sensors", "currents"), *(("actuators", each) for each in LISTED)]
+)
+@pytest.mark.parametrize(("preset", "within"), [("thesis", 0.01), ("aluminium-cantilever", 0.12)])
+def test_cost_beside_listed_sensors_is_the_trace_that_the_environments_plant_has(side, listed, preset, within):
+    """As of currents: on the strip, of whose bending stiffness a sheet is a great part, within 12 %."""
+    problem = PlacementProblem.of(blade_config(preset, LISTED[listed]), side)
+    layouts = problem.bounds.random(np.random.default_rng(1), 3)
+    assert problem.cost(layouts) == pytest.approx([trace_of_the_plant(problem, layout) for layout in layouts], rel=within)
+    assert problem.reads == ("charge" if (side, listed) == ("sensors", "charges") else "current")
+
+
+def test_slopes_of_charges_are_central_differences():
+    problem = PlacementProblem.of(blade_config("thesis", LISTED["charges"]), "sensors")
+    layout, step = problem.bounds.random(np.random.default_rng(2), 1)[0], 1e-4
+    numeric = []
+    for direction in np.eye(4):
+        at = [problem.cost_and_slopes(layout + k * step * direction)[0] for k in (-2, -1, 1, 2)]
+        numeric.append((at[0] - 8.0 * at[1] + 8.0 * at[2] - at[3]) / (12.0 * step))
+    cost, slopes = problem.cost_and_slopes(layout)
+    assert cost == pytest.approx(problem.cost(layout[None])[0], rel=2e-8)
+    assert np.abs(slopes - numeric).max() <= 1e-6 * np.abs(slopes).max()
+
+
+@pytest.mark.parametrize("sensors", [[{"kind": "accelerometer"}], [{"kind": "charge"}, {"kind": "current"}]])
+def test_sensor_patches_are_not_placed_where_other_readings_count_too(sensors):
+    with pytest.raises(ValueError, match="config.sensors is .*, but must be empty, or one 'current' or 'charge' of the patches"):
+        PlacementProblem.of(blade_config("thesis", {"sensors": sensors}), "sensors")

@@ -123,3 +123,14 @@ def test_positions_are_told_even_if_the_picture_fails(error, sides, monkeypatch,
     assert result.exit_code == (2 if isinstance(error, OSError) else 130)
     assert [each["positions"] for each in json.loads(result.stdout)] == [list(side.placement.positions) for side in sides]
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_sensors_best_places_are_not_told_beside_others_and_no_actuator_is_searched_for_before(monkeypatch):
+    from baselines.placement import search
+    from beamenv.blade.presets import blade_config
+    from train.placement.placed import place_sides
+
+    monkeypatch.setattr(search.search, "Recorder", lambda *_: pytest.fail("searched"))
+    config = blade_config("thesis", {"sensors": [{"kind": "accelerometer"}]})
+    with pytest.raises(ValueError, match="config.sensors is"):
+        place_sides(config, {"actuators": 2, "sensors": 2}, "sqp", 0)

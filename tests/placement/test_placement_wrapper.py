@@ -295,3 +295,33 @@ def test_the_side_with_several_groups_is_named_where_the_best_layout_is_asked_fo
     several = replace(config, patches=replace(config.patches, actuators=(group, replace(group, face="inner"))))
     with pytest.raises(ValueError, match="^blade.patches.actuators has 2 groups, but must have one where patches are to be placed"):
         PlacementWrapper(gymnasium.make(ENV_ID, blade=several), **{side: "optimal"})
+
+
+def test_actuators_move_where_listed_sensors_stay(monkeypatch, tmp_path):
+    import baselines.placement.optimal as optimal
+
+    monkeypatch.setattr(optimal, "METHOD", Genetic(population=6, generations=2))
+    monkeypatch.setattr(optimal, "_kept_in", lambda config: tmp_path / f"{hash(config)}.json")
+    for blade in (
+        {"sensors": [{"kind": "accelerometer"}, {"kind": "charge"}]},
+        {"patches": {"sensors": []}, "sensors": [{"kind": "accelerometer"}]},
+    ):
+        made = gymnasium.make(ENV_ID, preset="aluminium-cantilever", blade=blade, duration=0.02)
+        before = made.unwrapped.plant
+        env = PlacementWrapper(made, actuators="optimal")
+        observation, info = env.reset(seed=0)
+        assert info["layout"]["actuators"] != (0.01,)
+        assert info["layout"]["sensors"] == blade_config("aluminium-cantilever", blade).patches.sensor_positions(0.3)
+        assert np.array_equal(before.sensor_full_scale, env.unwrapped.plant.sensor_full_scale)
+        assert env.observation_space.contains(env.step(env.action_space.sample())[0])
+
+
+def test_a_side_without_patches_is_named():
+    blade = {"patches": {"sensors": []}, "sensors": [{"kind": "accelerometer"}]}
+    for sensors, sentence in (
+        ("uniform", "blade.patches.sensors has 0 groups, but must have one where patches are to be placed"),
+        ("optimal", "blade.patches.sensors has 0 groups"),
+        ([0.1], r"blade.patches.sensors is \[0.1\], but must be left out where the blade has none of them"),
+    ):
+        with pytest.raises(ValueError, match=sentence):
+            PlacementWrapper(gymnasium.make(ENV_ID, preset="aluminium-cantilever", blade=blade), sensors=sensors)

@@ -74,3 +74,26 @@ def browser():
     started = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
     yield started
     started.quit()
+
+
+@pytest.fixture(scope="module")
+def client():
+    """Of the explorer's server."""
+    page = pytest.importorskip("train.explore.app", reason="dash is not installed")
+    return page.create_app().server.test_client()
+
+
+@pytest.fixture(scope="module")
+def output(client):
+    """What the explorer's page asks to have redrawn."""
+    return next(each["output"] for each in client.get("/_dash-dependencies").get_json() if "results.hidden" in each["output"])
+
+
+@pytest.fixture(scope="module")
+def asked(output):
+    """The body with which the explorer's page asks for a redraw, as a browser was seen to send it."""
+    from tests.train.explorer import START
+
+    outputs = [dict(zip(("id", "property"), each.split("."), strict=True)) for each in output.strip(".").split("...")]
+    inputs = [{"id": "wanted", "property": "data", "value": START}]
+    return {"output": output, "outputs": outputs, "inputs": inputs, "changedPropIds": ["wanted.data"], "parsedChangedPropsIds": []}

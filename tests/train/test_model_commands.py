@@ -130,3 +130,21 @@ def test_what_asks_for_a_rotor_is_refused_in_one_sentence(file):
     result = run("evaluate", "scheduled-lqg", "--plant", file, "--seeds", 2)
     assert result.exit_code == 2
     assert result.stderr.startswith("beamenv: plant is a model of one's own, but scheduled-lqg asks for a blade")
+
+
+def test_a_generalist_of_a_model_trains_on_the_scenarios_that_can_be_of_it(file):
+    from train.learning.job import GENERALIST, Job
+    from train.learning.recipe import named_recipe
+    from train.learning.session import Budget
+
+    tasks = Job("gradient", named_recipe("gradient"), GENERALIST, 0, Budget(updates=1), {"plant": str(file)}).tasks()
+    assert set(tasks) == {"delay", "failure", "hysteresis", "nominal", "overload", "mid-failure"}
+
+
+def test_frequencies_of_a_model_are_those_of_its_poles_with_their_dampings(file):
+    told = json.loads(run("frequencies", "--plant", file, "--json").stdout)
+    assert told["natural_frequencies"] == pytest.approx([30.0]) and told["damping_ratios"] == pytest.approx([0.01])
+    shown = run("frequencies", "--plant", file)
+    assert shown.exit_code == 0 and "30.00 (4.77)" in shown.stdout and "assumed: " in " ".join(shown.stdout.split())
+    refused = run("frequencies", "--plant", file, "--speed", "20")
+    assert refused.exit_code == 2 and refused.stderr.startswith("beamenv: speed is 20.0, but must be left out with a plant")

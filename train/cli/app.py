@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from train.cli.benchmark import benchmark
 from train.cli.export import export
+from train.cli.frequencies import frequencies
 from train.cli.identify import identify
 from train.cli.options import (
     RESUMES,
@@ -40,6 +38,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command()(frequencies)
 app.command()(section)
 app.command()(identify)
 app.command()(place)
@@ -48,75 +47,6 @@ app.command()(train)
 app.command()(benchmark)
 app.command()(schema)
 app.command()(speed)
-
-
-@app.command()
-def frequencies(
-    preset: PresetOption = "thesis",
-    speed: Annotated[
-        list[float] | None, typer.Option(help="Rotor speed in rad/s; repeat for more. 0 and the preset's if left out.")
-    ] = None,
-    count: Annotated[int, typer.Option(help="How many modes.")] = 6,
-    gyroscopic: Annotated[bool, typer.Option(help="With gyroscopic coupling.")] = True,
-    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
-    blade: BladeOption = None,
-    as_json: JsonOption = False,
-) -> None:
-    """Natural frequencies of a blade, each with the family its motion belongs to, and what steady rotation does to it."""
-    with one_sentence():
-        from beamenv.blade.build import build_beam
-        from beamenv.blade.clamp import clamp_note
-        from beamenv.blade.files import load_config
-        from beamenv.blade.presets import blade_config
-        from beamenv.structure.steady_deformation import steady_deformation
-
-        config = blade_config(preset, load_config(blade) if blade else None)
-        beam = build_beam(config) if patches else config.beam.build(model=config.model)
-        speeds = speed or sorted({0.0, config.speed})
-        found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
-        steady = [steady_deformation(beam, each) for each in speeds]
-        note = clamp_note(config) if patches else ""
-    if as_json:
-        rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
-        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
-        return
-    table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
-    table.add_column("mode", justify="right")
-    for each in speeds:
-        table.add_column(f"at {each:g} rad/s", justify="right")
-    for mode in range(count):
-        table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
-    print_table(table)
-    for each, state in zip(speeds, steady, strict=True):
-        if each > 0.0 and config.model != "thesis":
-            Console().print(_turning(each, state, config.patches.failure_strain), soft_wrap=True)
-    if note:
-        Console().print(note, soft_wrap=True)
-
-
-def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
-    """What JSON says of one speed."""
-    return {
-        "speed": speed,
-        "natural_frequencies": modes.natural_frequencies.tolist(),
-        "families": list(modes.families),
-        "static": asdict(state),
-    }
-
-
-def _turning(speed: float, state: Any, limit: float) -> str:
-    """What steady rotation does to the blade, in one sentence."""
-    strain, rated = 100.0 * state.strain, 100.0 * limit
-    beyond = f", beyond the {rated:.3g} % that patches are rated for" if abs(strain) > rated else ""
-    return (
-        f"turning steadily at {speed:g} rad/s: tip {1e3 * state.stretch:.3g} mm further out, untwisted by {state.untwist:.3g}°; "
-        f"spanwise strain up to {strain:.2g} %, at {state.strain_at:.3g} m{beyond}"
-    )
-
-
-def _frequency(modes: Any, mode: int) -> str:
-    frequency = modes.natural_frequencies[mode]
-    return f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f}) {modes.families[mode]}"
 
 
 @app.command()

@@ -51,7 +51,7 @@ def place(
         config = blade_config(preset, load_config(blade) if blade else None, speed)
         config = config if passive else replace(config, patches=config.patches.without_mass())
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
-        counts = counts or {side: len(positions_of(config, side)) for side in SIDES}
+        counts = counts or {side: count for side in SIDES if (count := len(positions_of(config, side)))}
         with bars(counts) as report:
             sides = place_sides(config, counts, method, seed, report, leave_unreached)
         if as_json:

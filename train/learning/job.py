@@ -13,6 +13,8 @@ import numpy as np
 
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.named import BENCHMARK, OPEN, UNSEEN
+from beamenv.scenarios.of_models import fits_models
+from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
@@ -62,8 +64,11 @@ class Job:
     """Folder of a trained policy to start from; of several runs in it, the one that ended its training at the least cost."""
 
     def tasks(self) -> dict[str, Task]:
-        """The task of each scenario."""
-        scenarios = NAMES if self.scenario == GENERALIST else (self.scenario,)
+        """The task of each scenario; of a model of one's own a generalist has those that can be of it."""
+        scenarios: tuple[Any, ...] = (self.scenario,)
+        if self.scenario == GENERALIST:
+            of_model = self.environment.get("plant") is not None
+            scenarios = tuple(each for each in NAMES if not of_model or fits_models(SCENARIOS[each]))
         return {str(each): resolve_task(**{**self.environment, "scenario": each}) for each in scenarios}
 
     def identity(self) -> dict[str, Any]:

@@ -69,6 +69,7 @@ def place_sides(
 ) -> list[PlacedSide]:
     """Place the sides that ``counts`` names, actuators first, then the sensors of the blade with its actuators placed."""
     from baselines.placement import PlacementProblem, place
+    from baselines.placement.cost.problem import read_of_patches
     from beamenv.blade.config import BladeConfig
     from beamenv.blade.layouts import SIDES, with_positions
     from beamenv.configuration import Count, Instance, checked, checked_table
@@ -76,6 +77,8 @@ def place_sides(
     checked("config", config, Instance(BladeConfig))
     for name, count in checked_table("counts", counts, SIDES).items():
         checked(f"counts.{name}", count, Count())
+    if "sensors" in counts:
+        read_of_patches(config)  # before actuators are searched for
     config, sides = with_positions(config, counts), []
     for side in SIDES:
         if side not in counts:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from baselines.design.matrix import definite_matrix
 from baselines.placement.cost.riccati import solve_riccati
+from baselines.placement.model.charge_readings import charge_slopes, reading_charges
 from baselines.placement.model.contributions import Contributions, contributions
 from baselines.placement.model.equations import (
     Equation,
@@ -35,6 +36,8 @@ from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
 Matrices = TypeVar("Matrices", LayoutMatrices, MatrixSlopes)
+
+READS = ("current", "charge")
 
 NOISE: Mapping[Side, Number] = MappingProxyType({"actuators": Number(ge=0.0), "sensors": Number(gt=0.0)})
 """What V may be: of sensors to be placed it is divided by."""
@@ -59,13 +62,16 @@ class PlacementProblem:
     load_noise: Array
     """W (2, 2), (N/m)² s."""
     sensor_noise: float
-    """V, A² s, of every sensor."""
+    """V, A² s, of every sensor; C² s where charges are read."""
     parts: Contributions
+    reads: str = "current"
+    """What is read of the sensor patches: "current" or "charge"."""
 
     def __post_init__(self) -> None:
         for name, kind in (("config", BladeConfig), ("bounds", Bounds), ("parts", Contributions)):
             checked(name, getattr(self, name), Instance(kind))
         checked("side", self.side, Choice(SIDES))
+        checked("reads", self.reads, Choice(READS))
         given = self.bounds
         room = Bounds.of(self.config.patches, self.config.beam.length, given.count, (given.low, given.high), self.side)
         if given != room:
@@ -83,16 +89,15 @@ class PlacementProblem:
         """
         checked("config", config, Instance(BladeConfig))
         checked("side", side, Choice(SIDES))
-        if config.sensors:
-            raise Refused("config.sensors", [each.kind for each in config.sensors], "empty: patches are placed by their currents")
         if side == "sensors":
             check_noise(config)
+        reads = read_of_patches(config) if side == "sensors" else "current"
         number = config.patches.only(side).count if count is None else count
         room = Bounds.of(config.patches, config.beam.length, number, bounds, name=side)
         uniform = with_positions(config, {side: tuple(room.uniform().tolist())})
         held = Blade(uniform).with_fixed_range()
         plant = held.plant
-        return cls(held.config, side, room, plant.process_noise, float(plant.sensor_noise[0, 0]), parts_of(config))
+        return cls(held.config, side, room, plant.process_noise, float(plant.sensor_noise[0, 0]), parts_of(config), reads)
 
     def configuration(self, positions: ArrayLike) -> BladeConfig:
         """The blade with its moving patches at ``positions`` (count,), m: what ``build_plant`` takes."""
@@ -110,6 +115,8 @@ class PlacementProblem:
         matrices = self._ganged(layout_matrices(self.parts, actuators, sensors, *size))
         moved = self._ganged(matrix_slopes(self.parts, actuators[0], sensors[0], *size))
         reduced, slopes = reduce_with_slopes(self.parts, matrices, moved, Reduction.of(self.config))
+        if self.reads == "charge":
+            reduced, slopes = reading_charges(reduced), charge_slopes(reduced, slopes)
         equation = self.equation(reduced)
         solution = solve_riccati(*equation)[0]
         by_patch = trace_slopes(equation, self._equation_slopes(reduced, slopes), solution)
@@ -121,7 +128,8 @@ class PlacementProblem:
         actuators, sensors = self._layouts(self._numbers(positions, 2))
         passive = self.config.patches.only("actuators").passive
         matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, passive)
-        return reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
+        reduced = reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
+        return reading_charges(reduced) if self.reads == "charge" else reduced
 
     def at(self, positions: ArrayLike) -> ReducedBlades:
         """One layout (count,), m; ``ValueError`` unless it is feasible."""
@@ -170,9 +178,30 @@ def check_noise(config: BladeConfig) -> None:
             raise ValueError(f"{name} = {getattr(config, name)!r} must be positive: without noise all sensors serve alike.")
 
 
+def read_of_patches(config: BladeConfig) -> str:
+    """What a blade reads of its sensor patches, which placement must know; ``ValueError`` where anything else is read besides."""
+    if not config.sensors:
+        return "current"
+    kinds = [each.kind for each in config.sensors]
+    if len(kinds) > 1 or kinds[0] not in READS:
+        raise Refused("config.sensors", kinds, "empty, or one 'current' or 'charge' of the patches, where these are to be placed")
+    return kinds[0]
+
+
 def parts_of(config: BladeConfig) -> Contributions:
-    """The contributions of a blade, kept from one problem to the next: they depend on neither side nor positions."""
-    patches = replace(config.patches.placed("actuators", 1).placed("sensors", 1), ganged=False)
+    """The contributions of a blade, kept from one problem to the next: they depend on neither side nor positions.
+
+    On a blade without sensor patches, which is read by other sensors, those of a patch on the actuators' other face stand for them
+    and are not used.
+    """
+    layout = config.patches.placed("actuators", 1)
+    if layout.groups("sensors"):
+        layout.only("sensors")
+        layout = layout.placed("sensors", 1)
+    else:
+        group = layout.only("actuators")
+        layout = replace(layout, sensors=(replace(group, face="inner" if group.face == "outer" else "outer", ganged=False),))
+    patches = replace(layout, ganged=False)
     return _parts(BladeConfig(beam=config.beam, patches=patches, model=config.model, speed=config.speed, modes=config.modes))
 
 

@@ -57,7 +57,7 @@ def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, leng
 
 def along(shares: Array, series: Array) -> Array:
     """Force vectors (…, n) from shares (…, 2, k) of the two series (2, k, n)."""
-    return np.asarray(shares.reshape(*shares.shape[:-2], -1) @ series.reshape(-1, series.shape[-1]))
+    return np.asarray(shares.reshape(*shares.shape[:-2], series.shape[0] * series.shape[1]) @ series.reshape(-1, series.shape[-1]))
 
 
 def stored(shares: Array, series: Array | None) -> Array | None:

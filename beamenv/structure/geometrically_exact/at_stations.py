@@ -20,16 +20,15 @@ from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, Fi
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows, shape_tables
+from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS
 from beamenv.structure.section.element_sums import MONOMIALS
 from beamenv.structure.section.elements import RIGID
-from beamenv.structure.section.solid_sections import AMPLITUDES, STRAINS
-from beamenv.structure.trial_functions import FIELDS, Stations, TrialSpace, clamped_table
+from beamenv.structure.trial_functions import Stations, TrialSpace
 
 Array = NDArray[np.float64]
 
 BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), slice(RIGID + AMPLITUDES, STRAINS)
-
-FIELD_COUNT = len(FIELDS)
 
 HELD = 1e-10
 """Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
@@ -266,29 +265,6 @@ class Stressed:
     stiffness: Array
     """(S, 6, 6), with what the fibres' quadratic extension adds."""
     fibres: FibreExtension
-
-
-def increment_rows(space: TrialSpace, z: Array) -> Array:
-    """(S, 12, N): [u, c, u′, c′] at stations z (m), per coefficient."""
-    if space.rigid:
-        tables = space.evaluate(z)
-        return np.stack([tables[name, derivative] for derivative in (0, 1) for name in FIELDS], axis=1)
-    rows = np.zeros((len(z), INCREMENT, space.size))
-    for order, table in enumerate(field_tables(space, z)):
-        for k in range(FIELD_COUNT):
-            rows[:, FIELD_COUNT * order + k, space.each * k : space.each * (k + 1)] = table
-    return rows
-
-
-def field_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
-    """Values and slopes (S, each) of the trial functions that every field has."""
-    value, slope, _ = space.table(z, 1)
-    return value, slope
-
-
-def shape_tables(space: TrialSpace, z: Array) -> tuple[Array, Array]:
-    """Values and slopes (S, terms) of the amplitudes' trial functions."""
-    return clamped_table(z / space.length, space.terms, space.length, space.clamp_reach)
 
 
 SHEARS = slice(0, 2)

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from beamenv.configuration import Refused
 from beamenv.configuration.read_only import sealed_property
 from beamenv.structure.assembly import BeamMatrices, symmetric
-from beamenv.structure.geometrically_exact.at_stations import BladeAtStations, increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.at_stations import BladeAtStations
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.geometrically_exact.tables import increment_rows, shape_tables
+from beamenv.structure.section.amplitudes import AMPLITUDES
 from beamenv.structure.section.elements import RIGID
-from beamenv.structure.section.solid_sections import AMPLITUDES
 from beamenv.structure.trial_functions import Stations, TrialSpace
 from beamenv.structure.walls.inlay import Strip
 

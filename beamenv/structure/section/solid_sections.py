@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import Sealed, sealed, sealed_property
-from beamenv.structure.section.central_solution import CentralSolution, Factorised, central_solution, equilibrium
-from beamenv.structure.section.distortion import DISTORTIONS, distortion_shapes, loads_of_bimoment, loads_of_vibrations
+from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS, Meaning, saint_venant_strains
+from beamenv.structure.section.central_solution import Factorised, central_solution
+from beamenv.structure.section.distortion import distortion_shapes
 from beamenv.structure.section.element_sums import MONOMIALS, ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.mesh import Mesh
@@ -25,12 +26,6 @@ from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate
 
 Array = NDArray[np.float64]
-
-AMPLITUDES = RIGID + DISTORTIONS
-"""Shapes a section may take beside its rigid motion."""
-
-STRAINS = RIGID + 2 * AMPLITUDES
-"""Of a section: (γx, γy, w′, θx′, θy′, φ′), the amplitudes of its shapes, and their derivatives along the span."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +73,14 @@ class SolidSections(Sealed):
 
     @classmethod
     def _of_rate(
-        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: _Meaning | None
-    ) -> tuple[SolidSections, _Meaning]:
+        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: Meaning | None
+    ) -> tuple[SolidSections, Meaning]:
         """Those of one pretwist, and what amplitudes of 1 mean in all. ``meant`` is that of other sections of the blade."""
         sums = element_sums(mesh, laminates, which, rate)
         system = Factorised.of(sums)
         central = central_solution(system, rate)
         if meant is None:
-            meant = _Meaning.of(system.first, central, bool(len(mesh.loose_ends)))
+            meant = Meaning.of(system.first, central, bool(len(mesh.loose_ends)))
         warping, amplitudes = meant.shapes(central)
         shapes = np.concatenate([warping, distortion_shapes(system, meant.loads)], axis=-1)
         here = sums.gather(shapes)
@@ -98,7 +93,7 @@ class SolidSections(Sealed):
             inertia=sums.inertia,
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, here),
-            saint_venant=_saint_venant(central, amplitudes, rate),
+            saint_venant=saint_venant_strains(central, amplitudes, rate),
         )
         return sections, meant
 
@@ -231,57 +226,6 @@ def faces_of(mesh: Mesh) -> list[tuple[NDArray[np.intp], bool, float]]:
     loose, both = mesh.loose_ends, mesh.open_elements
     found = [(outer, False, 1.0), (both, False, -1.0), (loose, True, 1.0), (loose, True, -1.0)]
     return [(elements, last, side) for elements, last, side in found if len(elements)]
-
-
-SHEAR_AND_TWIST = np.array([0, 1, 5])
-"""Of the beam strains γx, γy and φ′, and of the resultants Vx, Vy and Mz."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Meaning:
-    """What amplitudes of 1 mean in all sections of a blade."""
-
-    resultants: Array
-    """(6,): in the first section of unit energy."""
-    loads: Array
-    """Those that distort, (1, K, size, DISTORTIONS)."""
-    strains: Array | None
-    """(3, 3): of an open section, shear and twist of the first under these resultants of them; None: closed."""
-
-    @classmethod
-    def of(cls, first: Factorised, central: CentralSolution, opened: bool) -> _Meaning:
-        """That of a blade whose first section this is."""
-        loads, resultants = loads_of_vibrations(first), np.sqrt(np.diagonal(central.stiffness[0]))
-        if not opened:
-            return cls(resultants, loads, None)
-        torsion = central.warping[:1, :, :, RIGID - 1 :]
-        loads = np.concatenate([loads_of_bimoment(first, torsion), loads[..., : DISTORTIONS - 1]], axis=-1)
-        return cls(resultants, loads, (central.strain[0] * resultants)[np.ix_(SHEAR_AND_TWIST, SHEAR_AND_TWIST)])
-
-    def shapes(self, central: CentralSolution) -> tuple[Array, Array]:
-        """Saint-Venant's shapes of each section, and their amplitudes (V, 6, 6) per stress resultant.
-
-        Warping must go on from one section to the next where a patch begins. In torsion, and under forces beside the shear centre,
-        that of an open section is large and goes with twist and shear, not with torque and forces: of two sections of unlike
-        stiffness it is alike where these are. Otherwise, and of a closed section, amplitudes go with the resultants: under a patch
-        that bends no moment acts, and nothing jumps at its ends.
-        """
-        if self.strains is None:
-            per_resultant = np.broadcast_to(np.diag(1.0 / self.resultants), central.strain.shape)
-            return central.warping * self.resultants, per_resultant
-        resultants = np.tile(np.diag(self.resultants), (len(central.strain), 1, 1))
-        own = np.ix_(np.arange(len(resultants)), SHEAR_AND_TWIST, SHEAR_AND_TWIST)
-        resultants[own] = np.linalg.solve(central.strain[own], np.broadcast_to(self.strains, resultants[own].shape))
-        return central.warping @ resultants[:, None], np.asarray(np.linalg.inv(resultants))
-
-
-def _saint_venant(central: CentralSolution, amplitudes: Array, pretwist: float) -> Array:
-    """(V, STRAINS, 6)."""
-    state = np.zeros((len(central.strain), STRAINS, RIGID))
-    state[:, :RIGID] = central.strain
-    state[:, RIGID : 2 * RIGID] = amplitudes
-    state[:, RIGID + AMPLITUDES : 2 * RIGID + AMPLITUDES] = amplitudes @ equilibrium(pretwist)
-    return state
 
 
 def _energy(sums: ElementSums, shapes: Array) -> Array:

@@ -1,0 +1,39 @@
+"""Where a blade changes along its span: the places that stations lie between, and those at which trial functions break."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.structure.inlays import SHORTEST
+from beamenv.structure.section.section import Section
+from beamenv.structure.walls.inlay import Inlay
+
+Array = NDArray[np.float64]
+
+THICK_INLAY = 0.1
+"""Of a wall's thickness: where thicker inlays begin and end strains jump, which polynomials along the span cannot follow. Sheets of
+0.3 mm on a strip of 2 mm would move its tip 13 % too far per volt. The thesis' patches are a thirtieth of their walls: left to the
+polynomials they move the tip 0.1 to 1.2 % less than with breaks, and no frequency is more than 3e-5 off."""
+
+TOO_CLOSE = 3.5e-3
+"""Of the span: breaks nearer to one another, to the clamp or to the tip are left out, for their functions are hardly new ones: of
+two sheets on a strip, edges 2e-3 to 3.3e-3 apart left its matrices singular to rounding. Frequencies are then 0.4 % off at most."""
+
+
+def breaks(section: Section, length: float, inlays: Sequence[Inlay]) -> tuple[float, ...]:
+    """Where inlays begin and end that change their walls much, m."""
+    thick = [each for each in inlays if each.thickness > THICK_INLAY * section.thickness_of(each.wall)]
+    edges = breakpoints([edge for each in thick for edge in (each.start, each.start + each.length)], length)
+    found = [0.0]
+    for edge in edges[1:-1].tolist():
+        found += [edge] if edge - found[-1] > TOO_CLOSE * length else []
+    return tuple(edge for edge in found[1:] if edge < (1.0 - TOO_CLOSE) * length)
+
+
+def breakpoints(edges: Sequence[float], length: float) -> Array:
+    """Ascending span coordinates (m) of root, tip and the given edges, without repetition."""
+    ends = np.unique(np.clip([0.0, *edges, length], 0.0, length))
+    return ends[np.append(True, np.diff(ends) > SHORTEST * length)]

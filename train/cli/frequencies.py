@@ -1,0 +1,121 @@
+"""The command ``beamenv frequencies``."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from train.cli.options import (
+    BladeOption,
+    JsonOption,
+    PlantOption,
+    PresetOption,
+    environment_arguments,
+    one_sentence,
+    print_json,
+    print_table,
+)
+
+
+def frequencies(
+    preset: PresetOption = "thesis",
+    speed: Annotated[
+        list[float] | None, typer.Option(help="Rotor speed in rad/s; repeat for more. 0 and the preset's if left out.")
+    ] = None,
+    count: Annotated[int, typer.Option(help="How many modes.")] = 6,
+    gyroscopic: Annotated[bool, typer.Option(help="With gyroscopic coupling.")] = True,
+    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
+    blade: BladeOption = None,
+    plant: PlantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Natural frequencies of a blade, each with the family its motion belongs to, and what steady rotation does to it.
+
+    Of a model of your own, its frequencies and damping ratios, and what was assumed of it.
+    """
+    if plant is not None:
+        _of_model(plant, preset, speed, blade, count, as_json)
+        return
+    with one_sentence():
+        from beamenv.blade.build import build_beam
+        from beamenv.blade.clamp import clamp_note
+        from beamenv.blade.files import load_config
+        from beamenv.blade.presets import blade_config
+        from beamenv.structure.steady_deformation import steady_deformation
+
+        config = blade_config(preset, load_config(blade) if blade else None)
+        beam = build_beam(config) if patches else config.beam.build(model=config.model)
+        speeds = speed or sorted({0.0, config.speed})
+        found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
+        steady = [steady_deformation(beam, each) for each in speeds]
+        note = clamp_note(config) if patches else ""
+    if as_json:
+        rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
+        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
+        return
+    table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
+    table.add_column("mode", justify="right")
+    for each in speeds:
+        table.add_column(f"at {each:g} rad/s", justify="right")
+    for mode in range(count):
+        table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
+    print_table(table)
+    for each, state in zip(speeds, steady, strict=True):
+        if each > 0.0 and config.model != "thesis":
+            Console().print(_turning(each, state, config.patches.failure_strain), soft_wrap=True)
+    if note:
+        Console().print(note, soft_wrap=True)
+
+
+def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
+    """What JSON says of one speed."""
+    return {
+        "speed": speed,
+        "natural_frequencies": modes.natural_frequencies.tolist(),
+        "families": list(modes.families),
+        "static": asdict(state),
+    }
+
+
+def _turning(speed: float, state: Any, limit: float) -> str:
+    """What steady rotation does to the blade, in one sentence."""
+    strain, rated = 100.0 * state.strain, 100.0 * limit
+    beyond = f", beyond the {rated:.3g} % that patches are rated for" if abs(strain) > rated else ""
+    return (
+        f"turning steadily at {speed:g} rad/s: tip {1e3 * state.stretch:.3g} mm further out, untwisted by {state.untwist:.3g}°; "
+        f"spanwise strain up to {strain:.2g} %, at {state.strain_at:.3g} m{beyond}"
+    )
+
+
+def _frequency(modes: Any, mode: int) -> str:
+    frequency = modes.natural_frequencies[mode]
+    return f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f}) {modes.families[mode]}"
+
+
+def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path | None, count: int, as_json: bool) -> None:
+    """What is known of the modes of a model."""
+    with one_sentence():
+        from beamenv.plant.poles import swinging
+        from beamenv.task import resolve_task
+
+        first = speed[0] if speed else None
+        model = resolve_task(**environment_arguments(preset, first, blade, plant)).plant
+        frequencies, ratios = (each[:count] for each in swinging(np.linalg.eigvals(model.A).astype(np.complex128)))
+    if as_json:
+        told = {"unit": "rad/s", "natural_frequencies": frequencies.tolist(), "damping_ratios": ratios.tolist()}
+        print_json({"plant": str(plant), **told, "assumed": list(model.assumed)})
+        return
+    table = Table(title="Natural frequencies, rad/s (Hz)", caption=model.sizes)
+    for heading in ("mode", "frequency", "damping, %"):
+        table.add_column(heading, justify="right")
+    for number, (frequency, ratio) in enumerate(zip(frequencies, ratios, strict=True), start=1):
+        table.add_row(str(number), f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f})", f"{100.0 * ratio:.3g}")
+    print_table(table)
+    if model.assumed:
+        Console().print(f"assumed: {'; '.join(model.assumed)}", soft_wrap=True, markup=False)
