@@ -15,8 +15,8 @@ from beamenv.plant.plant import SampledPlant
 def with_feedthrough(held: SampledPlant, felt: Any = None) -> SampledPlant:
     """The plant with state [x; ζ], ζ = D u of the interval before, of those sensors that have any, so that y = C x + ζ.
 
-    A reading is taken before the next voltage is put on (``beamenv.plant.plant``), so this is the very plant, without a D. A plant
-    whose sensors feel no voltage is returned as it is. ``felt`` (p,) of bools says which sensors may, where
+    A reading is taken before the next voltage is put on (``beamenv.plant.matrices``), so this is the very plant, without a D. A
+    plant whose sensors feel no voltage is returned as it is. ``felt`` (p,) of bools says which sensors may, where
     none does for now.
     """
     felt = np.any(held.D, axis=1) if felt is None else felt

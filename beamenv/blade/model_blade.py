@@ -145,9 +145,9 @@ def model_of(given: Any, name: str = "plant") -> Plant:
     if isinstance(given, Plant):
         return given
     if isinstance(given, (str, Path)):
-        return plant_from_file(given, name)
+        return Plant.of(plant_from_file(given, name))
     if isinstance(given, Mapping):
-        return plant_from_table(given)
+        return Plant.of(plant_from_table(given))
     raise Refused(name, given, "a Plant, the path of a .npz, .mat or .json file, or a table of matrices")
 
 

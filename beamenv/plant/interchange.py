@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from beamenv.configuration import Refused
 from beamenv.configuration.sentence import unknown_field
-from beamenv.plant.state_space import plant_of_arguments
 
 Array = NDArray[np.float64]
 Plant = TypeVar("Plant", bound=Any)
@@ -37,22 +36,6 @@ def sampled_to_control(held: Any) -> control.StateSpace:
     loads = ["load_lag", "load_flap"] if k == 2 else _numbered("load", k)
     names = {"inputs": _numbered("voltage", held.B.shape[1]) + loads, "outputs": _numbered("current", len(held.C))}
     return control.ss(held.A, np.hstack([held.B, held.disturbance_input]), held.C, feedthrough, dt=held.interval, **names)
-
-
-def plant_of_system(system: control.StateSpace, about: dict[str, Any]) -> Any:
-    """The plant that ``state_space.plant_of_model`` makes of a system's matrices and clock, and of what is known ``about`` it."""
-    if not isinstance(system, control.StateSpace):
-        try:
-            system = control.ss(system)
-        except Exception:  # noqa: BLE001 - python-control complains of what is no system in ways of its own
-            raise Refused("system", system, "a control.StateSpace, or what control.ss makes one of") from None
-    if system.dt is True:
-        raise ValueError("system has dt = True, but must say how long a sample is, in s, or be in continuous time.")
-    for name in ("A", "B", "C", "D", "dt"):
-        if name in about:
-            raise Refused(name, about[name], "left out: system has its own")
-    clock = None if system.dt in (None, 0) else float(system.dt)
-    return plant_of_arguments({"A": system.A, "B": system.B, "C": system.C, "D": system.D, "dt": clock, **about})
 
 
 def plant_from_control(system: control.StateSpace, like: Plant, **changes: Any) -> Plant:

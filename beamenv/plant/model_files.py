@@ -14,7 +14,7 @@ from scipy.io import loadmat
 
 from beamenv.configuration.files import checked_path, content_of, of_file, parsed_arrays, read_table
 from beamenv.configuration.sentence import shown, unknown_field
-from beamenv.plant.plant import Plant
+from beamenv.plant.matrices import PlantMatrices
 from beamenv.plant.signals import Signal
 from beamenv.plant.state_space import FIELDS, plant_of_model
 
@@ -28,7 +28,7 @@ BESIDE = ("origin",)
 """In words, where a model comes from: read by people alone."""
 
 
-def plant_from_file(path: str | os.PathLike[str], name: str = "plant") -> Plant:
+def plant_from_file(path: str | os.PathLike[str], name: str = "plant") -> PlantMatrices:
     """The plant of the model in a file. ``A``, ``B`` and ``C`` must be there, what else ``state_space`` takes may.
 
     Raises ``ValueError`` of one sentence, with the file's name in it, for another ending, a file that cannot be read, a key that is
@@ -40,27 +40,27 @@ def plant_from_file(path: str | os.PathLike[str], name: str = "plant") -> Plant:
         return plant_from_table(content)
 
 
-def plant_from_table(content: Mapping[str, Any]) -> Plant:
+def plant_from_table(content: Mapping[str, Any]) -> PlantMatrices:
     """The plant of a table of matrices: of a model, or with ``state_weight`` all fields of a ``Plant``, as ``plant_table`` tells
     them. ``ValueError`` for a key that is missing or unknown.
     """
     if "state_weight" not in content:
         return plant_of_model(**fields_of(content))
-    known = [each.name for each in fields(Plant)]
+    known = [each.name for each in fields(PlantMatrices)]
     for key in content:
         if key not in known:
             raise unknown_field("plant", key, known)
-    for each in fields(Plant):
+    for each in fields(PlantMatrices):
         if each.default is MISSING and each.name not in content:
             raise ValueError(f"plant.{each.name} is missing.")
     states = len(np.atleast_1d(content["A"]))
-    return Plant(**{key: _whole(key, value, states) for key, value in content.items()})
+    return PlantMatrices(**{key: _whole(key, value, states) for key, value in content.items()})
 
 
-def plant_table(plant: Plant) -> dict[str, Any]:
+def plant_table(plant: PlantMatrices) -> dict[str, Any]:
     """Every field of a plant as JSON can hold it; ``plant_from_table`` takes it back, to the last bit."""
     table = {}
-    for each in fields(Plant):
+    for each in fields(PlantMatrices):
         value = getattr(plant, each.name)
         signals = each.name in SIGNALS
         table[each.name] = [asdict(one) for one in value] if signals else value.tolist() if isinstance(value, np.ndarray) else value

@@ -11,10 +11,11 @@ from scipy.linalg import block_diag, solve_continuous_lyapunov
 from beamenv.configuration import Refused
 from beamenv.configuration.arrays import checked_array
 from beamenv.configuration.read_only import sealed
+from beamenv.plant.matrices import PlantMatrices
 from beamenv.plant.model_arguments import checked_covariance, checked_weight, positive
 from beamenv.plant.parts import not_negative
-from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.transients import after_sudden
+from beamenv.plant.units import AnyPlant, drive_limit
 
 Array = NDArray[np.float64]
 
@@ -66,7 +67,9 @@ def slowest_mode(A: Array) -> float:
     return float(np.abs(light).min()) if len(light) else float(turning_frequencies(A)[0])
 
 
-def with_cost(plant: Plant, energy: ArrayLike | None, output_weight: ArrayLike | None, further: int, assumed: list[str]) -> Plant:
+def with_cost(
+    plant: AnyPlant, energy: ArrayLike | None, output_weight: ArrayLike | None, further: int, assumed: list[str]
+) -> AnyPlant:
     """The cost of states: the energy, or of outputs where that is asked for or no energy is known."""
     n = len(plant.A)
     if energy is not None:
@@ -82,14 +85,14 @@ def with_cost(plant: Plant, energy: ArrayLike | None, output_weight: ArrayLike |
     return of_outputs(plant, W)
 
 
-def usual_output_weight(plant: Plant) -> Array:
+def usual_output_weight(plant: PlantMatrices) -> Array:
     """(p,): of each output over the most that one full voltage makes of it."""
     drive = drive_limit(plant)
     reach = np.maximum(after_sudden(plant, plant.B * drive).outputs, np.abs(plant.D * drive).max(axis=1))
     return np.asarray(1.0 / np.where(reach > 0.0, reach, 1.0) ** 2)
 
 
-def of_outputs(plant: Plant, weight: Array) -> Plant:
+def of_outputs(plant: AnyPlant, weight: Array) -> AnyPlant:
     """The plant with the cost yᵀWy of its outputs, W = ``weight`` (p, p)."""
     return replace(
         plant,
@@ -99,7 +102,7 @@ def of_outputs(plant: Plant, weight: Array) -> Plant:
     )
 
 
-def priced_alike(plant: Plant, first: Plant) -> Plant:
+def priced_alike(plant: AnyPlant, first: PlantMatrices) -> AnyPlant:
     """The plant with the cost of outputs that the first one has by the rules; as it is where that was said otherwise."""
     if OUTPUTS not in first.assumed:
         return plant
@@ -107,8 +110,13 @@ def priced_alike(plant: Plant, first: Plant) -> Plant:
 
 
 def with_scales(
-    plant: Plant, reference: ArrayLike | None, full_scale: ArrayLike | None, at_actuators: bool, loads: int, assumed: list[str]
-) -> Plant:
+    plant: AnyPlant,
+    reference: ArrayLike | None,
+    full_scale: ArrayLike | None,
+    at_actuators: bool,
+    loads: int,
+    assumed: list[str],
+) -> AnyPlant:
     """What the actuators can hold, and the range of the sensors."""
     drive, rest = drive_limit(plant), np.zeros(plant.disturbance_input.shape[1] - loads)
     if reference is None:
@@ -129,7 +137,7 @@ def with_scales(
     return replace(plant, sensor_full_scale=sealed(ranges))
 
 
-def _held_by(plant: Plant, drive: Array) -> Array:
+def _held_by(plant: PlantMatrices, drive: Array) -> Array:
     """(k,): disturbances whose impulse costs as much as one of all actuators at full voltage; 34.5 and 35.4 N/m on the default
     blade, whose reference is 30.
     """
@@ -138,7 +146,7 @@ def _held_by(plant: Plant, drive: Array) -> Array:
     return np.sqrt(by_drive.sum() / np.where(by_load > 0.0, by_load, by_drive.sum()))
 
 
-def with_price(plant: Plant, given: ArrayLike | None, assumed: list[str]) -> Plant:
+def with_price(plant: AnyPlant, given: ArrayLike | None, assumed: list[str]) -> AnyPlant:
     """The price of voltages, beside what outputs feel of them."""
     m, felt = (
         plant.B.shape[1],
@@ -156,7 +164,7 @@ def with_price(plant: Plant, given: ArrayLike | None, assumed: list[str]) -> Pla
     return replace(plant, input_weight=sealed(price + felt))
 
 
-def with_noise(plant: Plant, process: ArrayLike | None, sensor: ArrayLike | None, loads: int, assumed: list[str]) -> Plant:
+def with_noise(plant: AnyPlant, process: ArrayLike | None, sensor: ArrayLike | None, loads: int, assumed: list[str]) -> AnyPlant:
     """Intensities of white disturbances and of sensor noise, from covariances or standard deviations in one interval."""
     interval, states = plant.control_interval, plant.disturbance_input.shape[1] - loads
     if process is None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Refused
+from beamenv.configuration import Number, Refused, checked
 from beamenv.configuration.arrays import checked_array, real_numbers, shaped_array
 from beamenv.plant.signals import usual_disturbances, usual_reference
 
@@ -89,3 +89,18 @@ def checked_reference(given: Any, named: Any, disturbances: int) -> Array:
     if not fits or np.any(np.diff((loads > 0.0).astype(int)) > 0):
         raise Refused("plant.reference_load", given, f"{disturbances} numbers, one for each disturbance, none below 0, zeros last")
     return loads
+
+
+def check_clock(plant: Any, name: str) -> None:
+    """``ValueError`` for an interval that is not positive and finite."""
+    object.__setattr__(plant, name, checked(f"plant.{name}", getattr(plant, name), Number(gt=0.0, unit="s")))
+
+
+def counts(B: Array, C: Array) -> str:
+    """How many states, voltages and sensors, in words."""
+    return f"{B.shape[0]} states, {B.shape[1]} voltages, {len(C)} sensors"
+
+
+def span(first: float, last: float) -> str:
+    """From the first frequency to the last, in words."""
+    return f"{first:.4g} … {last:.4g} rad/s"

@@ -15,6 +15,7 @@ from beamenv.configuration import Number, Refused, checked
 from beamenv.configuration.sentence import unknown_field
 from beamenv.plant.continuous import continuous
 from beamenv.plant.hold import hold
+from beamenv.plant.matrices import PlantMatrices
 from beamenv.plant.model_arguments import checked_inputs, checked_limits, checked_matrices, checked_rows, named_signals, root_of
 from beamenv.plant.model_rules import (
     slowest_mode,
@@ -25,7 +26,6 @@ from beamenv.plant.model_rules import (
     with_price,
     with_scales,
 )
-from beamenv.plant.plant import Plant
 from beamenv.plant.reachable import check_modes
 from beamenv.plant.signals import Signal
 
@@ -76,14 +76,14 @@ def plant_of_model(
     full_scale: ArrayLike | None = None,
     actuator_limits: ArrayLike | None = None,
     tip_displacement: ArrayLike | None = None,
-) -> Plant:
+) -> PlantMatrices:
     """The plant of a model with n states in any coordinates, m voltages u (V) and p sensors.
 
         ẋ = A x + B u + E d,        y = C x + D u,        or with ``dt`` (s) x⁺ = A x + B u + E d.
 
     A sampled model's ``dt`` is the control interval; it is the very model at the samples, and in continuous time between
     (``beamenv.plant.continuous``). ``D`` is what sensors feel of the voltage that is on while they are read
-    (``beamenv.plant.plant``).
+    (``beamenv.plant.matrices``).
 
     What may be said besides, and what is taken to be so where it is not, which ``Plant.assumed`` tells in words:
 
@@ -140,7 +140,7 @@ FIELDS = tuple(inspect.signature(plant_of_model).parameters)
 """What may be said of a model."""
 
 
-def plant_of_arguments(given: Mapping[str, Any]) -> Plant:
+def plant_of_arguments(given: Mapping[str, Any]) -> PlantMatrices:
     """The plant of the arguments of ``plant_of_model`` by their names; ``ValueError`` for one that it does not have."""
     for name in given:
         if name not in FIELDS:
@@ -158,13 +158,13 @@ def _within_numbers() -> Iterator[None]:
         raise ValueError("the model cannot be computed: its numbers, or those said of it, are out of scale.") from None
 
 
-def _without_rules(model: Model, tip_displacement: ArrayLike | None) -> Plant:
+def _without_rules(model: Model, tip_displacement: ArrayLike | None) -> PlantMatrices:
     """The dynamics alone."""
     (n, m), p, r = model.B.shape, len(model.C), model.noise.shape[1]
     loads = model.B if model.loads is None else model.loads
     k, own = loads.shape[1], n - model.further
     tip = np.zeros((0, n)) if tip_displacement is None else checked_rows("tip_displacement", tip_displacement, own, model.further)
-    return Plant(
+    return PlantMatrices(
         A=model.A,
         B=model.B,
         C=model.C,

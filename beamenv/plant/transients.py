@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from beamenv.plant.plant import Plant
+from beamenv.plant.matrices import PlantMatrices
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ class Transient(NamedTuple):
     """xᵀQx."""
 
 
-def after_sudden(plant: Plant, forces: Array) -> Transient:
+def after_sudden(plant: PlantMatrices, forces: Array) -> Transient:
     """Of each of ``forces`` (n, k), columns f of ẋ = A x + f that set in at rest, one by one; the plant must be stable."""
     steps = int(np.ceil(PERIODS * 2.0 * np.pi / plant.natural_frequencies[0] / plant.control_interval))
     every = -(-steps // MOST_SAMPLES)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ from beamenv.scenarios.scenario import Scenario
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task.designed import design_config, driven, same_electronics, with_modes
 from beamenv.task.length import episode_steps
-from beamenv.task.scenario_checks import check_failures, check_loads, with_own_loads
+from beamenv.task.scenario_checks import check_failures, check_loads, under_loads, with_own_loads
 from beamenv.task.sharing import shared
 from beamenv.task.task import Task
 
@@ -60,7 +59,7 @@ def resolve_task(
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
     truth, modes = chosen.plants.truth, chosen.plants.modes
-    config = replace(config, loads=tuple(load.place for load in chosen.loads)) if chosen.loads else config
+    config = under_loads(config, chosen)
     own = driven(config if design is None else design_config(preset, speed, design), chosen)
     config = with_modes(driven(config, chosen), truth_modes=modes if truth is None else None)
     known = chosen.plants.design_modes

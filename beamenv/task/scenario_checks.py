@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from beamenv.blade.build import Blade
+from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Refused
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.own_loads import of_blade
@@ -21,6 +22,15 @@ def check_failures(chosen: Scenario, plant: Plant) -> None:
     ):
         if broken > there:
             raise Refused(f"scenario.failures.{name}", broken, f"at most the {there} that the blade has")
+
+
+def under_loads(config: BladeConfig, chosen: Scenario) -> BladeConfig:
+    """The blade with the places of a scenario's loads; ``ValueError`` for one that has others, of which nobody says how large."""
+    places = tuple(load.place for load in chosen.loads)
+    if config.loads and config.loads != places:
+        shapes = [place.shape for place in config.loads]
+        raise Refused("blade.loads", shapes, "left out, or the places of the scenario's loads, which say how large they are")
+    return replace(config, loads=places)
 
 
 def with_own_loads(chosen: Scenario, true: Blade) -> Scenario:

@@ -168,7 +168,7 @@ DOORS = [
             "environment": {"blade": dict(small.BLADE), "duration": 0.002},
             "validation": False,
         },
-        told=("controller", "model", "blade"),
+        told=("controller", "model", "blade", "section"),
         plain=False,
     ),
 ]

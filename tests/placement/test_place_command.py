@@ -103,7 +103,8 @@ def test_a_picture_that_cannot_be_written_is_told_before_the_search(more, tmp_pa
 
     monkeypatch.setattr("train.cli.place.place_sides", searched)
     (tmp_path / "note").write_text("kept")
-    for picture in (tmp_path / "note" / "picture.png", tmp_path):
+    (tmp_path / "folder.png").mkdir()
+    for picture in (tmp_path / "note" / "picture.png", tmp_path / "folder.png"):
         result = run("--picture", str(picture), *more)
         assert result.exit_code == 2, result.output
         assert result.stdout == "" and result.stderr.startswith("beamenv: picture = ")

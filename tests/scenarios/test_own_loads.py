@@ -280,3 +280,11 @@ def test_a_force_on_a_blade_of_the_thesis_model_acts_at_rest_and_in_a_run_up():
         task = resolve_task(speed=0.0, blade={"model": "thesis"}, scenario={**scenario, "loads": [force]}, duration=0.01)
         release, shown = task.bank.release[0], task.bank.tip[0]
         assert (release @ shown)[2, 1] == pytest.approx(8.0 / 3.0 / 2.023 * (release @ shown)[1, 1], rel=0.05)
+
+
+@pytest.mark.parametrize("scenario", [{}, {"loads": [{"position": 0.1}]}])
+def test_places_without_a_size_are_refused(scenario):
+    with pytest.raises(ValueError, match="blade.loads is .*, but must be left out, or the places of the scenario's loads"):
+        resolve_task("aluminium-cantilever", blade={"loads": [{"position": 0.2}]}, scenario=scenario)
+    again = resolve_task("aluminium-cantilever", scenario={"loads": [{"position": 0.1}]})
+    assert resolve_task(blade=again.config, scenario={"loads": [{"position": 0.1}]}).config == again.config

@@ -52,6 +52,8 @@ def test_a_benchmark_runs_what_can_be_had_of_a_model(uneven, tmp_path):
     told = json.loads((tmp_path / "quick" / "benchmark.json").read_text())
     assert {row["controller"] for row in told["rows"]} >= {"none", "lqg", "lqg-load", "multiple-model", "clairvoyant"}
     assert all(row["estimates"] for row in told["rows"])
+    page = (tmp_path / "quick" / "report.html").read_text(encoding="utf-8")
+    assert "<h2>Readings and voltages</h2>" in page and 'id="blade"' not in page
 
 
 def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_reason(uneven, tmp_path):

@@ -1,9 +1,9 @@
 """The bank of a run-up: a plant for every control interval, and the vibration that the run-up itself excites.
 
 x is the state of the blade about its moving equilibrium (``run_up``), in energy coordinates at every instant: x = [Uᵀη; η̇] with
-K = U Uᵀ and M = 1. J, sensors (whose amplifiers do not pass so slow a drift) and strain mean x, as at constant speed. The plant of
-an interval is that of the speed at its middle, held over the interval. The static share of modes that are left out is that of the
-configured speed.
+K = U Uᵀ and M = 1. J, sensors (patches' amplifiers do not pass so slow a drift; what others show of the moving equilibrium is taken
+off) and strain mean x, as at constant speed. The plant of an interval is that of the speed at its middle, held over the interval.
+The static share of modes that are left out is that of the configured speed.
 
 Speed follows a cycloid, Ω = Ω₀ + ΔΩ (τ − sin(2πτ)/2π) with τ = t/T: Ω̇ and Ω̈ are zero at both ends, but the moving equilibrium
 is not at rest at t = 0⁺, where the blade still stands in the steady state of Ω₀. The difference is the vibration that the start

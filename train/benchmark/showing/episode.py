@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
+from beamenv.knowledge import TRUTH
 from beamenv.scenarios.scenario import scenario
 from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
-from train.controllers.named import named
+from train.controllers.named import KINDS, named
 from train.controllers.shipped import find_shipped, shipped
 from train.controllers.sources import Trained
 from train.page import RecordedEpisode, record_episode
@@ -16,10 +20,12 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
     """The first held-out episode of the scenario in which a shipped agent gains most on LQG, and what to say of it.
 
     Scenarios whose plant is drawn or changes are passed over: their blades have other shapes than the configured one. None without
-    a shipped agent.
+    a shipped agent. Of a model of one's own, LQG and the best other law in the first scenario.
     """
     ships = {f"{each.agent}-{'generalist' if each.scenario == 'generalist' else 'specialist'}": each.agent for each in shipped()}
     environment = table.configuration.get("environment", {})
+    if environment.get("plant") is not None:
+        return _of_model(table, environment)
     candidates = [row for row in table.rows if row.controller in ships and row.measured and _one_plant(row.scenario)]
     if not candidates:
         return None, ""
@@ -32,6 +38,20 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
         return None, ""
     note = f"Scenario {best.scenario}, held-out episode of seed {HELD_OUT}: LQG, and the agent that gains most on it."
     return record_episode(arguments, HELD_OUT, (named("lqg").build_for(task), agent)), note
+
+
+def _of_model(table: BenchmarkTable, environment: Mapping[str, Any]) -> tuple[RecordedEpisode | None, str]:
+    """The first held-out episode of the first scenario under LQG and the best other law with sensors there; it has no shape."""
+    name = table.scenarios[0]
+    rivals = [row for row in table.within(name) if row.measured and row.kind in KINDS and row.controller not in ("none", "lqg")]
+    rivals = [row for row in rivals if row.tier < TRUTH]
+    arguments = {**environment, "scenario": table.configuration["scenarios"][name]}
+    task = resolve_task(**{key: value for key, value in arguments.items() if key != "max_episode_steps"})
+    lqg = named("lqg").build_for(task)
+    best = min(rivals, key=lambda row: row.mean_cost, default=None)
+    pair = (named("none" if best is None else best.controller).build_for(task), lqg)
+    told = "LQG, and no control" if best is None else f"LQG, and {best.controller}, the law that costs least beside it"
+    return record_episode(arguments, HELD_OUT, pair), f"Scenario {name}, held-out episode of seed {HELD_OUT}: {told}."
 
 
 def _home(row: Row) -> str:

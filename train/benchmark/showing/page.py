@@ -21,7 +21,7 @@ def write_report(path: Path, table: BenchmarkTable) -> None:
     episode, note = shown_episode(table)
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
-        title="Controllers of a rotating blade across scenarios",
+        title=f"Controllers of a {'rotating blade' if episode is None or episode.has_shape else 'model'} across scenarios",
         note="\n".join([*(each.sentence for each in findings(table)), *table.left_out, *wrong]),
         table=page_table(table),
         further={each.heading: further_table(each) for each in sections(table)},
