@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.config import MATERIALS, BladeConfig
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.held_load import own_reference, reference_of, under_reference
 from beamenv.blade.instruments import in_range
 from beamenv.blade.load_shapes import shape_force
@@ -312,20 +312,6 @@ def plant_of(config: BladeConfig, beam: RotatingBeam) -> Plant:
     blade = Blade(config)
     vars(blade)["beam"] = beam
     return blade.plant
-
-
-def changed_blade(
-    config: BladeConfig, speed: float, ply_angle: float, modulus: float, mass: float, damping_ratio: float
-) -> BladeConfig:
-    """A blade whose speed, ply angles, moduli and density are those of another times a ratio, with a damping ratio of its own."""
-    material = MATERIALS[config.beam.material] if isinstance(config.beam.material, str) else config.beam.material
-    stiffer = {name: modulus * getattr(material, name) for name in ("E1", "E2", "G12", "G13", "G23")}
-    beam = replace(
-        config.beam,
-        material=replace(material, density=mass * material.density, **stiffer),
-        ply_angles_deg=tuple((wall, tuple(ply_angle * angle for angle in angles)) for wall, angles in config.beam.ply_angles_deg),
-    )
-    return replace(config, beam=beam, speed=speed * config.speed, damping_ratio=damping_ratio)
 
 
 def displacement_operator(config: BladeConfig, stations: Sequence[float] | Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.blade.build import changed_blade
+from beamenv.blade.changed import changed_blade
 from beamenv.simulation.plants.banks import varied
 from beamenv.simulation.plants.run_up import Cycloid, RunUp
 from beamenv.simulation.plants.run_ups import run_up_of

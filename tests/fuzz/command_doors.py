@@ -100,7 +100,7 @@ COMMANDS = {
             "--plant": None,
         },
         ("--json",),
-        ("train.comparison.compare.evaluate_all", "train.comparison.compare.run"),
+        ("train.comparison.compare.evaluate", "train.comparison.compare.run"),
     ),
     "train": (
         ("gradient",),

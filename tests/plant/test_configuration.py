@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from beamenv.blade.build import build_beam, build_plant, changed_blade, plant_of
+from beamenv.blade.build import build_beam, build_plant, plant_of
+from beamenv.blade.changed import changed_blade
 from beamenv.blade.files import from_dict, load_config, to_dict
 from beamenv.blade.presets import PRESETS, blade_config
 

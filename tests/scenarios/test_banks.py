@@ -8,7 +8,8 @@ import pytest
 from baselines import lqg
 from baselines.analysis.stationary import closed_loop_poles
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
-from beamenv.blade.build import Blade, build_plant, changed_blade
+from beamenv.blade.build import Blade, build_plant
+from beamenv.blade.changed import changed_blade
 from beamenv.blade.presets import blade_config
 from beamenv.plant.plant import normalised
 from beamenv.scenarios.load_cases import static_deflection

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import kstest
 
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
-from beamenv.blade.build import changed_blade
+from beamenv.blade.changed import changed_blade
 from beamenv.rendering.deformation import Deformation
 from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.blades import Blades

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from beamenv.blade.build import Blade, changed_blade
+from beamenv.blade.build import Blade
+from beamenv.blade.changed import changed_blade
 from beamenv.blade.presets import blade_config
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, Web
 from beamenv.structure.section import equations

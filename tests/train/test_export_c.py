@@ -23,7 +23,7 @@ from train.export.compiled import FLAGS, compiler, running, seconds_a_step
 needs_a_compiler = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 
 
-def agrees(controller, plant, scenario, **blade):
+def agrees(controller, plant, /, scenario, **blade):
     """Of both precisions with Python in double precision."""
     found = {precision: exported(controller, plant, precision=precision) for precision in TOLERANCE}
     reads_speed = len(found["double"].diagram.inputs) > 1
@@ -177,3 +177,13 @@ def test_names_that_would_break_a_comment_do_not():
     law = replace(lqg(plant), name="*/ int x; /* ??/ $name %s \\")
     with running(exported(law, plant)) as step:
         assert step(np.zeros(4)).tolist() == [0.0] * 4
+
+
+@needs_a_compiler
+@pytest.mark.parametrize("name", ["lqg", "lqg-load", "h-infinity", "multiple-model"])
+def test_law_of_a_model_whose_sensors_feel_the_voltages(name):
+    A = [[0.0, 30.0, 0.0], [-30.0, -0.6, 0.0], [0.0, 0.0, -60.0]]
+    B, C = [[0.0, 0.0], [1.0, 0.3], [1.0, -0.9]], [[0.0, 1.0, 0.2], [0.3, 0.0, -0.8], [0.1, 0.5, 0.3]]
+    model = {"A": A, "B": B, "C": C, "D": [[0.01, 0.0], [0.0, 0.01], [0.01, 0.01]], "interval": 0.01}
+    task = resolve_task(plant=model)
+    agrees(discover()[name].build_for(task), task.design_plant, "default", plant=model)

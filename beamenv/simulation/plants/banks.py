@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from beamenv.blade.build import Blade, changed_blade
+from beamenv.blade.build import Blade
+from beamenv.blade.changed import changed_blade
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.blade.model_blade import ModelBlade
 from beamenv.scenarios.tables import PlantVariation
