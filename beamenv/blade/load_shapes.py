@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,15 +54,20 @@ class LoadShape:
     """Along lag, flap and span; of any length."""
 
     def __post_init__(self) -> None:
-        check_direction(self.direction)
-        check_heeded(self, _HEEDED)
-        if self.span is not None and not self.span[1] > self.span[0]:
-            raise Refused("span", self.span, "a range [from, to] of some length (m)")
+        check_place(self)
 
     @property
     def signal(self) -> Signal:
         """Its name and unit as a disturbance."""
         return Signal(self.shape, UNITS[self.shape])
+
+
+def check_place(load: Any) -> None:
+    """``Refused`` where the fields of a ``LoadShape``, or of what has these fields too, do not go together."""
+    check_direction(load.direction)
+    check_heeded(load, _HEEDED)
+    if load.span is not None and not load.span[1] > load.span[0]:
+        raise Refused("span", load.span, "a range [from, to] of some length (m)")
 
 
 def shape_force(beam: RotatingBeam, shape: LoadShape, name: str) -> Array:

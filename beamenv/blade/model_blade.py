@@ -18,6 +18,7 @@ from beamenv.configuration.numbers import Number
 from beamenv.configuration.read_only import sealed
 from beamenv.patches import PatchResponse
 from beamenv.plant.fingerprint import fingerprint
+from beamenv.plant.limits import VOLTAGES
 from beamenv.plant.model_files import plant_from_file, plant_from_table, plant_table
 from beamenv.plant.model_rules import priced_alike
 from beamenv.plant.plant import Plant, drive_limit
@@ -58,7 +59,8 @@ class ModelBlade(Blade):
         model = models[0]
         low, high = model.voltage_limits
         interval = checked("plant.control_interval", model.control_interval, INTERVAL)
-        config = BladeConfig(speed=0.0, voltage_limits=(float(low.min()), float(high.max())), control_interval=interval)
+        drive = checked("plant.voltage_limits", (float(low.min()), float(high.max())), VOLTAGES)
+        config = BladeConfig(speed=0.0, voltage_limits=drive, control_interval=interval)
         return cls(config, model, spread, models if len(models) > 1 else ())
 
     @property

@@ -27,14 +27,18 @@ FIBRE_ANGLE_DEG = 90.0
 """Fibres run along the span. The thesis prints θp = 0, which would leave −1.1 C/m² along the span and is not meant."""
 
 
+FreeStrain = Number(ge=-1e-6, le=1e-6, unit="m/V")
+"""Hundreds of times what single crystals do, and far below any number of pC/N or nm/V."""
+
+
 @configuration("patch_material")
 class PatchMaterial:
     """A piezoelectric sheet driven by one field E = V / ``electrode_spacing`` along its axis 1 (MFC) or through it (PZT)."""
 
     lamina: Lamina
-    d11: Annotated[float, Number(unit="m/V")]
+    d11: Annotated[float, FreeStrain]
     """Free strain along the span per field, m/V (= C/N)."""
-    d12: Annotated[float, Number(unit="m/V")]
+    d12: Annotated[float, FreeStrain]
     """Free strain across the span per field, m/V."""
     thickness: Annotated[float, Number(gt=0.0, unit="m")]
     """m."""

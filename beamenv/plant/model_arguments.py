@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Refused, Texts, checked
-from beamenv.configuration.arrays import checked_array, real_numbers
+from beamenv.configuration.arrays import check_finite, checked_array, real_numbers
 from beamenv.plant.limits import STRONGEST_DRIVE
 from beamenv.plant.parts import not_negative
 from beamenv.plant.signals import Signal
@@ -64,7 +64,8 @@ def checked_limits(given: ArrayLike | None, m: int, assumed: list[str]) -> Array
     )
     low, high = limits
     if not (np.all(low <= 0.0) and np.all(high >= 0.0) and np.all(high > low) and np.abs(limits).max() <= STRONGEST_DRIVE):
-        raise Refused("actuator_limits", limits.tolist(), "a lower limit of at most 0 V and an upper one of at least 0 V, apart")
+        allowed = f"a lower limit from {-STRONGEST_DRIVE:g} to 0 V and an upper one from 0 to {STRONGEST_DRIVE:g} V, apart"
+        raise Refused("actuator_limits", limits.tolist(), allowed)
     return limits
 
 
@@ -89,9 +90,11 @@ def root_of(name: str, given: ArrayLike | None, states: int) -> Array:
     if given is None:
         return np.zeros((states, 0))
     covariance = not_negative(name, checked_array(name, given, (states, states), "a row and a column for each state"))
-    values, vectors = np.linalg.eigh(covariance)
+    deviations = np.sqrt(np.diag(covariance))  # states in small units are not to count for none
+    units = np.where(deviations > 0.0, deviations, 1.0)
+    values, vectors = np.linalg.eigh(covariance / np.outer(units, units))
     there = values > 1e-14 * max(float(values[-1]), 0.0)
-    return np.asarray(vectors[:, there] * np.sqrt(values[there]))
+    return np.asarray(units[:, None] * vectors[:, there] * np.sqrt(values[there]))
 
 
 def named_signals(kind: str, names: Sequence[str] | None, units: Sequence[str] | None, count: int) -> tuple[Signal, ...]:
@@ -101,6 +104,8 @@ def named_signals(kind: str, names: Sequence[str] | None, units: Sequence[str] |
     for what, those in (("names", titles), ("units", measures)):
         if len(those) != count:
             raise Refused(f"{kind}_{what}", list(those), f"{count}, one for each {kind}")
+    if len(set(titles)) < count:
+        raise Refused(f"{kind}_names", list(titles), f"a name of its own for each {kind}")
     return tuple(Signal(*each) for each in zip(titles, measures, strict=True))
 
 
@@ -118,6 +123,7 @@ def checked_covariance(name: str, given: ArrayLike, size: int, of: str) -> Array
     values = real_numbers(name, given)
     if values.shape in ((), (size,)):
         values = np.broadcast_to(values, (size,))
+        check_finite(name, values)
         if np.any(values < 0.0):
             raise Refused(name, values.tolist(), "standard deviations of at least 0")
         return np.diag(values**2)

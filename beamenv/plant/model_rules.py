@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag, solve_continuous_lyapunov
 
 from beamenv.configuration import Refused
+from beamenv.configuration.arrays import checked_array
 from beamenv.configuration.read_only import sealed
 from beamenv.plant.matrices import PlantMatrices
 from beamenv.plant.model_arguments import checked_covariance, checked_weight, positive
-from beamenv.plant.parts import checked_energy
+from beamenv.plant.parts import not_negative
 from beamenv.plant.transients import after_sudden
 from beamenv.plant.units import AnyPlant, drive_limit
 
@@ -72,7 +73,8 @@ def with_cost(
     """The cost of states: the energy, or of outputs where that is asked for or no energy is known."""
     n = len(plant.A)
     if energy is not None:
-        known = block_diag(checked_energy(energy, n - further, 0), np.zeros((further, further)))
+        of_model = checked_array("energy", energy, (n - further, n - further), "a row and a column for each state")
+        known = block_diag(not_negative("energy", of_model), np.zeros((further, further)))
         plant = replace(plant, energy=sealed(known), state_weight=sealed(known))
     if energy is not None and output_weight is None:
         return plant

@@ -115,7 +115,8 @@ def plant_of_model(
         at_actuators = model.loads is None
         if at_actuators:
             assumed.append("disturbances act where the actuators do, in their volts")
-            disturbance_names, disturbance_units = [f"at voltage {j}" for j in range(m)], ["V"] * m
+            disturbance_names = [f"at voltage {j}" for j in range(m)] if disturbance_names is None else disturbance_names
+            disturbance_units = ["V"] * m if disturbance_units is None else disturbance_units
         bare = replace(
             _without_rules(model, tip_displacement),
             voltage_limits=checked_limits(actuator_limits, m, assumed),

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from typing import Annotated, Any
 
-from beamenv.blade.load_shapes import SHAPES, LoadShape, Profile, usual_size
+from beamenv.blade.load_shapes import SHAPES, LoadShape, Profile, check_place, usual_size
 from beamenv.configuration import Choice, Count, Number, Points, Range, Refused, check_heeded, configuration
 from beamenv.configuration.heeded import Heeded
 from beamenv.configuration.numbers import TURNED
@@ -79,7 +79,7 @@ class Load:
     """f(t) of the time in s since its onset, of a number or of an array of them."""
 
     def __post_init__(self) -> None:
-        LoadShape(**self._place)
+        check_place(self)
         if (self.course == "series") != (self.series is not None):
             raise Refused("series", None if self.series is None else "given", "given where the course is 'series', and only there")
         if (self.course == "series") != (self.rate is not None):
@@ -91,13 +91,9 @@ class Load:
             _check_spectrum(self.spectrum)
 
     @property
-    def _place(self) -> dict[str, Any]:
-        return {each.name: getattr(self, each.name) for each in fields(LoadShape)}
-
-    @property
     def place(self) -> LoadShape:
         """Where it acts."""
-        return LoadShape(**self._place)
+        return LoadShape(**{each.name: getattr(self, each.name) for each in fields(LoadShape)})
 
     @property
     def is_factor(self) -> bool:

@@ -69,7 +69,7 @@ class Room:
             width = section.wall_width(inlay.wall)
         except Refused as refused:
             raise ValueError(f"inlay's {refused}") from None
-        room = self.narrowest * (width - 2.0 * abs(inlay.offset))
+        room = self.narrowest * max(width - 2.0 * abs(inlay.offset), 0.0)
         if not 0.0 < inlay.width <= room * (1.0 + ROUNDING):
             where = f" (offset {inlay.offset!r} m from its middle)" if inlay.offset else ""
             raise ValueError(

@@ -155,6 +155,8 @@ REFUSED = {
         {"offset": 0.12},
         r"inlay width = 0\.057 m must be positive and at most the top wall's 0\.014 m \(offset 0\.12",
     ),
+    "beside its wall": ({"offset": 0.5}, r"at most the top wall's 0 m \(offset 0\.5 m from its middle"),
+    "of so many pC/N": ({"material": {"d11": 400.0}}, r"d11 is 400.0, but must be a number from -1e-06 to 1e-06 \(m/V\)"),
     "on no wall": ({"wall": "nose"}, "wall is 'nose', but must be one wall of the section"),
     "beyond the tip": ({"positions": [2.0]}, "lies within 0 and 1.0 of the 2.023 m span"),
 }

@@ -120,6 +120,15 @@ def test_rules_do_not_depend_on_coordinates():
     assert stationary_cost(other, lqg(other)) == pytest.approx(stationary_cost(plant, lqg(plant)), rel=1e-6)
 
 
+def test_noise_on_a_mode_in_large_units_is_not_lost():
+    """The second mode is counted in 1e8 of the unit of the first, so that their covariances are 1e16 apart."""
+    units = np.diag([1e4, 1e4, 1e-4, 1e-4])
+    moved = units @ A @ np.linalg.inv(units), units @ B, C @ np.linalg.inv(units)
+    plant = Plant.from_state_space(A, B, C, process_noise=0.0, state_noise=1e-4 * np.eye(4))
+    same = Plant.from_state_space(*moved, process_noise=0.0, state_noise=1e-4 * units**2)
+    assert stationary_cost(same, lqg(same)) == pytest.approx(stationary_cost(plant, lqg(plant)), rel=1e-9)
+
+
 def test_the_rules_are_what_the_default_blade_has():
     """Its reference load, its price of voltages and its ranges were chosen by hand: what the rules would make of them is near."""
     blade = build_plant(blade_config("thesis"))
@@ -228,13 +237,18 @@ REFUSED = {
     "C has shape (1, 3), but must have shape (any, 4)": lambda: Plant.from_state_space(A, B, [1, 0, 0]),
     "D has shape (3, 1), but must have shape (2, 1)": lambda: Plant.from_state_space(A, B, C, np.zeros((3, 1))),
     "A has shape (4, 3), but must have shape (4, 4)": lambda: Plant.from_state_space(A[:, :3], B, C),
-    "plant.energy has the eigenvalue -1": lambda: Plant.from_state_space(A, B, C, energy=-np.eye(4)),
+    "energy has the eigenvalue -1": lambda: Plant.from_state_space(A, B, C, energy=-np.eye(4)),
+    "energy has shape (3, 3), but must have shape (4, 4)": lambda: Plant.from_state_space(A, B, C, energy=0.5 * np.eye(3)),
+    "process_noise[0] is nan, but every number": lambda: Plant.from_state_space(A, B, C, process_noise=[np.nan]),
+    "sensor_noise[1] is nan, but every number": lambda: Plant.from_state_space(A, B, C, sensor_noise=[0.1, np.nan]),
+    "sensor_names is ['a', 'a'], but must be a name of its own": lambda: Plant.from_state_space(A, B, C, sensor_names=["a", "a"]),
+    "disturbance_units is ['N', 'm'], but must be 1": lambda: Plant.from_state_space(A, B, C, disturbance_units=["N", "m"]),
     "sensor_units is ['A'], but must be 2, one for each sensor": lambda: Plant.from_state_space(A, B, C, sensor_units=["A"]),
     "dt is 0.0, but must be a positive number (s)": lambda: Plant.from_state_space(A, B, C, dt=0.0),
     "A has poles that no system in continuous time has": lambda: Plant.from_state_space(
         [[0.0, 1.0], [0.0, 0.0]], [0, 1], [1, 0], dt=0.1
     ),
-    "actuator_limits is [[1.0], [2.0]], but must be a lower limit of at most 0 V": lambda: Plant.from_state_space(
+    "actuator_limits is [[1.0], [2.0]], but must be a lower limit from -1e+09 to 0 V": lambda: Plant.from_state_space(
         A, B, C, actuator_limits=(1.0, 2.0)
     ),
     "full_scale is [-1.0, -1.0], but must be positive numbers": lambda: Plant.from_state_space(A, B, C, full_scale=-1.0),
