@@ -86,6 +86,11 @@ def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[
     return walls
 
 
+MODULI = ("E1", "E2", "G12", "G13", "G23")
+SOFTEST = 1e5
+"""Pa: below that of rubber, and above any metal's in GPa or MPa."""
+
+
 @configuration("blade.beam")
 class BeamConfig:
     """The bare blade: a box of the thesis (§3.5) unless said otherwise."""
@@ -120,6 +125,12 @@ class BeamConfig:
     """Pretwist along the span in place of ``pretwist_deg``: pairs of the share of the span, from 0 to 1, and degrees."""
     chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
+
+    def __post_init__(self) -> None:
+        if isinstance(self.material, Lamina):
+            for name in MODULI:
+                if getattr(self.material, name) < SOFTEST:
+                    raise Refused(f"material.{name}", getattr(self.material, name), f"at least {SOFTEST:g} (Pa)")
 
     @property
     def root_section(self) -> Section:

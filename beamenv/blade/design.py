@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.model_blade import ModelBlade
-from beamenv.configuration import Instance, checked
+from beamenv.configuration import Instance, Refused, checked
 from beamenv.plant.plant import Plant
 
 
@@ -44,3 +44,10 @@ class Design:
                 f"plant is a model of one's own, but {of} asks for a blade: choose another controller or give a blade."
             )
         return self.config
+
+    def turning_config(self, of: str) -> BladeConfig:
+        """As ``blade_config``; ``ValueError`` where the blade does not turn, too."""
+        config = self.blade_config(of)
+        if config.speed == 0.0:
+            raise Refused("blade.speed", config.speed, f"above 0 (rad/s) for {of}, which asks for a rotor")
+        return config

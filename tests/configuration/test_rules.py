@@ -104,6 +104,8 @@ SENTENCES = [
     (lambda: blade_config(overrides={"patches": {"passive": "no"}}), "blade.patches.passive is 'no', but must be True or False."),
     (lambda: blade_config(overrides={"beam": {"material": {"E2": -1}}}),
      "blade.beam.material.E2 is -1, but must be a positive number (Pa)."),
+    (lambda: blade_config(overrides={"beam": {"material": Lamina.isotropic(69.0, 0.33, 2700.0)}}),  # in GPa
+     "blade.beam.material.E1 is 69.0, but must be at least 100000 (Pa)."),
     (lambda: blade_config(overrides={"beam": {"material": {"nu12": 9.0}}}),
      "blade.beam.material.nu12 is 9.0, but must be smaller in magnitude than sqrt(E1/E2) = 6.325."),
     (lambda: blade_config(overrides={"beam": 3}), "blade.beam is 3, but must be a table of fields or a BeamConfig."),

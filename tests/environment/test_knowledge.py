@@ -9,6 +9,7 @@ import pytest
 import beamenv
 from beamenv.knowledge import TUNING, on_training_bank, on_validation_bank
 from beamenv.task import resolve_task
+from train.controllers.named import named
 from train.learning.training import on_training_bank as task_of_training
 from train.shared.held_out import held_out
 
@@ -123,3 +124,11 @@ def test_of_what_is_kept_for_judging_a_prior_tells_the_loads_alone(name):
     assert not told.imperfect
     assert not told.plants.varies
     assert told.plants.truth is None
+
+
+@pytest.mark.parametrize("name", ["rotor-lqg", "scheduled-lqg"])
+def test_laws_that_ask_for_a_rotor_say_so_of_a_blade_at_rest(name):
+    task = resolve_task("aluminium-cantilever")
+    words = rf"^blade.speed is 0.0, but must be above 0 \(rad/s\) for {name}, which asks for a rotor\.$"
+    with pytest.raises(ValueError, match=words):
+        named(name).build_for(task)

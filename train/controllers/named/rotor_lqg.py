@@ -9,10 +9,10 @@ TIER = 0
 
 def check(design: Design) -> None:
     """It asks for a rotor."""
-    design.blade_config("rotor-lqg")
+    design.turning_config("rotor-lqg")
 
 
 def build(design: Design) -> Controller:
     """Tuned to the speed of the design; the lasting load also takes up what is slow in turbulence."""
-    loads = (RotorHarmonics(design.blade_config("rotor-lqg").speed), PersistentLoad())
+    loads = (RotorHarmonics(design.turning_config("rotor-lqg").speed), PersistentLoad())
     return reference_lqg(design.full_plant, load=loads, name="LQG with rotor harmonics")

@@ -16,10 +16,10 @@ speed's own optimum at most."""
 
 def check(prior: Prior) -> None:
     """It asks for a rotor."""
-    prior.design.blade_config("scheduled-lqg")
+    prior.design.turning_config("scheduled-lqg")
 
 
 def build(prior: Prior) -> Controller:
     """An LQG of all that is known of the blade for each of seven speeds, mixed in between."""
-    config = prior.design.blade_config("scheduled-lqg")
+    config = prior.design.turning_config("scheduled-lqg")
     return scheduled_lqg_for(config, RANGE * config.speed, full=True, rate_weight=RATE_WEIGHT)
