@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_discrete_lyapunov
 
 from baselines.identification.fit import Fit
 from baselines.identification.innovation_model import InnovationModel
@@ -26,6 +27,8 @@ from beamenv.plant.plant import Plant
 Array = NDArray[np.float64]
 
 ENDING = ".npz"
+QUIET = 0.1
+"""Of the noise of a sensor, standard deviations: what loads make of its readings where next to nothing moved the structure."""
 MODE = ("frequency", "frequency_spread", "damping_ratio", "damping_spread", "certainty")
 
 
@@ -82,6 +85,13 @@ class Identified:
         return np.asarray(np.sqrt(self.noise.sensor_variance) * self.measurement.readings.std(axis=0))
 
     @property
+    def quiet(self) -> bool:
+        """Whether voltages alone moved the structure, so that what was measured says nothing of the loads that it will meet."""
+        E, C = self.noise.load_input, self.scaled.C
+        moved = np.einsum("pi,ij,pj->p", C, solve_discrete_lyapunov(self.scaled.A, E @ E.T), C)
+        return bool(np.all(moved < QUIET**2 * self.noise.sensor_variance))
+
+    @property
     def state_space(self) -> StateSpace:
         """In continuous time."""
         return continuous(self.model, self.noise.load_input, self.collocated)
@@ -89,7 +99,8 @@ class Identified:
     def arrays(self, model: StateSpace | None = None, **about: Any) -> dict[str, Any]:
         """The arguments of ``Plant.from_state_space`` for the model, or one of the ``ensemble``; ``about`` says more, or otherwise.
 
-        Loads are the disturbances, of unit variance in each interval; voltages may go as far as they did in the measurement.
+        Loads are the disturbances, of unit variance in each interval; of a ``quiet`` measurement they are left to the rules, for an
+        estimator that expects none follows none. Voltages may go as far as they did in the measurement.
         """
         model = self.state_space if model is None else model
         measurement, loads = self.measurement, self.noise.load_input.shape[1]
@@ -99,9 +110,9 @@ class Identified:
             "C": model.C,
             "interval": measurement.interval,
             "energy": model.energy,
-            "disturbance_input": model.load_input,
-            "disturbance_names": [f"load {k}" for k in range(1, loads + 1)],
-            "process_noise": np.ones(loads),
+            "disturbance_input": None if self.quiet else model.load_input,
+            "disturbance_names": None if self.quiet else [f"load {k}" for k in range(1, loads + 1)],
+            "process_noise": None if self.quiet else np.ones(loads),
             "sensor_noise": self.sensor_noise,
             "sensor_names": list(measurement.reading_names),
             "sensor_units": list(measurement.reading_units),

@@ -7,10 +7,11 @@ import pytest
 from scipy.linalg import solve_discrete_are
 from scipy.signal import cont2discrete
 
-from baselines import identify
+from baselines import identify, lqg, stationary_cost
 from baselines.identification.observer import observer
 from baselines.identification.prediction_error import Spectra, _covariance, _ends, _log_det, _normal_equations, moved
 from baselines.identification.realisation import realise
+from beamenv import Plant
 from tests.identification.conftest import DAMPING_RATIOS, FREQUENCIES, INTERVAL, RATIO, measurement, record, sampled, structure
 
 
@@ -146,3 +147,19 @@ def test_bad_arguments_are_one_sentence(measured, options, said):
 def test_collocated_sensors_must_be_of_current(measured):
     with pytest.raises(ValueError, match="not A"):
         identify(replace(measured, reading_units=("V", "V")), collocated=RATIO)
+
+
+def test_lqg_on_a_plant_of_a_quiet_bench_damps_the_structure():
+    """Nothing but voltages moved it, which says nothing of what will: an LQG of no loads at all would stand still."""
+    found = identify(measurement(3, 8.0, load=0.0))
+    assert found.quiet
+    A, B, C, _ = structure()
+    drive = found.arrays()["actuator_limits"]
+    truth = Plant.from_state_space(A, B, C, interval=INTERVAL, actuator_limits=drive)
+    plant = found.plant(full_scale=truth.sensor_full_scale, sensor_noise=found.sensor_noise)
+    assert any(each.startswith("disturbances act where the actuators do") for each in plant.assumed)
+    assert stationary_cost(truth, lqg(plant)) < 1.1 * stationary_cost(truth, lqg(truth))
+
+
+def test_loads_that_were_there_are_the_plants(identified):
+    assert not identified.quiet and identified.plant().disturbances[0].name == "load 1"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from baselines.identification.identified import Identified
+from baselines.identification.identified import QUIET, Identified
 from train.shared.markdown import escaped, table
 
 HERTZ = 2.0 * math.pi
@@ -20,14 +20,23 @@ def markdown(found: Identified) -> str:
 
 
 def _summary(found: Identified) -> str:
-    measurement, noise = found.measurement, found.noise
+    measurement = found.measurement
     energy = "in joules" if found.collocated is not None else "not known: costs are of outputs"
     return (
         f"{len(measurement)} rows, {measurement.seconds:.4g} s at {1.0 / measurement.interval:.6g} Hz; learned from the first "
         f"{found.learned}, judged by the other {found.fit.rows}.\n\n"
-        f"{found.choice.reason} {noise.load_input.shape[1]} white loads stand for what moved the structure besides the voltages. "
+        f"{found.choice.reason} {_loads(found)} "
         f"The energy of its modes is {energy}."
     )
+
+
+def _loads(found: Identified) -> str:
+    if found.quiet:
+        return (
+            f"Voltages alone moved the structure: what else did is below {QUIET:g} of the sensors' noise. "
+            "The plant is taken to have loads at its actuators, white, a tenth of full voltage."
+        )
+    return f"{found.noise.load_input.shape[1]} white loads stand for what moved the structure besides the voltages."
 
 
 def _modes(about: dict[str, Any]) -> str:
