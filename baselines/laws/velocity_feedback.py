@@ -37,7 +37,10 @@ def velocity_feedback(
     meant_for = optional_instance("tuned_on", tuned_on, Plant, "a beamenv.Plant, such as design.full_plant") or plant
     felt = np.diag(pairs @ plant.C @ plant.B)
     if not felt.any():
-        raise ValueError("plant hides what a pair feels behind filters: allowed is the design plant, with tuned_on= for this one.")
+        raise ValueError(
+            "plant shows nowhere the velocity that its voltages change: allowed are sensors of currents or velocities, and no filter "
+            "behind them (that of the design plant, with tuned_on= for this one)."
+        )
     pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
     given = None if gain is None else one_or_each("gain", gain, len(pairs), "actuator")
     gains = _least_cost_gains(plant, meant_for, pairs) if given is None else given

@@ -207,3 +207,11 @@ def test_a_speed_that_is_no_number_is_called_the_speed(speed, right):
 def test_a_weight_beyond_all_numbers_is_named(law, name, size, right):
     with pytest.raises(ValueError, match=f"^{name} has the entry 1e.300, but must hold numbers from -1e.100 to 1e.100.$"):
         law(right["plant"], **{name: 1e300 * np.eye(size)})
+
+
+def test_velocity_feedback_asks_for_sensors_that_show_velocities():
+    design = gym.make(beamenv.ENV_ID, preset="takacs-beam").unwrapped.design_plant  # whose sensor is a displacement
+    with pytest.raises(
+        ValueError, match="^plant shows nowhere the velocity that its voltages change: allowed are sensors of currents"
+    ):
+        baselines.velocity_feedback(design)
