@@ -38,8 +38,8 @@ def velocity_feedback(
     felt = np.diag(pairs @ plant.C @ plant.B)
     if not felt.any():
         raise ValueError(
-            "plant shows nowhere the velocity that its voltages change: allowed are sensors of currents or velocities, and no filter "
-            "behind them (that of the design plant, with tuned_on= for this one)."
+            "plant shows nowhere the velocity that its voltages change: allowed are sensors of currents, or velocities, unfiltered "
+            "(those of the design plant, with tuned_on= for this one)."
         )
     pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
     given = None if gain is None else one_or_each("gain", gain, len(pairs), "actuator")

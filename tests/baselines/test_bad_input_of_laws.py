@@ -211,7 +211,5 @@ def test_a_weight_beyond_all_numbers_is_named(law, name, size, right):
 
 def test_velocity_feedback_asks_for_sensors_that_show_velocities():
     design = gym.make(beamenv.ENV_ID, preset="takacs-beam").unwrapped.design_plant  # whose sensor is a displacement
-    with pytest.raises(
-        ValueError, match="^plant shows nowhere the velocity that its voltages change: allowed are sensors of currents"
-    ):
+    with pytest.raises(ValueError, match="^plant shows nowhere the velocity that its voltages change: allowed are sensors of "):
         baselines.velocity_feedback(design)
