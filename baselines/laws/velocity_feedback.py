@@ -38,7 +38,7 @@ def velocity_feedback(
     felt = np.diag(pairs @ plant.C @ plant.B)
     if not felt.any():
         raise ValueError(
-            "plant shows nowhere the velocity that its voltages change: allowed are sensors of currents, or velocities, unfiltered "
+            "plant shows nowhere the velocity that its voltages change: allowed are sensors of currents or velocities, unfiltered "
             "(those of the design plant, with tuned_on= for this one)."
         )
     pairs = pairs * np.sign(felt)[:, None]  # so that −(the current) takes energy out
