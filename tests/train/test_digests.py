@@ -43,6 +43,7 @@ def test_a_module_that_is_not_where_it_is_named_is_told(copied, change):
         ("train/benchmark/cells.py", True, False),
         ("train/controllers/models.py", True, False),
         ("baselines/laws/lqg.py", True, True),
+        ("baselines/identification/order.py", False, True),
         ("beamenv/simulation/blades.py", True, True),
         ("train/reproduce/runner.py", False, True),
         ("train/page/page.py", False, False),

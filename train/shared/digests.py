@@ -17,7 +17,10 @@ ROOT = Path(__file__).resolve().parents[2]
 
 CONTROLLERS = (
     "beamenv",
-    "baselines",
+    "baselines.analysis",
+    "baselines.design",
+    "baselines.evaluation",
+    "baselines.laws",
     "train.controllers.policies",
     "train.controllers.general_bank",
     "train.controllers.hypotheses",
@@ -25,7 +28,8 @@ CONTROLLERS = (
     "train.controllers.models_policy",
     "train.controllers.policy_files",
 )
-"""What decides the voltages of a controller and the motion they cause."""
+"""What decides the voltages of a controller and the motion they cause: of ``baselines`` all but identification and placement, which
+make plants and layouts that are given."""
 
 SUFFIXES = (".py", ".csv", ".toml", ".mplstyle")
 """Of files in a package that decide results."""
