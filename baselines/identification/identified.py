@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
+from baselines.design.linear import LinearController
+from baselines.design.loop import closed_loop, sampled, spectral_radius
 from baselines.identification.fit import Fit
 from baselines.identification.innovation_model import InnovationModel
 from baselines.identification.measurement import Measurement
@@ -138,6 +140,15 @@ class Identified:
         count, seed = checked("count", count, Count()), checked("seed", seed, Count(0))
         models = drawn(self.scaled, self.parameters, count, seed)
         return [continuous(self._in_units(each), self.noise.load_input, self.collocated) for each in models]
+
+    def unstable_on(self, law: LinearController, count: int = 32, seed: int = 0, **about: Any) -> int:
+        """On how many of ``count`` plants within the spread the sampled loop of a law for ``plant(**about)`` is unstable.
+
+        None of them should be: where some are, the voltages hardly moved what the law is to damp. Measure longer then, with larger
+        voltages, or with voltages that are held for longer, which have more power at low frequencies.
+        """
+        plants = (Plant.from_state_space(**self.arrays(each, **about)) for each in self.ensemble(count, seed))
+        return sum(not spectral_radius(closed_loop(sampled(plant, law), law)[0]) < 1.0 for plant in plants)
 
     def to_dict(self) -> dict[str, Any]:
         """What JSON can hold of it."""

@@ -20,6 +20,9 @@ FEWEST_ROWS = 100
 LARGEST = 1e100
 """Of any column: squares stay finite."""
 
+CLIPPED = 0.05
+"""Share of the rows in which a reading may be the very largest or smallest that there is: what moves freely is so twice."""
+
 ALIKE = 1e-6
 """Smallest share of the voltages' variance, over its largest, in any direction: below it they have not moved on their own."""
 
@@ -44,7 +47,7 @@ class Measurement(ReadOnly):
     """Such as A, V or m/s²; empty where nobody said."""
 
     def __post_init__(self) -> None:
-        """``ValueError`` of one sentence for data that are not finite, too few, constant, or voltages that move together."""
+        """``ValueError`` of one sentence for data that are not finite, too few, constant or cut off, or move together."""
         voltages = checked_array("voltages", self.voltages, (None, None), "a row for each instant, a column for each actuator")
         readings = checked_array("readings", self.readings, (len(voltages), None), "a row for each instant, a column each sensor")
         kept = {
@@ -61,6 +64,7 @@ class Measurement(ReadOnly):
             raise ValueError(f"the measurement has {len(voltages)} rows, but must have at least {FEWEST_ROWS}.")
         _check_moving(voltages, self.voltage_names)
         _check_moving(readings, self.reading_names)
+        _check_free(readings, self.reading_names)
         _check_apart(voltages, self.voltage_names)
         ReadOnly.__post_init__(self)
 
@@ -100,6 +104,19 @@ def _check_moving(columns: Array, names: Sequence[str]) -> None:
     still = np.flatnonzero(~(spread > 1e-12 * largest))
     if len(still):
         raise ValueError(f"column {names[still[0]]!r} is constant, but must move for anything to be learned from it.")
+
+
+def _check_free(readings: Array, names: Sequence[str]) -> None:
+    """A reading that its sensor's range cuts off is no linear answer to anything."""
+    low, high = readings.min(axis=0), readings.max(axis=0)
+    near = 1e-9 * (high - low)
+    at_limits = ((readings <= low + near) | (readings >= high - near)).mean(axis=0)
+    for k in np.flatnonzero(at_limits > CLIPPED):
+        raise ValueError(
+            f"column {names[k]!r} is at its limits, {low[k]:.4g} and {high[k]:.4g}, in {100.0 * at_limits[k]:.0f} % of the rows, "
+            f"but may be in {100.0 * CLIPPED:g} %: let voltages be smaller or each be held for longer, or give the sensor "
+            "a wider range."
+        )
 
 
 def _check_apart(voltages: Array, names: Sequence[str]) -> None:

@@ -1,5 +1,6 @@
 """What the documentation says can be typed: Python blocks run page by page, commands have the options that they are given."""
 
+import ast
 import re
 import shlex
 from itertools import pairwise
@@ -45,6 +46,17 @@ def test_python_blocks_run_in_the_order_of_their_page_and_print_what_it_shows(pa
         exec(compile("\n" * (line - 1) + text, str(page), "exec"), namespace)  # tracebacks tell the page's own lines
         if line in shown:
             assert_same_words(capsys.readouterr().out, shown[line])
+
+
+@pytest.mark.parametrize("page", [param.values[0] for param in with_blocks("python")], ids=name_of)
+def test_python_blocks_can_be_pasted_at_the_prompt(page):
+    """Where a loop or the like ends only with an empty line."""
+    for line, text in blocks(page, "python"):
+        body = ast.parse(text).body
+        stuck = [
+            after.lineno for before, after in pairwise(body) if hasattr(before, "body") and after.lineno == before.end_lineno + 1
+        ]
+        assert not stuck, line + stuck[0]
 
 
 def printed(page):

@@ -161,5 +161,13 @@ def test_lqg_on_a_plant_of_a_quiet_bench_damps_the_structure():
     assert stationary_cost(truth, lqg(plant)) < 1.1 * stationary_cost(truth, lqg(truth))
 
 
+def test_lqg_is_stable_on_every_plant_within_the_spread_and_a_law_of_the_wrong_sign_on_none(identified):
+    plant = identified.plant()
+    law = lqg(plant)
+    wrong = replace(law, state_gain=-30.0 * law.state_gain)
+    assert identified.unstable_on(law, 16) == 0
+    assert identified.unstable_on(wrong, 16) == 16
+
+
 def test_loads_that_were_there_are_the_plants(identified):
     assert not identified.quiet and identified.plant().disturbances[0].name == "load 1"

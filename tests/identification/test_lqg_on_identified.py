@@ -6,6 +6,7 @@ import pytest
 
 import beamenv
 from baselines import Measurement, evaluate, identify, lqg
+from baselines.design.loop import closed_loop, sampled, spectral_radius
 from beamenv.blade.presets import SOUND_EDGES
 
 SEEDS = range(3_000_000, 3_000_032)
@@ -68,3 +69,21 @@ def assert_nearly_as_good(found, truth, envs):
         plant = found.plant(actuator_limits=1500.0, full_scale=truth.sensor_full_scale, **known)
         own = evaluate(lqg(plant), envs, SEEDS, reference=best.reference)
         assert own.relative_cost.value < 1.03 * best.relative_cost.value
+
+
+@pytest.mark.parametrize(("volts", "held", "told"), [(3.0, 1, True), (20.0, 16, False)], ids=["drowned", "heard"])
+def test_a_lab_beam_whose_first_mode_the_voltages_hardly_move_has_an_lqg_that_is_told_to_be_unsafe(volts, held, told):
+    """Where loads drown them, nobody knows how far a voltage moves it, and an LQG that guesses drives it."""
+    lab = {"preset": "aluminium-cantilever", "scenario": "white", "duration": 8.0}
+    env = gym.make(beamenv.ENV_ID, **lab, physical_units=True, dtype="float64")
+    rng, rows = np.random.default_rng(0), []
+    reading, _ = env.reset(seed=0)
+    voltages = np.repeat(rng.normal(0.0, volts, (16_000 // held, 1)), held, axis=0)
+    for each in voltages:
+        rows.append(reading)
+        reading, *_ = env.step(each)
+    found = identify(Measurement(voltages, np.array(rows), INTERVAL, reading_units=("A",)), collocated=1.0)
+    known = {"actuator_limits": 150.0}
+    law, truth = lqg(found.plant(**known)), env.unwrapped.plant
+    assert (found.unstable_on(law, **known) > 3) == told
+    assert (spectral_radius(closed_loop(sampled(truth, law), law)[0]) > 1.0) == told

@@ -101,6 +101,15 @@ def test_constant_and_proportional_columns_teach_nothing():
         Measurement(together, READINGS, 0.01)
 
 
+def test_readings_that_a_sensors_range_cuts_off_are_refused():
+    rng = np.random.default_rng(0)
+    volts, moving = rng.normal(size=(1000, 1)), rng.normal(size=(1000, 1))
+    cut = np.clip(moving, -1.0, 1.0)  # a third of a normal distribution lies beyond one standard deviation
+    Measurement(volts, np.clip(moving, -2.5, 2.5), 1e-3)  # 1.2 % beyond two and a half
+    with pytest.raises(ValueError, match="^column 'y1' is at its limits, -1 and 1, in 3[0-4] % of the rows, but may be in 5 %"):
+        Measurement(volts, cut, 1e-3)
+
+
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(ValueError, match=r"nobody\.csv' cannot be read: No such file or directory\.$"):
         read_measurement(tmp_path / "nobody.csv")

@@ -22,6 +22,9 @@ from train.cli.options import (
     print_table,
 )
 
+FASTEST = 1e6
+"""rad/s: a critical speed beyond is none that a rotor has, and is not told."""
+
 
 def frequencies(
     preset: PresetOption = "thesis",
@@ -59,7 +62,8 @@ def frequencies(
         rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
         print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
         return
-    table = Table(title="Natural frequencies, rad/s (Hz)", caption=f"critical speed {beam.critical_speed:.1f} rad/s")
+    critical = f"critical speed {beam.critical_speed:.1f} rad/s" if beam.critical_speed < FASTEST else None
+    table = Table(title="Natural frequencies, rad/s (Hz)", caption=critical)
     table.add_column("mode", justify="right")
     for each in speeds:
         table.add_column(f"at {each:g} rad/s", justify="right")

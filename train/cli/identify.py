@@ -55,12 +55,18 @@ def identify(
         with bar() as report:
             found = run(measurement, _order(order), held_back=held_back, collocated=collocated, progress=report)
         from train.identification.files import write_all
+        from train.identification.trial import tried
 
-        written = write_all(found, folder, members, seed, about)
+        trial = tried(found, about)
+        written = write_all(found, folder, members, seed, about, trial)
+    if not trial.safe:
+        typer.echo(f"warning: {trial.sentence}", err=True)
     if as_json:
-        print_json(found.to_dict())
+        print_json({**found.to_dict(), "lqg": trial.to_dict()})
         return
     show(found)
+    if trial.safe:
+        Console().print(trial.sentence, soft_wrap=True, markup=False, highlight=False)
     for path in written:
         Console().print(f"written to {path}", soft_wrap=True, markup=False, highlight=False)
 

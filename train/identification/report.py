@@ -6,16 +6,17 @@ import math
 from typing import Any
 
 from baselines.identification.identified import QUIET, Identified
+from train.identification.trial import Trial
 from train.shared.markdown import escaped, table
 
 HERTZ = 2.0 * math.pi
 """rad/s of one."""
 
 
-def markdown(found: Identified) -> str:
+def markdown(found: Identified, trial: Trial) -> str:
     """What was found, in tables and a few sentences."""
     about = found.to_dict()
-    parts = ["# What was identified", _summary(found), _modes(about), _readings(about), _orders(about), _figures()]
+    parts = ["# What was identified", _summary(found), trial.sentence, _modes(about), _readings(about), _orders(about), _figures()]
     return "\n\n".join(parts) + "\n"
 
 
