@@ -111,7 +111,7 @@ def _check_free(readings: Array, names: Sequence[str]) -> None:
     low, high = readings.min(axis=0), readings.max(axis=0)
     near = 1e-9 * (high - low)
     at_limits = ((readings <= low + near) | (readings >= high - near)).mean(axis=0)
-    for k in np.flatnonzero(at_limits > CLIPPED):
+    for k in np.flatnonzero(at_limits > CLIPPED).tolist():
         raise ValueError(
             f"column {names[k]!r} is at its limits, {low[k]:.4g} and {high[k]:.4g}, in {100.0 * at_limits[k]:.0f} % of the rows, "
             f"but may be in {100.0 * CLIPPED:g} %: let voltages be smaller or each be held for longer, or give the sensor "
