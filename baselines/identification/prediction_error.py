@@ -37,6 +37,9 @@ ENOUGH = 0.02
 FLAT = 1e-7
 """Curvature over the largest, parameters scaled to one, below which a direction counts as without any."""
 
+FARTHEST = 10.0
+"""Growth of a pole's logarithm in one step, at most: what goes so far is unstable and no number overflows."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refined(ReadOnly):
@@ -182,8 +185,8 @@ def moved(model: InnovationModel, step: Array) -> InnovationModel:
     driving = step[n : n + n * (m + p + 1)].reshape(n, m + p + 1)
     return replace(
         model,
-        pairs=model.pairs * np.exp(along[:, 0] + 1j * along[:, 1]),
-        reals=np.maximum(model.reals * np.exp(np.minimum(step[2 * r : 2 * r + s] * model.interval, 10.0)), LEAST_POLE),
+        pairs=model.pairs * np.exp(np.minimum(along[:, 0], FARTHEST) + 1j * along[:, 1]),
+        reals=np.maximum(model.reals * np.exp(np.minimum(step[2 * r : 2 * r + s] * model.interval, FARTHEST)), LEAST_POLE),
         B=model.B + driving[:, :m],
         K=model.K + driving[:, m : m + p],
         C=model.C + step[n + n * (m + p + 1) :].reshape(p, n),
