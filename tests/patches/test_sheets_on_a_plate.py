@@ -73,8 +73,8 @@ def plate_of(config):
     return Plate(strip.thickness, lamina.reduced_stiffness(), lamina.density, along, across, tuple(sheets))
 
 
-@pytest.mark.parametrize(("preset", "hertz", "tip"), [("aluminium-cantilever", 1.0035, 1.08), ("takacs-beam", 1.005, 1.108)])
-def test_the_sheets_of_the_lab_beams_bend_them_a_tenth_more_than_plates(preset, hertz, tip):
+@pytest.mark.parametrize(("preset", "hertz", "tip"), [("aluminium-cantilever", 1.0035, 1.08), ("takacs-beam", 1.003, 1.06)])
+def test_the_sheets_of_the_lab_beams_bend_them_six_and_eight_percent_more_than_plates(preset, hertz, tip):
     config = PRESETS[preset]
     still, frequency, _ = plate_of(config).solved()
     beam = build_beam(config)
