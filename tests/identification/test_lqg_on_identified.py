@@ -23,13 +23,13 @@ def groups():
 TWISTED = {"patches": {"actuators": groups(), "sensors": [{**group, "wall": "bottom"} for group in groups()]}}
 
 
-def measured(seconds, seed, blade=None):
+def measured(seconds, seed, blade=None, deviation=450.0):
     """``sound-blade`` at 2 kHz in white loads, voltages random and held, currents with the noise of the environment."""
     lab = {"preset": "sound-blade", "blade": blade, "scenario": "white", "duration": seconds}
     env = gym.make(beamenv.ENV_ID, **lab, physical_units=True, dtype="float64")
     rng, rows = np.random.default_rng(seed), []
     reading, _ = env.reset(seed=seed)
-    volts = np.clip(rng.normal(0.0, 450.0, (round(seconds / INTERVAL), 4)), -1500.0, 1500.0)
+    volts = np.clip(rng.normal(0.0, deviation, (round(seconds / INTERVAL), 4)), -1500.0, 1500.0)
     for each in volts:
         rows.append(reading)
         reading, _, failed, _, _ = env.step(each)
@@ -51,7 +51,7 @@ def test_lqg_on_a_plant_of_twenty_seconds_is_within_three_percent_of_lqg_on_the_
 
 @pytest.mark.slow
 def test_all_eleven_modes_are_identified_where_a_sheet_at_an_angle_twists_the_blade():
-    found = identify(measured(20.0, seed=1, blade=TWISTED), collocated=RATIO)
+    found = identify(measured(20.0, seed=1, blade=TWISTED, deviation=300.0), collocated=RATIO)  # at 450 V the twist is cut off
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=32, preset="sound-blade", blade=TWISTED, dtype="float64")
     truth = envs.unwrapped.plant
     nearest = np.abs(found.modes.frequency - truth.natural_frequencies[:, None]).argmin(axis=1)
