@@ -120,7 +120,7 @@ def residues(A: np.ndarray, B: np.ndarray, C: np.ndarray) -> tuple[np.ndarray, n
     return poles, (C @ shapes) * np.linalg.solve(shapes, B.astype(complex))
 
 
-def test_the_published_beam_is_a_little_stiffer_than_its_measurement_as_an_ideal_clamp_and_adhesive_are():
+def test_the_published_beam_is_a_little_stiffer_and_moves_more_per_volt_than_was_measured():
     multipliers, steps = residues(A, B, C)
     poles = np.log(multipliers) / INTERVAL
     frequency, damping, gain = first_mode(poles, steps * poles / (multipliers - 1.0))  # voltages are held over an interval
