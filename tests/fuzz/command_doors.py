@@ -159,6 +159,7 @@ COMMANDS = {
             "--ensemble": "2",
             "--seed": "0",
             "--drive-limit": "100",
+            "--full-scale": "2",
         },
         ("--json", "--before"),
         ("baselines.identification.identify.observer",),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from beamenv import Plant
 from tests.identification.conftest import DAMPING_RATIOS, FREQUENCIES, INTERVAL, record
 from train.cli.app import app
 
@@ -55,6 +56,19 @@ def test_bad_input_is_one_sentence_and_leaves_no_folder(tmp_path):
     assert result.stderr.count("\n") == 1
     assert "column 'y' is nan on line 3" in result.stderr
     assert not (tmp_path / "mine").exists()
+
+
+def test_ranges_of_sensors_are_one_for_each_reading(tmp_path):
+    moved = record(1, 4.0)
+    data = tmp_path / "data.csv"
+    table = np.column_stack([INTERVAL * np.arange(len(moved.volts)), moved.volts, moved.readings])
+    np.savetxt(data, table, delimiter=",", header="time,u1,u2,y1,y2", comments="")
+    command = ["identify", str(data), "--order", "6", "--ensemble", "0", "--folder", str(tmp_path / "mine")]
+    short = CliRunner().invoke(app, [*command, "--full-scale", "2"])
+    assert (short.exit_code, (tmp_path / "mine").exists()) == (2, False)
+    assert "full_scale is [2.0], but must be 2 numbers, one for each of y1, y2." in short.stderr
+    assert CliRunner().invoke(app, [*command, "--full-scale", "2", "--full-scale", "3"]).exit_code == 0
+    assert Plant.from_file(tmp_path / "mine" / "plant.npz").sensor_full_scale.tolist() == [2.0, 3.0]
 
 
 def test_voltages_of_another_measurement_identify_nothing_and_leave_no_folder(tmp_path):

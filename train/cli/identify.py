@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -37,6 +37,10 @@ def identify(
     ensemble: Annotated[int, typer.Option(help="How many plants within the spread are written besides.")] = 16,
     seed: Annotated[int, typer.Option(help="Of the ensemble.")] = 0,
     drive_limit: Annotated[float | None, typer.Option(help="V, either way; as far as they went if left out.")] = None,
+    full_scale: Annotated[
+        list[float] | None,
+        typer.Option(help="Range of a sensor, in its unit; one for each reading. From what moves the plant if left out."),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """From measured voltages and readings to a plant: its modes, its noise, how well all is known.
@@ -50,8 +54,10 @@ def identify(
 
         check_folder(folder)
         members, seed = checked("ensemble", ensemble, Count(0, 1000)), checked("seed", seed, Count(0, 2**63 - 1))
-        about = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
+        about: dict[str, Any] = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
         measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval, before=before)
+        if full_scale:
+            about["full_scale"] = _ranges(full_scale, measurement.reading_names)
         with bar() as report:
             found = run(measurement, _order(order), held_back=held_back, collocated=collocated, progress=report)
         from train.identification.files import write_all
@@ -80,6 +86,14 @@ def _limit(limit: float) -> float:
     from beamenv.plant.limits import STRONGEST_DRIVE
 
     return checked("drive_limit", limit, Number(gt=0.0, le=STRONGEST_DRIVE, unit="V"))
+
+
+def _ranges(full_scale: list[float], names: Sequence[str]) -> list[float]:
+    from beamenv.configuration import Number, Refused, checked
+
+    if len(full_scale) != len(names):
+        raise Refused("full_scale", full_scale, f"{len(names)} numbers, one for each of {', '.join(names)}")
+    return [checked("full_scale", each, Number(gt=0.0)) for each in full_scale]
 
 
 @contextmanager
