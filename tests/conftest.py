@@ -15,8 +15,9 @@ def kept_blades():
     kept, shared = deque(maxlen=48), resolve.shared
 
     def keeping(made):
-        kept.append(shared(made))
-        return kept[-1]
+        found = shared(made)  # not kept[-1]: threads of tests keep theirs meanwhile
+        kept.append(found)
+        return found
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(resolve, "shared", keeping)
