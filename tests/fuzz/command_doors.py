@@ -20,6 +20,7 @@ from train.cli.app import app
 for _room in (
     "comparison.page",
     "comparison.compare",
+    "datasets",
     "explore.server",
     "learning.job",
     "benchmark.campaign",
@@ -120,6 +121,23 @@ COMMANDS = {
         },
         ("--resume", "--overwrite"),
         ("train.learning.job.follow",),
+    ),
+    "record": (
+        ("none",),
+        {
+            "--scenario": "white",
+            "--episodes": "2",
+            "--seed": "0",
+            "--name": "beamenv/made-v0",
+            "--folder": "made",
+            "--trained-seed": None,
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--plant": None,
+        },
+        ("--json", "--overwrite"),
+        ("train.datasets.recording.put_in_place",),
     ),
     "benchmark": (
         (),

@@ -26,6 +26,7 @@ from train.cli.options import (
     print_table,
 )
 from train.cli.place import place
+from train.cli.record import record
 from train.cli.schema import schema
 from train.cli.section import section
 from train.cli.speed import speed
@@ -44,6 +45,7 @@ app.command()(identify)
 app.command()(place)
 app.command()(export)
 app.command()(train)
+app.command()(record)
 app.command()(benchmark)
 app.command()(schema)
 app.command()(speed)
