@@ -91,7 +91,7 @@ _HALVINGS = 60
 
 
 def _share(uniform: Any, others: int) -> Any:
-    """t of a uniform number: where its distribution function is that.
+    """T of a uniform number: where its distribution function is that.
 
     Torch, which has no inverse of the incomplete beta function, halves the range of θ, t = sin θ: the function is then
     ½ + ½ Sₘ(θ)/Sₘ(½π), with m one less than ``others`` and Sₘ(θ) = ∫₀^θ cosᵐ = (cosᵐ⁻¹θ sin θ + (m − 1) Sₘ₋₂)/m.

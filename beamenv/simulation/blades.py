@@ -153,7 +153,9 @@ class Blades:
     @property
     def coming_loads(self) -> Any:
         """(…, k) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
-        out = np.zeros((*self._shape, self.plant.disturbance_input.shape[1]), self.arrays.precision) if self.arrays.of_numpy else None
+        out = (
+            np.zeros((*self._shape, self.plant.disturbance_input.shape[1]), self.arrays.precision) if self.arrays.of_numpy else None
+        )
         loads = self.disturbances.loads(out)
         return self._by_blade(loads if self.own_loads is None else self.own_loads.added(loads))
 
@@ -403,7 +405,9 @@ class Blades:
         bank = self._stepped
         if not self.arrays.on_host:
             index = self.plants.index
-            return strained_too_much(*(self._of(each, index) for each in (bank.strain, bank.standing, bank.failure_strain)), self.moving)
+            return strained_too_much(
+                *(self._of(each, index) for each in (bank.strain, bank.standing, bank.failure_strain)), self.moving
+            )
         failed = namespace(energy).zeros_like(energy, dtype=bool) if self.arrays.of_numpy else energy < 0.0
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either

@@ -63,6 +63,6 @@ def _of_torch(generator: Any, count: int, widths: Sequence[int], columns: int) -
     import torch
 
     told: Any = {"generator": generator, "device": generator.device, "dtype": torch.float64}
-    uniforms = torch.rand((count, sum(widths)), **told).split(list(widths), dim=1)
-    return Numbers(*uniforms, torch.randn((count, columns), **told))
-
+    uniforms, ends = torch.rand((count, sum(widths)), **told), np.cumsum(widths).tolist()
+    parts = [uniforms[:, end - width : end] for end, width in zip(ends, widths, strict=True)]
+    return Numbers(*parts, torch.randn((count, columns), **told))  # type: ignore[call-arg]

@@ -115,7 +115,9 @@ class InPlace:
     blade by blade for a plant each, as BLAS likes it.
     """
 
-    def __init__(self, lie: Arrangement, operators: Operators, sizes: tuple[int, int, int], arrays: Arrays, by_column: bool) -> None:
+    def __init__(
+        self, lie: Arrangement, operators: Operators, sizes: tuple[int, int, int], arrays: Arrays, by_column: bool
+    ) -> None:
         n, (m, k, b), width = operators.states, sizes, operators.fused.shape[-1]
         self._squares: Array
         memories: list[Array] = []

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import torch
 
 from beamenv.arrays import Arrays
 from beamenv.scenarios.scenario import SCENARIOS
@@ -42,7 +41,11 @@ def generators_of(kind):
 
 def episode(task, arrays, kind, steps=STEPS):
     """Every field of the motion at every instant, with episodes of some blades begun again on the way, and what is told of them."""
-    blades, generators, random = Blades(task.bank, task.scenario, COUNT, arrays=arrays), generators_of(kind), np.random.default_rng(1)
+    blades, generators, random = (
+        Blades(task.bank, task.scenario, COUNT, arrays=arrays),
+        generators_of(kind),
+        np.random.default_rng(1),
+    )
     motions = [blades.begin(generators)]
     for k in range(steps):
         if k in (20, 21):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,7 +110,7 @@ class Bank(ReadOnly):
         floats = arrays.floats
         parts = {name: getattr(self, name) for name in (*BY_PLANT, *NOT_ALWAYS)}
         own = None if self.own is None else (floats(self.own[0]), floats(self.own[1]))
-        converted = {name: None if part is None else floats(part) for name, part in parts.items()}
+        converted: dict[str, Any] = {name: None if part is None else floats(part) for name, part in parts.items()}
         return replace(self, operators=self.operators.convert(floats), own=own, **converted)
 
     @classmethod
