@@ -16,5 +16,5 @@ FIELD_OVER_THICKNESS = replace(MFC, electrode_spacing=MFC.thickness)
 
 def covering(length: float, width: float) -> PatchLayout:
     """One actuator over one sensor from the root on, of any ``length`` (m) up to the whole span."""
-    sides = {side: (PatchGroup((0.0,), length=length, width=width, wall=WALLS[side]),) for side in SIDES}
-    return PatchLayout(**sides)
+    actuators, sensors = ((PatchGroup((0.0,), length=length, width=width, wall=WALLS[side]),) for side in SIDES)
+    return PatchLayout(actuators, sensors)
