@@ -13,6 +13,7 @@ _EXTRAS = {
     **dict.fromkeys(("dash", "werkzeug"), "explore"),
     "daqp": "predictive",
     "onnx": "export",
+    "ray": "cluster",
 }
 """Which extra brings a package; all others come with ``train``."""
 

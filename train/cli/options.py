@@ -30,6 +30,10 @@ PlantOption = Annotated[
     typer.Option(help="A model of your own in the place of a blade: .npz, .mat or .json, with A, B, C and what is known."),
 ]
 ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(help="HOST:PORT of a Ray cluster that runs, or local: Ray on the cores of this machine. Of the extra cluster."),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 

@@ -1,0 +1,58 @@
+"""Ray, on which work goes to other processes and machines: a cluster that runs, or one of this process alone."""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from io import StringIO
+
+from beamenv.configuration import Refused, clause
+
+LOCAL = "local"
+"""In place of an address: the cores of this machine, for as long as this process needs them."""
+
+ALLOWED = f"{LOCAL}, or the address HOST:PORT of a Ray cluster that runs"
+
+PATIENCE = 5.0
+"""s, for a cluster to answer."""
+
+QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
+"""Ray's environment: it reports to nobody, and leaves what is asked of no GPU its environment."""
+
+
+@contextmanager
+def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
+    """Within it Ray works at an address, or with so many cores of this machine, all if None; it prints nothing.
+
+    Raises ``ValueError`` of one sentence if no cluster answers at the address.
+    """
+    check_address(address)
+    import ray
+
+    os.environ |= {name: value for name, value in QUIET.items() if name not in os.environ}
+    where = {"address": address} if address != LOCAL else {"address": LOCAL, "num_cpus": cores, "include_dashboard": False}
+    try:
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            ray.init(**where, log_to_driver=False, logging_level=logging.CRITICAL)
+    except (OSError, ValueError, RuntimeError) as error:  # whatever else answers there
+        raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but {clause(error)}.") from None
+    try:
+        yield
+    finally:
+        ray.shutdown()
+
+
+def check_address(address: str) -> None:
+    """``ValueError`` of one sentence for what is no address, or one where nobody answers: Ray itself would wait for minutes."""
+    host, _, port = address.rpartition(":")
+    if address == LOCAL:
+        return
+    if not (host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
+        raise Refused("cluster", address, ALLOWED)
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()
+    except (OSError, ValueError) as error:  # ValueError: a host's name that no name can be
+        raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but there is no answer: {clause(error)}.") from None
