@@ -48,8 +48,8 @@ class Blades:
 
     ``arrays`` says what it is made of. NumPy's of 64 bits are the reference; of 32 bits the same episodes differ by rounding. With
     torch all that is returned are tensors on the device, gradients pass from actions to what follows of them until ``detach``, and
-    NumPy's generators give the episodes that NumPy has of them. Torch's own generator draws on the device: then nothing goes from or
-    to the host in a step, loads of one's own aside. Tensors are of a batch of one group.
+    NumPy's generators give the episodes that NumPy has of them. Torch's own generator draws on the device: then nothing goes
+    between it and the host in a step, loads of one's own aside. Tensors are of a batch of one group.
     """
 
     def __init__(
@@ -201,7 +201,8 @@ class Blades:
         numbers = self._numbers(generators, those, scenario)
         self._begin_plants_and_faults(those, numbers)
         cases, seeded = self._cases(scenario, those, numbers), isinstance(generators, Sequence)
-        noise = self._disturbances.begin(those, cases, generators if seeded else self.arrays.floats(numbers.noise))
+        chance: Any = self._disturbances
+        noise = chance.begin(those, cases, generators if seeded else self.arrays.floats(numbers.noise))
         state = self._initial_state(those, self.arrays.floats(cases.deflection), initial_state)
         self._memory.put(those, state)
         motion = self._undriven(state, noise, those)
@@ -337,8 +338,7 @@ class Blades:
     def _carry(self, passage: Passage) -> None:
         """The states of some blades in the coordinates of the plants that they have come to."""
         those, change = passage
-        of_those = self._memory.state[those.at or ...] if self.arrays.of_numpy else those.take(self._memory.state)
-        self._memory.carry(those, row_product(self._batched(of_those), change))
+        self._memory.carry(those, row_product(self._batched(self._memory.of(those)), change))
 
     def detach(self) -> None:
         """Cut what moves, tensors, from the graph that it came of: gradients do not pass further back."""
@@ -404,10 +404,10 @@ class Blades:
         """
         bank = self._stepped
         if not self.arrays.on_host:
-            index = self.plants.index
-            return strained_too_much(
-                *(self._of(each, index) for each in (bank.strain, bank.standing, bank.failure_strain)), self.moving
+            strain, standing, limit = (
+                self._of(each, self.plants.index) for each in (bank.strain, bank.standing, bank.failure_strain)
             )
+            return strained_too_much(strain, standing, limit, self.moving)
         failed = namespace(energy).zeros_like(energy, dtype=bool) if self.arrays.of_numpy else energy < 0.0
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either

@@ -1,4 +1,4 @@
-"""How a batch of blades lies in memory, column by column: in (blocks, size) blades, or in groups of a plant each; tensors by blade."""
+"""How a batch of blades lies in memory: column by column in (blocks, size) blades, or in groups of a plant each; tensors by blade."""
 
 from __future__ import annotations
 
@@ -110,14 +110,16 @@ class Instant(NamedTuple):
         )
 
 
+Sizes = tuple[int, int, int]
+"""Voltages, loads, and states of the blade's own."""
+
+
 class InPlace:
     """The states of blades in NumPy's memory, which a step writes to: column by column where blades of a group have one plant,
     blade by blade for a plant each, as BLAS likes it.
     """
 
-    def __init__(
-        self, lie: Arrangement, operators: Operators, sizes: tuple[int, int, int], arrays: Arrays, by_column: bool
-    ) -> None:
+    def __init__(self, lie: Arrangement, operators: Operators, sizes: Sizes, arrays: Arrays, by_column: bool) -> None:
         n, (m, k, b), width = operators.states, sizes, operators.fused.shape[-1]
         self._squares: Array
         memories: list[Array] = []
@@ -168,6 +170,10 @@ class InPlace:
         those.lay(self._now.state, state)
         those.lay(self._squares, state[:, : self._squares.shape[-1]] ** 2)
 
+    def of(self, those: Any) -> Array:
+        """The states (k, n) of some blades; (n,) of a blade alone."""
+        return self._now.state[those.at or ...]
+
     def load(self, joined: Any) -> None:
         """Go back to an earlier ``joined``."""
         self._now.joined[...] = np.asarray(joined)
@@ -184,7 +190,7 @@ class Fresh:
 
     loads = product = weighted = None
 
-    def __init__(self, count: int, operators: Operators, sizes: tuple[int, int, int], arrays: Arrays) -> None:
+    def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
         self._own = sizes[-1]
         self.state = arrays.zeros(count, operators.states)
 
@@ -206,6 +212,10 @@ class Fresh:
         self.state = those.put(self.state, state)
 
     carry = put
+
+    def of(self, those: Any) -> Any:
+        """The states (k, n) of some blades."""
+        return those.take(self.state)
 
     def load(self, joined: Any) -> None:
         """Go back to an earlier ``joined``."""
