@@ -61,15 +61,16 @@ class Arrays:
         """The numbers in this precision: NumPy's own array where it has it already, but a copy in torch."""
         if self.device is None:
             return np.asarray(values, dtype=self.precision)
-        torch = sys.modules["torch"]
-        return self._tensor(values, getattr(torch, self.precision))
+        return self._tensor(values, self.precision)
 
     def exact(self, values: Any) -> Any:
         """The numbers with 64 bits, or whole numbers as such: what is drawn is to be the same in either precision."""
         return values if self.device is None else self._tensor(values, None)
 
-    def _tensor(self, values: Any, dtype: Any) -> Any:
-        torch = sys.modules["torch"]
+    def _tensor(self, values: Any, precision: str | None) -> Any:
+        import torch
+
+        dtype = None if precision is None else getattr(torch, precision)
         if isinstance(values, torch.Tensor):
             return values.to(self.device, dtype or values.dtype)
         return torch.tensor(np.ascontiguousarray(values), dtype=dtype, device=self.device)  # a copy: plants are read-only

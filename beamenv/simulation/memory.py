@@ -1,4 +1,4 @@
-"""How a batch of blades lies in memory: column by column in (blocks, size) blades, or in groups of a plant each; tensors by blade."""
+"""How a batch of blades lies in memory: column by column in (blocks, size) blades or groups of a plant each; tensors by blade."""
 
 from __future__ import annotations
 
