@@ -12,6 +12,7 @@ _EXTRAS = {
     **dict.fromkeys(("matplotlib", "pygame"), "render"),
     **dict.fromkeys(("dash", "werkzeug"), "explore"),
     "daqp": "predictive",
+    "ray": "cluster",
     "onnx": "export",
 }
 """Which extra brings a package; all others come with ``train``."""

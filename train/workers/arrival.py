@@ -1,0 +1,20 @@
+"""The first function to run on a machine of a cluster: it is sent as it stands, for beamenv may not be there. Hence no imports here."""
+
+NOT_INSTALLED = (
+    "cluster has a machine, {host!r}, that lacks this version of beamenv ({error}): install the same on all of them, with "
+    "pip install 'beamenv[cluster]'."
+)
+
+
+def arrived(terms: dict[str, str], parcel: bytes, sentence: str) -> bytes:
+    """A parcel carried out, as ``node`` says; where beamenv is not installed the ``sentence`` about it."""
+    import pickle
+    import socket
+
+    try:
+        import beamenv  # noqa: F401 - it knows where the other wings are
+        from beamenv.train.workers.node import carried_out
+    except ImportError as error:
+        refusal = (False, ValueError(sentence.format(host=socket.gethostname(), error=error)))
+        return pickle.dumps((pickle.dumps(refusal), {}))
+    return bytes(carried_out(terms, parcel))

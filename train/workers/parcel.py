@@ -1,0 +1,73 @@
+"""A piece of work as bytes, with the files that it names: what a machine needs that has none of them."""
+
+from __future__ import annotations
+
+import io
+import pickle
+from collections.abc import Iterable
+from functools import lru_cache
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+from train.shared.digests import digest
+
+
+def packed(content: Any, files: Iterable[Path] = ()) -> bytes:
+    """The content with the files: wherever one of them, or a folder that has one, is named in it, by path or text, it will be found."""
+    stream, carried = io.BytesIO(), {str(path): path.read_bytes() for path in files}
+    _packing(stream, carried).dump(content)
+    return pickle.dumps((stream.getvalue(), carried))
+
+
+def _packing(stream: io.BytesIO, carried: dict[str, bytes]) -> pickle.Pickler:
+    import cloudpickle  # comes with the extra for training, which one process does without
+
+    places = {*carried, *(str(Path(each).parent) for each in carried)}
+
+    class Packing(cloudpickle.Pickler):  # type: ignore[misc]
+        def persistent_id(self, given: Any) -> Any:
+            names_one = isinstance(given, (str, Path)) and str(given) in places
+            return (type(given) is str, str(given)) if names_one else None
+
+    pickler: pickle.Pickler = Packing(stream)
+    return pickler
+
+
+def unpacked(parcel: bytes) -> Any:
+    """The content, where files of these names are not the same here with paths of copies."""
+    content, carried = pickle.loads(parcel)
+    return _Unpacking(io.BytesIO(content), carried).load()
+
+
+class _Unpacking(pickle.Unpickler):
+    def __init__(self, content: io.BytesIO, carried: dict[str, bytes]) -> None:
+        super().__init__(content)
+        self._carried = carried
+
+    def persistent_load(self, told: Any) -> Any:
+        is_text, name = told
+        place = self._place(name)
+        return str(place) if is_text else place
+
+    def _place(self, name: str) -> Path:
+        inside = {each: content for each, content in self._carried.items() if name in (each, str(Path(each).parent))}
+        if all(_is_here(Path(each), content) for each, content in inside.items()):
+            return Path(name)
+        home = _home(name, digest(*inside.values()))
+        for each, content in inside.items():
+            (home / Path(each).name).write_bytes(content)
+        return home / Path(name).name if name in inside else home
+
+
+def _is_here(path: Path, content: bytes) -> bool:
+    try:
+        return path.read_bytes() == content
+    except OSError:
+        return False
+
+
+@lru_cache(maxsize=None)
+def _home(name: str, contents: str) -> Path:
+    """A folder of this process for the files of one name and these contents."""
+    return Path(mkdtemp(prefix="beamenv-"))
