@@ -70,8 +70,8 @@ def benchmark(
     - ``runs``: of each agent that many of its training runs, the first ones; all of them if None.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
     - ``jobs``: processes, which objects of yours must be able to travel to; with 1, as if left out, everything stays in this one.
-    - ``cluster``: HOST:PORT or ray://HOST:PORT of a Ray cluster whose processes do it, "auto" for the one that this machine belongs
-      to, or "local" for one that is started here; as many as there are processors if ``jobs`` is left out.
+    - ``cluster``: HOST:PORT or ray://HOST:PORT of a Ray cluster whose processes do it, or "local" for one that is started here; as
+      many as it has processors if ``jobs`` is left out.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
     - ``validation``: on the seeds and the bank of plants that contenders are chosen on, in place of those they are compared on.
     - ``progress``: called with cells done, their number, and the cell.

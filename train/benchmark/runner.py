@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 
 from train.benchmark.bench import Bench
 from train.benchmark.cells import Cell, Job, measured, together
 from train.controllers.sources import Source
 from train.shared.held_models import files_of
-from train.workers.pool import hand_out
 from train.workers.workers import Workers
 
 
@@ -26,15 +26,11 @@ def run(jobs: Sequence[Job], workers: Workers, finished: Callable[[Job, Cell], N
             finished(job, cell)
 
     workers = workers.at_most(len(jobs))
-    if workers.alone:
-        with closing(Bench()) as bench:
-            for group in together(jobs):
-                hand_over(group, measured(group, bench))
-        return
-    check_portable(jobs)
-    if jobs:
-        with workers.pool() as pool:
-            hand_out(pool, _measured_here, together(jobs), hand_over, _files)
+    if not workers.alone:
+        check_portable(jobs)
+    with closing(Bench()) as bench:
+        work = partial(measured, bench=bench) if workers.alone else _measured_here
+        workers.do(work, together(jobs), hand_over, _files)
 
 
 BENCH = Bench()

@@ -12,8 +12,8 @@ _EXTRAS = {
     **dict.fromkeys(("matplotlib", "pygame"), "render"),
     **dict.fromkeys(("dash", "werkzeug"), "explore"),
     "daqp": "predictive",
-    "ray": "cluster",
     "onnx": "export",
+    "ray": "cluster",
 }
 """Which extra brings a package; all others come with ``train``."""
 

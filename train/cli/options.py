@@ -39,9 +39,7 @@ JobsOption = Annotated[
 ]
 ClusterOption = Annotated[
     str | None,
-    typer.Option(
-        help="Ray cluster that does it: HOST:PORT or ray://HOST:PORT; auto, the one that this machine belongs to; local, one here."
-    ),
+    typer.Option(help="HOST:PORT or ray://HOST:PORT of a Ray cluster that runs, or local: Ray here. Of the extra cluster."),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 

@@ -1,4 +1,4 @@
-"""Models of one's own among the arguments of an environment: held as they are now, and told by what they are; files of scenarios."""
+"""Models of one's own among the arguments of an environment: held as they are now, and told by what they are; scenarios' files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first function to run on a machine of a cluster: it is sent as it stands, for beamenv may not be there. Hence no imports here."""
+"""The first function to run on a machine of a cluster: sent as it stands, for beamenv may not be there: no imports here."""
 
 NOT_INSTALLED = (
     "cluster has a machine, {host!r}, that lacks this version of beamenv ({error}): install the same on all of them, with "
@@ -13,7 +13,7 @@ def arrived(terms: dict[str, str], parcel: bytes, sentence: str) -> bytes:
 
     try:
         import beamenv  # noqa: F401 - it knows where the other wings are
-        from beamenv.train.workers.node import carried_out
+        from beamenv.train.workers.node import carried_out  # type: ignore[import-not-found]
     except ImportError as error:
         refusal = (False, ValueError(sentence.format(host=socket.gethostname(), error=error)))
         return pickle.dumps((pickle.dumps(refusal), {}))

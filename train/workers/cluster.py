@@ -2,87 +2,31 @@
 
 from __future__ import annotations
 
-import logging
-import os
-import signal
-import socket
-import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from beamenv.configuration import Refused
+from train.shared.cluster import connected
 from train.shared.threads import ONE_THREAD
 from train.workers import arrival
 from train.workers.node import opened, terms
 from train.workers.parcel import packed
 from train.workers.pool import DIED, Lost
-from train.workers.workers import LOCAL, address_of
-
-PATIENCE = 5.0
-"""Seconds within which an address must answer."""
-
-STORE = 200_000_000
-"""Bytes of memory for results on their way, of a cluster that is started here."""
-
-QUIETLY = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_NUM_REDIS_GET_RETRIES": "1"}
-"""Settings of Ray's unless they are set otherwise: report to nobody, and try an address once."""
 
 
 @contextmanager
 def cluster(address: str, jobs: int | None) -> Iterator[Cluster]:
-    """Workers of the cluster at an address; ``ValueError`` of one sentence if there is none.
+    """Workers of the cluster at an address; ``ValueError`` of one sentence if there is none."""
+    with connected(address, jobs):
+        import ray
 
-    A connection to Ray that this process has already is used, and stays.
-    """
-    for name, value in QUIETLY.items():
-        os.environ.setdefault(name, value)
-    import ray
-
-    joined = not ray.is_initialized()
-    if joined:
-        _join(ray, address, jobs)
-    pool = Cluster(ray, jobs)
-    try:
-        yield pool
-    finally:
-        pool.end()
-        if joined:
-            ray.shutdown()
-
-
-def _join(ray: Any, address: str, jobs: int | None) -> None:
-    """Connect, or start one here."""
-    place = address_of(address)
-    if place is not None:
-        _check_answers(address, place)
-    own = {"num_cpus": jobs, "object_store_memory": STORE, "include_dashboard": False} if address == LOCAL else {}
-    try:
-        with _signals_kept():
-            ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR, **own)
-    except Exception as error:  # noqa: BLE001 - Ray has many, of no common class
-        raise Refused("cluster", address, f"a Ray cluster that can be joined: {_clause(error)}") from None
-
-
-def _check_answers(address: str, place: tuple[str, int]) -> None:
-    """Ray itself would try for minutes."""
-    try:
-        socket.create_connection(place, PATIENCE).close()
-    except OSError as error:
-        raise Refused("cluster", address, f"the address of a Ray cluster that answers: {error.strerror or error}") from None
-
-
-@contextmanager
-def _signals_kept() -> Iterator[None]:
-    """Ray sets a handler of its own for the signal to end."""
-    before = signal.getsignal(signal.SIGTERM)
-    try:
-        yield
-    finally:
-        if threading.current_thread() is threading.main_thread():
-            signal.signal(signal.SIGTERM, before)
+        pool = Cluster(ray, jobs)
+        try:
+            yield pool
+        finally:
+            pool.end()
 
 
 def _clause(error: Exception) -> str:

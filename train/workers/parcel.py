@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import io
 import pickle
-from collections.abc import Iterable
-from functools import lru_cache
+from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
@@ -14,24 +14,26 @@ from train.shared.digests import digest
 
 
 def packed(content: Any, files: Iterable[Path] = ()) -> bytes:
-    """The content with the files: wherever one of them, or a folder that has one, is named in it, by path or text, it will be found."""
-    stream, carried = io.BytesIO(), {str(path): path.read_bytes() for path in files}
-    _packing(stream, carried).dump(content)
+    """The content with the files: where it names one, or a folder that holds one, by path or text, it names what is carried."""
+    import cloudpickle  # comes with the extra for training, which one process does without
+
+    carried = {str(path): path.read_bytes() for path in files}
+    places = _places(carried)
+
+    class Packing(cloudpickle.Pickler):  # type: ignore[misc]
+        def persistent_id(self, given: Any) -> str | None:
+            if not isinstance(given, (str, Path)) or str(given) not in places:
+                return None
+            return f"{'text' if isinstance(given, str) else 'path'} {places.index(str(given))}"
+
+    stream = io.BytesIO()
+    Packing(stream).dump(content)
     return pickle.dumps((stream.getvalue(), carried))
 
 
-def _packing(stream: io.BytesIO, carried: dict[str, bytes]) -> pickle.Pickler:
-    import cloudpickle  # comes with the extra for training, which one process does without
-
-    places = {*carried, *(str(Path(each).parent) for each in carried)}
-
-    class Packing(cloudpickle.Pickler):  # type: ignore[misc]
-        def persistent_id(self, given: Any) -> Any:
-            names_one = isinstance(given, (str, Path)) and str(given) in places
-            return (type(given) is str, str(given)) if names_one else None
-
-    pickler: pickle.Pickler = Packing(stream)
-    return pickler
+def _places(carried: Mapping[str, bytes]) -> list[str]:
+    """Names of files and of their folders."""
+    return sorted({*carried, *(str(Path(each).parent) for each in carried)})
 
 
 def unpacked(parcel: bytes) -> Any:
@@ -45,10 +47,10 @@ class _Unpacking(pickle.Unpickler):
         super().__init__(content)
         self._carried = carried
 
-    def persistent_load(self, told: Any) -> Any:
-        is_text, name = told
-        place = self._place(name)
-        return str(place) if is_text else place
+    def persistent_load(self, told: str) -> Any:
+        kind, number = told.split()
+        place = self._place(_places(self._carried)[int(number)])
+        return place if kind == "path" else str(place)
 
     def _place(self, name: str) -> Path:
         inside = {each: content for each, content in self._carried.items() if name in (each, str(Path(each).parent))}
@@ -67,7 +69,7 @@ def _is_here(path: Path, content: bytes) -> bool:
         return False
 
 
-@lru_cache(maxsize=None)
+@cache
 def _home(name: str, contents: str) -> Path:
     """A folder of this process for the files of one name and these contents."""
     return Path(mkdtemp(prefix="beamenv-"))

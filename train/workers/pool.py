@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
@@ -55,8 +55,8 @@ def hand_out(
 ) -> None:
     """Have ``work`` done on each piece, and call ``finished`` here as each is; a piece that this returns comes next.
 
-    What a piece comes to must depend on the piece alone: then it is the same whichever worker does it, and when. A piece whose worker
-    dies is handed out again. Raises what ``work`` raises, and ``ChildProcessError`` where workers die at a piece ``TRIES`` times.
+    What a piece comes to must depend on the piece alone: then it is the same whichever worker does it, and when. A piece whose
+    worker dies is handed out again. Raises what ``work`` raises, and ``ChildProcessError`` for the piece at which ``TRIES`` died.
     """
     queue, running = _Queue(pieces), dict[Future[Any], Piece]()
     while True:
@@ -64,21 +64,16 @@ def hand_out(
             running[pool.submit(work, waiting[0], files(waiting[0]))] = waiting[0]
         if not running:
             return
-        for future in wait(running, return_when=FIRST_COMPLETED).done:
-            if future not in running:  # it was lost together with another
-                continue
-            piece = running.pop(future)
-            try:
-                result = pool.result(future)
-            except Lost:
-                queue.again(piece)
-                if pool.renewed():
-                    for other in running.values():
-                        queue.again(other)
-                    running.clear()
-            else:
-                if (further := finished(piece, result)) is not None:
-                    queue.first(further)
+        future = next(iter(wait(running, return_when=FIRST_COMPLETED).done))
+        piece = running.pop(future)
+        try:
+            result = pool.result(future)
+        except Lost:
+            lost = [piece, *running.values()] if pool.renewed() else [piece]
+            running = {} if len(lost) > 1 else running
+            queue.again(lost)
+        else:
+            queue.first(() if (further := finished(piece, result)) is None else (further,))
 
 
 class _Queue:
@@ -93,16 +88,16 @@ class _Queue:
         """The next piece alone, or nothing."""
         return (self._before.popleft(),) if self._before else tuple(_first(self._rest))
 
-    def first(self, piece: Any) -> None:
-        """Put a piece before all others."""
-        self._before.appendleft(piece)
+    def first(self, pieces: Iterable[Any]) -> None:
+        """Put pieces before all others."""
+        self._before.extendleft(pieces)
 
-    def again(self, piece: Any) -> None:
-        """… and count the loss."""
-        self._lost[id(piece)] += 1
-        if self._lost[id(piece)] == TRIES:
+    def again(self, pieces: Collection[Any]) -> None:
+        """… and count the losses."""
+        self._lost.update(map(id, pieces))
+        if any(self._lost[id(piece)] == TRIES for piece in pieces):
             raise ChildProcessError(DIED)
-        self.first(piece)
+        self.first(pieces)
 
 
 def _first(rest: Iterator[Any]) -> Iterator[Any]:

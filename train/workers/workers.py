@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import PurePath
-from typing import Any
+from itertools import chain
+from pathlib import Path
 
-from beamenv.configuration import Count, Refused, checked
-from train.workers.pool import Pool
-
-LOCAL, AUTO = "local", "auto"
-CLIENT = "ray://"
+from beamenv.configuration import Count, checked
+from train.shared.cluster import check_address
+from train.workers.pool import Piece, Pool, Result, hand_out, no_files
 
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """How many processes, and whether they are a cluster's. ``ValueError`` for less than one, and for no address."""
+    """How many processes, and whether they are a cluster's. ``ValueError`` for less than one, and where no cluster answers."""
 
     jobs: int | None = None
     """Pieces in work at a time. If left out one, in this process; on a cluster as many as it has processors."""
     cluster: str | None = None
-    """HOST:PORT or ray://HOST:PORT of a Ray cluster, "auto" for the one that this machine belongs to, or "local": one that is
-    started here, and ends with the work."""
+    """HOST:PORT or ray://HOST:PORT of a Ray cluster, or "local": one that is started here, and ends with the work."""
 
     def __post_init__(self) -> None:
         if self.jobs is not None:
             object.__setattr__(self, "jobs", checked("jobs", self.jobs, Count()))
         if self.cluster is not None:
-            address_of(self.cluster)
+            check_address(self.cluster)
 
     @property
     def alone(self) -> bool:
@@ -39,6 +36,25 @@ class Workers:
     def at_most(self, pieces: int) -> Workers:
         """No more of this machine's than there are pieces."""
         return self if self.cluster is not None or self.jobs is None else Workers(max(1, min(self.jobs, pieces)))
+
+    def do(
+        self,
+        work: Callable[[Piece], Result],
+        pieces: Iterable[Piece],
+        finished: Callable[[Piece, Result], Piece | None],
+        files: Callable[[Piece], Iterable[Path]] = no_files,
+    ) -> None:
+        """``hand_out`` the pieces, or do them here one after another."""
+        if self.alone:
+            for each in pieces:
+                piece: Piece | None = each
+                while piece is not None:
+                    piece = finished(piece, work(piece))
+            return
+        waiting = iter(pieces)
+        for first in waiting:  # nobody is called for nothing
+            with self.pool() as pool:
+                hand_out(pool, work, chain([first], waiting), finished, files)
 
     @contextmanager
     def pool(self) -> Iterator[Pool]:
@@ -53,14 +69,3 @@ class Workers:
 
             with cluster(self.cluster, self.jobs) as there:
                 yield there
-
-
-def address_of(cluster: Any) -> tuple[str, int] | None:
-    """Host and port, None of those that have a word; ``ValueError`` for what is no address."""
-    if cluster in (LOCAL, AUTO):
-        return None
-    host, _, port = str(cluster).removeprefix(CLIENT).rpartition(":")
-    strange = not isinstance(cluster, str) or len(PurePath(host).parts) != 1 or not all(each.isprintable() for each in host)
-    if strange or " " in host or not (port.isascii() and port.isdecimal() and 0 < int(port[:6]) < 65536):
-        raise Refused("cluster", cluster, f"{LOCAL}, {AUTO}, HOST:PORT or {CLIENT}HOST:PORT")
-    return host.strip("[]"), int(port)
