@@ -8,13 +8,13 @@ NOT_INSTALLED = (
 
 def arrived(terms: dict[str, str], parcel: bytes, sentence: str) -> bytes:
     """A parcel carried out, as ``node`` says; where beamenv is not installed the ``sentence`` about it."""
+    import importlib
     import pickle
     import socket
 
     try:
-        import beamenv  # noqa: F401 - it knows where the other wings are
-        from beamenv.train.workers.node import carried_out  # type: ignore[import-not-found]
+        node = importlib.import_module("beamenv.train.workers.node")
     except ImportError as error:
         refusal = (False, ValueError(sentence.format(host=socket.gethostname(), error=error)))
         return pickle.dumps((pickle.dumps(refusal), {}))
-    return bytes(carried_out(terms, parcel))
+    return bytes(node.carried_out(terms, parcel))
