@@ -14,6 +14,7 @@ _EXTRAS = {
     **dict.fromkeys(("minari", "h5py"), "record"),
     "daqp": "predictive",
     "onnx": "export",
+    "ray": "cluster",
 }
 """Which extra brings a package; all others come with ``train``."""
 
