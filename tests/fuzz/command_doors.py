@@ -113,6 +113,8 @@ COMMANDS = {
             "--recipe": None,
             "--from": None,
             "--device": "cpu",
+            "--jobs": "1",
+            "--cluster": None,
             "--preset": "thesis",
             "--speed": "20",
             "--blade": "blade.toml",
