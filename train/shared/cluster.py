@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
 import socket
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
@@ -35,7 +37,7 @@ def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
     os.environ |= {name: value for name, value in QUIET.items() if name not in os.environ}
     where = {"address": address} if address != LOCAL else {"address": LOCAL, "num_cpus": cores, "include_dashboard": False}
     try:
-        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()), _same_signals():
             ray.init(**where, log_to_driver=False, logging_level=logging.CRITICAL)
     except (OSError, ValueError, RuntimeError) as error:  # whatever else answers there
         raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but {clause(error)}.") from None
@@ -43,6 +45,17 @@ def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
         yield
     finally:
         ray.shutdown()
+
+
+@contextmanager
+def _same_signals() -> Iterator[None]:
+    """What a signal to end does stays what it was: Ray would leave at once."""
+    before = signal.getsignal(signal.SIGTERM)
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, before)
 
 
 def check_address(address: str) -> None:
