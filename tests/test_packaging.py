@@ -167,6 +167,7 @@ def test_baselines_never_know_environments():
 
 ROOMS_OF_TRAIN = (
     {"shared"},
+    {"workers"},
     {"controllers", "figures", "tools"},
     {"export", "identification", "learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore", "tuning"},

@@ -131,6 +131,7 @@ COMMANDS = {
             "--folder": "made",
             "--model": None,
             "--jobs": "1",
+            "--cluster": None,
             "--docs": None,
             "--submit": None,
             "--tier": None,
@@ -141,7 +142,7 @@ COMMANDS = {
     ),
     "benchmark --submit": (
         (),
-        {"--submit": "lqg", "--tier": None, "--folder": "made", "--docs": "made", "--jobs": "1"},
+        {"--submit": "lqg", "--tier": None, "--folder": "made", "--docs": "made", "--jobs": "1", "--cluster": None},
         ("--json", "--trust", "--overwrite"),
         ("train.benchmark.campaign._cells",),
     ),
@@ -196,7 +197,12 @@ COMMANDS = {
         ("--json", "--measure"),
         ("train.export.compiled.seconds_a_step",),
     ),
-    "reproduce": (("table-3.4",), {"--output": "made", "--docs": None}, ("--fresh",), ("train.cli.reproduce.run_with_progress",)),
+    "reproduce": (
+        ("table-3.4",),
+        {"--output": "made", "--docs": None, "--jobs": "1", "--cluster": None},
+        ("--fresh",),
+        ("train.cli.reproduce.run_with_progress",),
+    ),
     "schema": (("blade",), {"--output": None}, (), ()),
     "speed": ((), {}, ("--json",), ("train.cli.speed.measured",)),
     "explore": (

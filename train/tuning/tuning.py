@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from beamenv.configuration import Count, checked
+from beamenv.configuration import Count, Refused, checked
 from beamenv.configuration.writing import write_whole
 from train.learning.job import Job
 from train.learning.recipe import Recipe
 from train.learning.recipe_file import as_toml
 from train.learning.session import Budget
 from train.learning.validation import EPISODES
-from train.shared.cluster import LOCAL, check_address
+from train.shared.cluster import CLIENT, LOCAL, check_address
 from train.shared.files import on_one_line, read_json, write_csv, write_json
 from train.shared.held_out import VALIDATION
 from train.shared.interruption import ending_as_interrupted
@@ -99,6 +99,10 @@ def tune(
     """
     checked("trials", tuning.trials, TRIALS)
     check_address(cluster)
+    if cluster.startswith(CLIENT):
+        raise Refused(
+            "cluster", cluster, f"{LOCAL}, or HOST:PORT: from outside a cluster Ray Tune would keep what it finds to itself"
+        )
     jobs = [tuning.job(trial) for trial in range(tuning.trials)]
     jobs[0].tasks()
     with alone_in(folder), ending_as_interrupted():

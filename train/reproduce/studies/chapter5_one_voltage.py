@@ -11,8 +11,6 @@ from baselines import no_control
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds
 from train.reproduce.studies.closed_loop import (
-    PATCH_LENGTH,
-    PATCH_WIDTH,
     blade,
     controlled,
     patches,
@@ -23,7 +21,7 @@ from train.reproduce.studies.closed_loop import (
     settling_times,
     simulate,
 )
-from train.reproduce.studies.study_patches import FIELD_OVER_THICKNESS, CoveringLayout, SheetLayout
+from train.reproduce.studies.study_patches import FIELD_OVER_THICKNESS, covering
 from train.reproduce.thesis import Model
 
 Array = NDArray[np.float64]
@@ -40,7 +38,7 @@ def mfc_or_pzt(angle_deg: float) -> Compute:
         layouts = {
             "PZT": patches(ganged=True, material="PZT"),
             "MFC": patches(ganged=True),
-            "MFC, V/thickness": SheetLayout(length=PATCH_LENGTH, width=PATCH_WIDTH, ganged=True, sheet=FIELD_OVER_THICKNESS),
+            "MFC, V/thickness": patches(ganged=True, material=FIELD_OVER_THICKNESS),
         }
         blades = {name: blade(model, beam, layout) for name, layout in layouts.items()}
         found, pair = controlled(model, blades), ["PZT", "MFC"]
@@ -67,12 +65,7 @@ def mfc_or_pzt(angle_deg: float) -> Compute:
 def coverage(model: Model) -> Outcome:
     """Figure 5.9."""
     beam = model.blade(30.0)
-    blades = {
-        f"{share:.0%} of the span": blade(
-            model, beam, CoveringLayout(1, 1, length=share * beam.length, width=beam.width, ganged=True)
-        )
-        for share in COVERAGES
-    }
+    blades = {f"{share:.0%} of the span": blade(model, beam, covering(share * beam.length, beam.width)) for share in COVERAGES}
     found = controlled(model, blades)
     peak, settling, voltage = peaks(found), settling_times(found), peak_voltages(found)[:, 0]
     evidence = {

@@ -13,9 +13,9 @@ from beamenv.structure.sweep import frequency_sweep
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Large
-from train.reproduce.studies.closed_loop import PATCH_LENGTH, PATCH_WIDTH, patches
+from train.reproduce.studies.closed_loop import patches
 from train.reproduce.studies.parameter_studies import ORDINALS, PLY_ANGLES_DEG, SPEEDS
-from train.reproduce.studies.study_patches import PRINTED_DENSITY, SheetLayout
+from train.reproduce.studies.study_patches import PRINTED_DENSITY
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import shear_bending_stiffness
 from train.reproduce.thesis.configurations import built
@@ -26,7 +26,7 @@ SHEETS: dict[str, PatchLayout | None] = {
     "no patches": None,
     "MFC": patches(actuators=6, sensors=6),
     "PZT": patches(material="PZT", actuators=6, sensors=6),
-    "MFC, printed density": SheetLayout(6, 6, length=PATCH_LENGTH, width=PATCH_WIDTH, sheet=PRINTED_DENSITY),
+    "MFC, printed density": patches(material=PRINTED_DENSITY, actuators=6, sensors=6),
 }
 TURN_DEG = 75.0
 TAPERS = (1.0, 2.0, 3.0, 4.0)
