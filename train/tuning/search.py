@@ -54,10 +54,10 @@ class Search:
     folder: Path
 
 
-class Arm(tune.Trainable):  # type: ignore[misc] # Ray's classes carry no types
+class Arm(tune.Trainable):
     """A trial in a worker: each step leads to its next rung."""
 
-    def setup(self, config: dict[str, Any], search: Search) -> None:
+    def setup(self, config: dict[str, Any], search: Search) -> None:  # type: ignore[override] # ``with_parameters`` gives it
         """A trial from its beginning, or from what is known of it."""
         trial = config["trial"]
         record, self._last = search.records[trial], search.rungs[-1]
@@ -76,7 +76,7 @@ class Arm(tune.Trainable):  # type: ignore[misc] # Ray's classes carry no types
     def reset_config(self, new_config: dict[str, Any]) -> bool:
         """Another trial in the same worker, which has loaded all that it needs."""
         self.cleanup()
-        self.setup(new_config)  # type: ignore[call-arg] # Ray gives what search is, as it did the first time
+        self.setup(new_config)  # type: ignore[call-arg]
         return True
 
     def cleanup(self) -> None:
@@ -85,7 +85,7 @@ class Arm(tune.Trainable):  # type: ignore[misc] # Ray's classes carry no types
             self._looks.close()
 
 
-class Halving(ASHAScheduler):  # type: ignore[misc]
+class Halving(ASHAScheduler):
     """Successive halving that lets the recipe as it is have all its updates: the others are compared with it."""
 
     def on_trial_result(self, tune_controller: Any, trial: Any, result: dict[str, Any]) -> str:
@@ -94,7 +94,7 @@ class Halving(ASHAScheduler):  # type: ignore[misc]
         return TrialScheduler.CONTINUE if trial.config["trial"] == 0 else decision
 
 
-class Notes(Callback):  # type: ignore[misc]
+class Notes(Callback):
     """Keeps what is found, as it is found."""
 
     def __init__(self, records: Sequence[Record], last: int, found: Found) -> None:
@@ -159,7 +159,7 @@ def search(plan: Search, found: Found, cluster: str, side_by_side: int | None) -
     return notes.records
 
 
-def resources(recipe: Recipe) -> dict[str, int]:
+def resources(recipe: Recipe) -> dict[str, float]:
     """A core for each trial, and a GPU where the recipe trains on one."""
     device = getattr(recipe.settings, "device", "cpu")
     return {"cpu": 1} if device == "cpu" else {"cpu": 1, "gpu": 1}

@@ -52,7 +52,8 @@ class Tried:
             chosen: Value = self.choices[int(generator.integers(len(self.choices)))]
             return chosen
         if self.times is not None:
-            value = own * math.exp(generator.uniform(*map(math.log, self.times)))  # type: ignore[operator] # Space checks it
+            low, high = self.times
+            value = float(own) * math.exp(generator.uniform(math.log(low), math.log(high)))
         else:
             assert self.between is not None
             value = generator.uniform(*self.between)

@@ -89,11 +89,11 @@ class _Clock:
     def __init__(self, training: Training, folder: Path, identity: str) -> None:
         self._training, self._folder, self._identity = training, folder, identity
         before = _checkpoint(folder)
-        known = before if before.get("identity") == identity else {"looks": [], "seconds": 0.0}
-        if known is before:
+        self.found: list[Look] = []
+        self.seconds = 0.0
+        if before.get("identity") == identity:
             training.load_state_dict(before["training"])
-        self.found = [Look(**each) for each in known["looks"]]
-        self.seconds = float(known["seconds"])
+            self.found, self.seconds = [Look(**each) for each in before["looks"]], float(before["seconds"])
 
     def train(self, rung: int, budget: Budget) -> None:
         """Train to a rung, with a checkpoint now and then."""
