@@ -23,6 +23,7 @@ for _room in (
     "datasets",
     "explore.server",
     "learning.job",
+    "tuning.tuning",
     "benchmark.campaign",
     "benchmark.showing.heat_map",
     "benchmark.showing.page",
@@ -47,7 +48,21 @@ WORD = Kind("word", lambda value: value, st.one_of(st.sampled_from(WORDS), st.te
 
 
 OTHER_NAMES = (
-    *("path", "file", "controller", "agent", "folder", "kind", "model", "name", "studies", "teacher", "minutes", "updates"),
+    *(
+        "path",
+        "file",
+        "controller",
+        "agent",
+        "recipe",
+        "folder",
+        "kind",
+        "model",
+        "name",
+        "studies",
+        "teacher",
+        "minutes",
+        "updates",
+    ),
     *("ption", "argument", "command", "json", "held_back", "drive_limit"),
 )
 """What sentences call arguments that have no option's name."""
@@ -114,6 +129,8 @@ COMMANDS = {
             "--recipe": None,
             "--from": None,
             "--device": "cpu",
+            "--jobs": "1",
+            "--cluster": None,
             "--preset": "thesis",
             "--speed": "20",
             "--blade": "blade.toml",
@@ -121,6 +138,25 @@ COMMANDS = {
         },
         ("--resume", "--overwrite"),
         ("train.learning.job.follow",),
+    ),
+    "tune": (
+        ("gradient",),
+        {
+            "--scenario": "white",
+            "--trials": "3",
+            "--updates": "4",
+            "--seed": "0",
+            "--space": None,
+            "--folder": "made",
+            "--cluster": "local",
+            "--jobs": "1",
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--plant": None,
+        },
+        ("--json", "--overwrite"),
+        ("train.tuning.tuning._run",),
     ),
     "record": (
         ("none",),

@@ -20,6 +20,7 @@ from tests.fuzz.meaning import (
     NOTHING,
     NUMBER,
     PATH,
+    RANGE,
     TEXT,
     Kind,
     instance,
@@ -37,6 +38,7 @@ from train.datasets import record
 from train.learning.agents import AGENTS
 from train.learning.recipe import _recipe, load_recipe, named_recipe
 from train.learning.session import Budget
+from train.tuning.space import _space
 
 SETTINGS = {name: type(agent.settings()) for name, agent in AGENTS.items()}
 
@@ -81,6 +83,18 @@ def recipe_door(name):
     )
 
 
+def space_door(name):
+    """What is tried of one setting, beside another that is as it ships."""
+    recipe = named_recipe(name)
+
+    def call(**given):
+        return _space({"agent": recipe.agent, "settings": {"learning_rate": given}}, "mine.toml", recipe)
+
+    kinds = {"between": maybe(RANGE), "times": maybe(RANGE), "choices": ANYTHING}
+    valid = {"times": [0.5, 2.0]}
+    return Door(f"space of {name}", call, kinds, lambda: dict(valid), lambda made: made.tried["learning_rate"], ("space",))
+
+
 TEXTS = Kind(
     "texts",
     lambda value: (
@@ -116,6 +130,7 @@ DOORS = [
         }.items()
     ),
     *(recipe_door(name) for name in ("gradient", "ppo", "residual", "sac")),
+    *(space_door(name) for name in ("gradient", "sac")),
     Door(
         "Budget",
         lambda **given: Budget(**given),

@@ -34,6 +34,7 @@ from train.cli.schema import schema
 from train.cli.section import section
 from train.cli.speed import speed
 from train.cli.train import train
+from train.cli.tune import tune
 from train.cli.usage import OneSentence
 
 app = typer.Typer(
@@ -48,6 +49,7 @@ app.command()(identify)
 app.command()(place)
 app.command()(export)
 app.command()(train)
+app.command()(tune)
 app.command()(record)
 app.command()(benchmark)
 app.command()(schema)
