@@ -119,6 +119,11 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         """By positions: what layouts have had their blades built for, as long as they are in use."""
         self._move_to(self._positions)
 
+    @property
+    def autoreset_mode(self) -> AutoresetMode:
+        """The batch's: Gymnasium tells it in ``metadata``, and TorchRL asks for it by this name."""
+        return self.env.metadata["autoreset_mode"]
+
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode of every blade."""
         options = _options(options)
