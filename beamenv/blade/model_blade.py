@@ -170,7 +170,9 @@ def _one_or_several(given: Any) -> tuple[Plant, ...]:
         if Path(given).is_dir():
             given = _in_folder(Path(given))
         elif Path(given).suffix.lower() not in ENDINGS and not Path(given).exists():
-            allowed = f"the folder of an identification or a file that ends in {' or '.join(ENDINGS)}, and there is none of this name"
+            allowed = (
+                f"the folder of an identification or a file that ends in {' or '.join(ENDINGS)}, and there is none of this name"
+            )
             raise Refused("plant", str(given), allowed)
     several = isinstance(given, (list, tuple))
     if several and not given:

@@ -170,7 +170,9 @@ def test_a_law_that_takes_readings_for_others_is_refused(env, law):
     plant = env.unwrapped.design_plant
     doubled = replace(plant, sensor_full_scale=plant.sensor_full_scale * np.array([1.0, 1.0, 2.0, 1.0]))
     for each in (env, batch()):
-        with pytest.raises(ValueError, match="^controller = LQG takes a reading of 1 of sensor 3 for .*, its full scale: design") as told:
+        with pytest.raises(
+            ValueError, match="^controller = LQG takes a reading of 1 of sensor 3 for .*, its full scale: design"
+        ) as told:
             evaluate(lqg(doubled), each, range(2))
         assert "\n" not in str(told.value)
     cost = evaluate(lqg(plant), env, range(2)).cost.value

@@ -217,7 +217,9 @@ def test_patches_may_touch():
 def test_trial_functions_too_many_to_be_told_apart_are_named():
     z = load_config(Path(__file__).parents[2] / "examples" / "blades" / "z-stringer.toml")
     beam = build_beam(replace(z, beam=replace(z.beam, terms=30)))
-    with pytest.raises(ValueError, match=r"^beam\.terms is 30, but must be fewer beside two for each of \d breaks along the span: so"):
+    with pytest.raises(
+        ValueError, match=r"^beam\.terms is 30, but must be fewer beside two for each of \d breaks along the span: so"
+    ):
         beam.natural_frequencies(0.0, count=3)
     with pytest.raises(ValueError, match="^beam cannot be computed: one of its numbers"):  # as many as usual would not do either
         blade(terms=30, length=1e6).natural_frequencies(0.0, count=3)

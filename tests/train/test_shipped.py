@@ -67,8 +67,8 @@ def test_each_tells_what_it_depends_on_and_acts_on_the_plants_it_was_trained_on(
 
 
 TRAINED_ON_ANOTHER = (
-    r"^plant is none of those the agent in .* was trained on, in delay, .*: beside that of nominal it has a first natural frequency of "
-    r"177\.5 rad/s in place of 186\.58, another full scale of its sensors"
+    r"^plant is none of those the agent in .* was trained on, in delay, .*: beside that of nominal it has a first "
+    r"natural frequency of 177\.5 rad/s in place of 186\.58, another full scale of its sensors"
 )
 
 
