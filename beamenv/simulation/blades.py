@@ -79,8 +79,8 @@ class Blades:
         self.own_loads = OwnLoads(scenario.loads, self.plant.control_interval, n, self.plant.loads) if scenario.loads else None
         self._stepped, self._speeds = self.bank.convert(arrays), arrays.exact(self.bank.speeds)
         self.plants = Allotment(self._stepped, self._lie, self._sizes or (1,), arrays)
-        several = self.plants.product if self.plants.drawn and self._shape and arrays.of_numpy else row_product
-        self._multiply = self._lie.product if self._lie.runs else several  # a blade alone has no time to ask
+        own = self.plants.product if self.plants.drawn and not self._lie.runs else self._lie.product
+        self._multiply = own if self._shape and arrays.of_numpy else row_product  # a blade alone has no time to ask
         self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
         self._changing = (
             self.bank.runs or self.bank.walk is not None or (self.electronics is not None and self.electronics.changing)
@@ -385,15 +385,12 @@ class Blades:
         if self.electronics is not None:
             flat = self.electronics.acquire(*(self._batched(self._by_blade(each)) for each in (output, noise)))
             return self._in_units(flat if self._shape else flat[0])
-        noise = noise[..., : output.shape[-1]]
+        reading = output + noise[..., : output.shape[-1]]
         if not self.arrays.of_numpy:
-            return self._in_units(namespace(output).clip(output + noise, -1.0, 1.0))
-        noisy = np.empty(output.shape, output.dtype)  # the output may be part of the state
-        np.add(output, noise, out=noisy)
-        reading = noisy.reshape(self.count or 1, -1) if self._shape else noisy
+            return self._in_units(namespace(output).clip(reading, -1.0, 1.0))
         np.minimum(reading, _FULL, out=reading)
         np.maximum(reading, _MINUS_FULL, out=reading)
-        return self._in_units(reading)
+        return self._in_units(self._by_blade(reading) if self._shape else reading)
 
     def _in_units(self, reading: Any) -> Any:
         return reading * self._full_scale if self._physical else reading
