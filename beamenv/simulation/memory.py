@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.arrays import Arrays, SomeRows, copied, namespace
-from beamenv.simulation.kernel import Operators, row_product
+from beamenv.simulation.kernel import Operators, row_product, views_of
 
 Array = NDArray[Any]
 Rows = NDArray[np.int64]
@@ -124,23 +124,23 @@ class InPlace:
 
     def __init__(self, lie: Arrangement, operators: Operators, sizes: Sizes, arrays: Arrays, by_column: bool) -> None:
         n, (m, k, b), width = operators.states, sizes, operators.fused.shape[-1]
-        self._squares: Array
+        self.squares: Array
+        """(…, b) of the blade's own states, which are kept from one instant to the next."""
         memories: list[Array] = []
         for columns in (*[max(n + m + k, width)] * 2, m, b):
             by_blade = np.zeros((*lie.shape, columns), arrays.precision)
             memories.append(lie.columns_first(columns, arrays.precision)[1] if by_column else by_blade)
-        *both, self.weighted, self._squares = memories
+        *both, self.weighted, self.squares = memories
         self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in both)
+        self.views, self._other_views = (
+            views_of(operators, one.joined, other.product) for one, other in ((self._now, self._then), (self._then, self._now))
+        )
+        """Of this instant's product."""
 
     @property
     def state(self) -> Array:
         """(…, n), as the batch lies: a view."""
         return self._now.state
-
-    @property
-    def squares(self) -> Array:
-        """(…, b) of the blade's own states, which are kept from one instant to the next."""
-        return self._squares
 
     @property
     def loads(self) -> Array:
@@ -154,14 +154,15 @@ class InPlace:
 
     def join(self, acting: Array, loads: Array) -> tuple[Array, Array]:
         """[state, voltages, loads] (…, s), of which the loads have been written, and the voltages there."""
-        voltages = self._now.voltages
-        voltages[...] = acting.reshape(voltages.shape)
-        return self._now.joined, voltages
+        joined, _, voltages, *_ = self._now
+        voltages[...] = acting if acting.shape == voltages.shape else acting.reshape(voltages.shape)
+        return joined, voltages
 
     def become(self, state: Array) -> None:
         """Go on to the state that the product begins with."""
         self._now, self._then = self._then, self._now
-        np.square(self._now.energetic, out=self._squares)
+        self.views, self._other_views = self._other_views, self.views
+        np.square(self._now.energetic, out=self.squares)
 
     def put(self, those: Any, state: Array) -> None:
         """Put some blades into other states (k, n), at rest otherwise."""
@@ -171,7 +172,7 @@ class InPlace:
     def carry(self, those: Any, state: Array) -> None:
         """Put some blades into other states (k, n)."""
         those.lay(self._now.state, state)
-        those.lay(self._squares, state[:, : self._squares.shape[-1]] ** 2)
+        those.lay(self.squares, state[:, : self.squares.shape[-1]] ** 2)
 
     def of(self, those: Any) -> Array:
         """The states (k, n) of some blades; (n,) of a blade alone."""
@@ -180,7 +181,7 @@ class InPlace:
     def load(self, joined: Any) -> None:
         """Go back to an earlier ``joined``."""
         self._now.joined[...] = np.asarray(joined)
-        np.square(self._now.energetic, out=self._squares)
+        np.square(self._now.energetic, out=self.squares)
 
     @property
     def joined(self) -> Array:
@@ -191,7 +192,7 @@ class InPlace:
 class Fresh:
     """The states of blades as tensors, of which each step makes new ones: gradients pass."""
 
-    loads = product = weighted = None
+    loads = product = weighted = views = None
 
     def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
         self._own = sizes[-1]

@@ -15,8 +15,8 @@ _TURN = np.float32(2.0 * np.pi)
 class Normals:
     """Draws as many as an array has numbers, from a generator of NumPy, into that array.
 
-    With 64 bits they are the generator's own. With 32 bits two are made of two uniform numbers (Box and Muller 1958), √(−2 ln u) times
-    the cosine and the sine of an angle, which NumPy does several at a time: none is beyond 5.8.
+    With 64 bits they are the generator's own. With 32 bits two are made of two uniform numbers (Box and Muller 1958), √(−2 ln u)
+    times the cosine and the sine of an angle, which NumPy does several at a time: none is beyond 5.8.
     """
 
     def __init__(self, out: NDArray[Any]) -> None:
