@@ -167,9 +167,10 @@ def test_baselines_never_know_environments():
 
 ROOMS_OF_TRAIN = (
     {"shared"},
+    {"workers"},
     {"controllers", "figures", "tools"},
     {"export", "identification", "learning", "page", "placement", "reproduce"},
-    {"benchmark", "comparison", "explore"},
+    {"benchmark", "comparison", "explore", "tuning"},
     {"cli"},
 )
 """Floor by floor: a room imports rooms below it."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beamenv.arrays import Those, copied, namespace
 from beamenv.plant.plant import Plant
 
 Array = NDArray[np.float64]
@@ -22,7 +24,7 @@ NEVER = np.iinfo(np.int64).max
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoadCases:
-    """One load case for each of N blades, held constant over every control interval.
+    """One load case for each of N blades, held constant over every control interval; arrays of NumPy or of torch.
 
     In interval k = 0, 1, … the line load of a blade is
 
@@ -52,12 +54,13 @@ class LoadCases:
     """(N, H, k), N/m: lag, flap."""
     revolution: Array
     """(N,) rad per control interval: the rotor's."""
-    oscillating: Integers = field(init=False, repr=False)
-    """Rows with ``rate`` > 0, kept so that sines are evaluated for them alone."""
+    oscillating: Integers | None = field(init=False, repr=False)
+    """Rows with ``rate`` > 0, kept so that sines are evaluated for them alone; None of tensors."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "oscillating", np.flatnonzero(self.rate > 0.0))
-        for each in fields(self):
+        of_numpy = isinstance(self.rate, np.ndarray)
+        object.__setattr__(self, "oscillating", np.flatnonzero(self.rate > 0.0) if of_numpy else None)
+        for each in fields(self) if of_numpy else ():
             getattr(self, each.name).setflags(write=False)
 
     def __len__(self) -> int:
@@ -65,8 +68,11 @@ class LoadCases:
 
     def gain(self, step: int | Integers) -> Array:
         """Share of the amplitude that acts in interval ``step``, an integer or an array that broadcasts against (N,): (…, N)."""
-        gain = ((self.onset <= step) & (step < self.end)).astype(np.float64)
-        rows = self.oscillating
+        acts, rows = (self.onset <= step) & (step < self.end), self.oscillating
+        if rows is None:
+            torch = namespace(self.rate)
+            return acts * torch.where(self.rate > 0.0, torch.sin(self.rate * step + self.phase), 1.0)
+        gain = acts.astype(np.float64)
         if len(rows):
             steps = step[..., rows] if isinstance(step, np.ndarray) and step.shape[-1] > 1 else step
             gain[..., rows] *= np.sin(self.rate[rows] * steps + self.phase[rows])
@@ -84,32 +90,35 @@ class LoadCases:
 
     def of_rotor(self, step: int | Integers) -> Array:
         """The rotor's harmonics (…, N, k) in N/m in interval ``step``."""
-        orders = np.arange(1, self.cosine.shape[1] + 1)
-        angle = orders * (self.revolution * step)[..., None]
-        products = (np.einsum("...nh,nhk->...nk", f(angle), part) for f, part in ((np.cos, self.cosine), (np.sin, self.sine)))
-        return np.asarray(sum(products))
+        array = namespace(self.cosine)
+        turned = (self.revolution * step)[..., None]
+        angle = array.concatenate([order * turned for order in range(1, self.cosine.shape[1] + 1)], -1)
+        waves = (array.cos, self.cosine), (array.sin, self.sine)
+        return sum(array.einsum("...nh,nhk->...nk", wave(angle), part) for wave, part in waves)
 
     def rows(self, rows: Integers) -> LoadCases:
         """The load cases of some of the blades, in the order given."""
         return LoadCases(**{each.name: getattr(self, each.name)[rows] for each in fields(self) if each.init})
 
-    def replace(self, rows: Integers, others: LoadCases) -> LoadCases:
-        """These load cases with those of ``rows`` exchanged for ``others``, one for each row."""
-        exchanged = {}
-        for each in fields(self):
-            if each.init:
-                exchanged[each.name] = getattr(self, each.name).copy()
-                exchanged[each.name][rows] = getattr(others, each.name)
-        return LoadCases(**exchanged)
+    def replace(self, those: Those, others: LoadCases) -> LoadCases:
+        """These load cases with those of some blades exchanged for ``others``, one for each."""
+        names = [each.name for each in fields(self) if each.init]
+        return LoadCases(**{name: those.put(getattr(self, name), getattr(others, name)) for name in names})
+
+    def convert(self, floats: Callable[[Any], Any]) -> LoadCases:
+        """The same load cases with all numbers that are not whole passed through ``floats``."""
+        whole = "case", "onset", "end"
+        parts = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
+        return LoadCases(**{name: part if name in whole else floats(part) for name, part in parts.items()})
 
     def state_dict(self) -> dict[str, Array | Integers]:
         """A copy of each array by its name: ``LoadCases.from_state_dict`` makes equal load cases of them."""
-        return {each.name: getattr(self, each.name).copy() for each in fields(self) if each.init}
+        return {each.name: copied(getattr(self, each.name)) for each in fields(self) if each.init}
 
     @classmethod
     def from_state_dict(cls, state: Mapping[str, ArrayLike]) -> LoadCases:
         """The load cases of a ``state_dict``."""
-        return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
+        return cls(**{name: copied(values) for name, values in state.items()})
 
 
 def static_deflection(plant: Plant, line_load: ArrayLike) -> Array:

@@ -1,4 +1,4 @@
-"""A batch of blades in motion: what the single and the batched environment both wrap. The physics is ``kernel.advance``."""
+"""A batch of blades in motion: what every environment wraps, and training through the plant. The physics is ``kernel.advance``."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import REFERENCE, Arrays, Masked, Those, namespace, on_host
 from beamenv.plant.plant import Plant, drive_limit, normalised
 from beamenv.scenarios.drawing import load_cases
+from beamenv.scenarios.load_cases import LoadCases
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, Numbers, draw
 from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
-from beamenv.simulation.memory import Arrangement, Instant
+from beamenv.simulation.memory import Arrangement, Fresh, InPlace
 from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment, Passage
 from beamenv.simulation.plants.bank import Bank
@@ -43,31 +45,42 @@ class Blades:
     for all blades or a sequence of one for each, whichever ``begin`` was first given. Where the bank has groups, so have the
     blades, one after the other: ``count`` is then how many in each, and rows that begin are to be in ascending order. With
     ``physical_units`` actions are volts and readings amperes, else both are normalised.
+
+    ``arrays`` says what it is made of. NumPy's of 64 bits are the reference; of 32 bits the same episodes differ by rounding. With
+    torch all that is returned are tensors on the device, gradients pass from actions to what follows of them until ``detach``, and
+    NumPy's generators give the episodes that NumPy has of them. Torch's own generator draws on the device: then nothing goes
+    between it and the host in a step, loads of one's own aside. Tensors are of a batch of one group.
     """
 
     def __init__(
-        self, plant: Plant | Bank, scenario: Scenario, count: int | Sequence[int] | None, physical_units: bool = False
+        self,
+        plant: Plant | Bank,
+        scenario: Scenario,
+        count: int | Sequence[int] | None,
+        physical_units: bool = False,
+        arrays: Arrays = REFERENCE,
     ) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
-        self.plant, self.scenario = self.bank.plant, scenario
+        self.plant, self.scenario, self.arrays = self.bank.plant, scenario, arrays
         self._sizes = (count,) if isinstance(count, int) else None if count is None else tuple(count)
         self.count = None if self._sizes is None else sum(self._sizes)
-        self._lie = Arrangement.of(self._sizes)
+        self._host_lie = Arrangement.of(self._sizes)
+        self._lie = self._host_lie if arrays.of_numpy else Arrangement((self.count or 1,))
         self.shape = self._shape = self._lie.shape
         self._physical = physical_units
         self._normalised = normalised(self.plant)
-        self._drive, self._full_scale = _alike(drive_limit(self.plant)), _alike(self.plant.sensor_full_scale)
-        self._lowest, self._highest = (_alike(limit) for limit in self._normalised.voltage_limits)
+        limits = drive_limit(self.plant), self.plant.sensor_full_scale, *self._normalised.voltage_limits
+        self._drive, self._full_scale, self._lowest, self._highest = (arrays.floats(_alike(limit)) for limit in limits)
         self._strained = self.bank.strain.shape[-2] > 0
         self._safe_energy = safe_energy(self.bank.strain, self.bank.standing, self.bank.failure_strain)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
-        self.electronics = Electronics(self.plant, scenario, self.count or 1) if scenario.imperfect else None
-        self.own_loads = (
-            OwnLoads(scenario.loads, self.plant.control_interval, self.count or 1, self.plant.loads) if scenario.loads else None
-        )
-        self.plants = Allotment(self.bank, self._lie, self._sizes or (1,))
-        several = self.plants.product if self.plants.drawn and self._shape else row_product  # a blade alone has no time to ask
-        self._multiply = self._lie.product if self._lie.runs else several
+        n = self.count or 1
+        self.electronics = Electronics(self.plant, scenario, n, arrays) if scenario.imperfect else None
+        self.own_loads = OwnLoads(scenario.loads, self.plant.control_interval, n, self.plant.loads) if scenario.loads else None
+        self._stepped, self._speeds = self.bank.convert(arrays), arrays.exact(self.bank.speeds)
+        self.plants = Allotment(self._stepped, self._lie, self._sizes or (1,), arrays)
+        several = self.plants.product if self.plants.drawn and self._shape and arrays.of_numpy else row_product
+        self._multiply = self._lie.product if self._lie.runs else several  # a blade alone has no time to ask
         self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
         self._changing = (
             self.bank.runs or self.bank.walk is not None or (self.electronics is not None and self.electronics.changing)
@@ -75,54 +88,46 @@ class Blades:
         own = self.plant, *self.bank.others
         self._lowest_frequency = np.array([plant.natural_frequencies[0] for plant in own])
         per_cost = np.array([-1.0 / reward_scale(plant) for plant in own])
-        self._reward_per_cost = per_cost[0] if len(own) == 1 else per_cost[self.plants.group]
-        self._lay_out()
-
-    def _lay_out(self) -> None:
-        """Column by column where blades of a group have one plant, blade by blade for a plant each: as BLAS likes it."""
-        (n, m), k = self.plant.B.shape, self.plant.disturbance_input.shape[1]
-        size, width, b = n + m + k, self.bank.operators.fused.shape[-1], self.plant.blade_states
-        widths = max(size, width), max(size, width), m, b
-        if len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups):
-            arrays = [self._lie.columns_first(width)[1] for width in widths]
-        else:
-            arrays = [np.zeros((*self._shape, width)) for width in widths]
-        *memories, self._weighted, self._squares = arrays
-        self._halves = np.full(b, 0.5)
-        """Weights of the squares of the blade's states, which are kept from one instant to the next, in the energy."""
-        self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in memories)
+        self._reward_per_cost: Any = per_cost[0] if len(own) == 1 else per_cost[self.plants.group]
+        sizes = self.plant.B.shape[1], self.plant.disturbance_input.shape[1], self.plant.blade_states
+        by_column = len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups)
+        operators = self._stepped.operators
+        self._memory: Any = (
+            InPlace(self._lie, operators, sizes, arrays, by_column) if arrays.of_numpy else Fresh(n, operators, sizes, arrays)
+        )
+        self._halves = arrays.floats(np.full(sizes[-1], 0.5))
+        """Weights of the squares of the blade's own states in the energy."""
 
     def __getstate__(self) -> tuple[Any, ...]:
-        moving = self._now.joined.copy(), self._disturbances, self.electronics, self.plants.state_dict(), self.own_loads
-        return self.bank, self.scenario, self._sizes, self._physical, *moving
+        moving = self._memory.joined, self._disturbances, self.electronics, self.plants.state_dict(), self.own_loads
+        return self.bank, self.scenario, self._sizes, self._physical, self.arrays, *moving
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
         *arguments, joined, disturbances, electronics, plants, own = state
         self.__init__(*arguments)  # type: ignore[misc]
-        self._now.joined[...] = joined
-        np.square(self._now.energetic, out=self._squares)
+        self._memory.load(joined)
         self._disturbances, self.electronics, self.own_loads = disturbances, electronics, own
         self.plants.load_state_dict(plants)
 
     @property
-    def state(self) -> Array:
+    def state(self) -> Any:
         """(…, n) true states in energy coordinates: ½ xᵀx of the blade's own is the vibration energy in joules; of a plant that has
         coordinates of its own, in these.
         """
-        turned, place = np.atleast_2d(self.moving), 0 if len(self.bank) == 1 else self.plants.index
-        state = row_product(turned, self.bank.axes[place])
-        if self.bank.own is not None:
-            state = row_product(state, self.bank.own[1][place].swapaxes(-1, -2))
-        return np.asarray(state if self._shape else state[0])
+        turned, place = self._batched(self.moving), 0 if len(self.bank) == 1 else self.plants.index
+        state = row_product(turned, self._stepped.axes[place])
+        if self._stepped.own is not None:
+            state = row_product(state, self._stepped.own[1][place].swapaxes(-1, -2))
+        return state if self._shape else state[0]
 
     @property
-    def moving(self) -> Array:
+    def moving(self) -> Any:
         """(…, n) the true states in the axes of the bank, in which the kernel steps."""
-        return self._by_blade(self._now.state)
+        return self._by_blade(self._memory.state)
 
     @property
-    def index(self) -> Rows:
+    def index(self) -> Any:
         """(N,) place of each blade's plant in the bank, or among the plants of its group."""
         return self.plants.within_group
 
@@ -134,146 +139,171 @@ class Blades:
         return self._disturbances
 
     @property
-    def design_state(self) -> Array:
+    def design_state(self) -> Any:
         """(…, d) the true states as the design plant has its own: by displacements and velocities."""
-        if self.bank.to_design is None:
+        to_design = self._stepped.to_design
+        if to_design is None:
             raise ValueError("the true blade's state cannot be told in the design's coordinates: their trial functions differ.")
         state = self.moving
         if len(self.bank) == self.bank.groups and self._shape:
-            views = self.bank.to_design if self._lie.runs else self.bank.to_design[0]
-            return np.asarray(self._lie.product(state[None], views)[0])
-        seen = row_product(np.atleast_2d(state), self.bank.to_design[self.plants.index])
-        return np.asarray(seen if self._shape else seen[0])
+            return self._lie.product(state[None], to_design if self._lie.runs else to_design[0])[0]
+        seen = row_product(self._batched(state), to_design[self.plants.index])
+        return seen if self._shape else seen[0]
 
     @property
-    def coming_loads(self) -> Array:
+    def coming_loads(self) -> Any:
         """(…, k) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
-        loads = np.zeros((*self._shape, self.plant.disturbance_input.shape[1]))
-        self.disturbances.loads(loads)
-        if self.own_loads is not None:
-            self.own_loads.add(loads)
-        return self._by_blade(loads)
+        out = (
+            np.zeros((*self._shape, self.plant.disturbance_input.shape[1]), self.arrays.precision) if self.arrays.of_numpy else None
+        )
+        loads = self.disturbances.loads(out)
+        return self._by_blade(loads if self.own_loads is None else self.own_loads.added(loads))
 
     @property
-    def speed(self) -> Array:
+    def speed(self) -> Any:
         """(…,) rad/s: what a tachometer shows."""
-        speeds = self.bank.speeds[self.plants.index]
+        speeds = self._stepped.speeds[self.plants.index]
         return speeds if self._shape else speeds[0]
 
     @property
-    def truth(self) -> Array:
+    def truth(self) -> Any:
         """(…, 2 + m + 2 p): which plant of the bank moves, delay in intervals, gains of actuators, gains of sensors, biases in full
         scales, all of them as they are now: what only a law of tier 3 is told.
         """
-        (p, _), m = self.plant.C.shape, self.plant.B.shape[1]
+        (p, _), m, index = self.plant.C.shape, self.plant.B.shape[1], self.plants.within_group
         sound = np.tile(np.repeat([0.0, 1.0, 0.0], [1, m + p, p]), (self.count or 1, 1))
-        told = np.column_stack([self.plants.within_group, sound if self.electronics is None else self.electronics.told()])
+        told = namespace(index).column_stack(
+            [index, self.arrays.floats(sound) if self.electronics is None else self.electronics.told()]
+        )
         return told if self._shape else told[0]
 
-    def steady(self, rows: Rows | None = None) -> Array:
+    def steady(self, rows: Any = None) -> Any:
         """(…, 4): stretch, untwist, largest strain and its place of the blades, or of ``rows``, as their episodes begin and nothing
         vibrates.
         """
-        steady = self.bank.steady[self.plants.index if rows is None else self.plants.index[rows]]
+        steady = self._stepped.steady[self.plants.index if rows is None else self.plants.index[rows]]
         return steady if self._shape else steady[0]
 
     def begin(
-        self,
-        generators: Generators,
-        rows: Rows | None = None,
-        scenario: Scenario | None = None,
-        initial_state: Array | None = None,
+        self, generators: Generators, rows: Any = None, scenario: Scenario | None = None, initial_state: Any = None
     ) -> Motion:
         """Start the episodes of ``rows``, or of all blades, and return their motion at t = 0.
 
-        ``scenario`` and ``initial_state`` ((n,) or (len(rows), n), in place of the load case's) hold for these episodes only.
+        ``scenario`` and ``initial_state`` ((n,) or (len(rows), n), in place of the load case's) hold for these episodes only. Of
+        tensors, with torch's generator, ``rows`` may be a mask (N,): the motion is then what it would be of all blades.
         """
         scenario = self.scenario if scenario is None else scenario
         if rows is None:
-            rows = np.arange(self.count or 1)
-            kind = SharedDisturbances if isinstance(generators, np.random.Generator) else SeededDisturbances
-            turbulence = Turbulence.of(self.plant, scenario)
-            loads = self.plant.disturbance_input.shape[1]
-            self._disturbances = kind(noise_factor(self._normalised, scenario), self._lie, turbulence, loads)
+            rows = self.arrays.exact(np.arange(self.count or 1))
+            self._disturbances = self._chance(generators, scenario)
         assert self._disturbances is not None
-        widths = self._disturbances.columns, self._fault_draws, self.plants.draws, self.plant.loads
-        numbers = draw(scenario, generators, rows, self.plants.group, *widths)
-        self._begin_plants_and_faults(rows, numbers)
-        index = self.plants.index[rows]
-        lowest = self._lowest_frequency[self.plants.group[rows]]
-        speeds = self.bank.speeds[index]
-        cases = load_cases(scenario, self.plant, lowest, numbers.load, numbers.turns, speeds)
-        if self.own_loads is not None:
-            self.own_loads.begin(rows, numbers.own)
-        begins: Any = numbers.noise if isinstance(generators, np.random.Generator) else generators
-        noise = self._disturbances.begin(rows, cases, begins)
-        state = row_product(cases.deflection, self.bank.release[index])
-        if self.bank.start is not None:
-            state += self.bank.start[self.plants.group[rows]]
-        if initial_state is not None:
-            given = np.broadcast_to(initial_state, state.shape)
-            if self.bank.own is not None:
-                given = row_product(given, self.bank.own[0][index].swapaxes(-1, -2))
-            state[...] = row_product(given, self.bank.axes[index].swapaxes(-1, -2))
-        at = self._lie.rows_of(rows)
-        self._now.joined[at] = 0.0
-        self._now.state[at] = state
-        self._squares[at] = state[:, : self.plant.blade_states] ** 2
-        motion = self._undriven(state, noise, rows)
+        those = Masked(rows) if rows.dtype == namespace(rows).bool else self._lie.those(rows)
+        numbers = self._numbers(generators, those, scenario)
+        self._begin_plants_and_faults(those, numbers)
+        cases, seeded = self._cases(scenario, those, numbers), isinstance(generators, Sequence)
+        chance: Any = self._disturbances
+        noise = chance.begin(those, cases, generators if seeded else self.arrays.floats(numbers.noise))
+        state = self._initial_state(those, self.arrays.floats(cases.deflection), initial_state)
+        self._memory.put(those, state)
+        motion = self._undriven(state, noise, those)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
-    def _begin_plants_and_faults(self, rows: Rows, numbers: Numbers) -> None:
-        """Which plant each blade has, and what is wrong with it."""
-        if self.bank.walk is not None:
-            self.plants.set_out(rows, numbers.course)
-        elif self.plants.drawn:
-            self.plants.draw(rows, numbers.faults[:, 0])
-        else:
-            self.plants.begin(rows)
-        if self.electronics is not None:
-            self.electronics.begin(rows, numbers.faults)
+    def _chance(self, generators: Generators, scenario: Scenario) -> SharedDisturbances | SeededDisturbances:
+        seeded = isinstance(generators, Sequence)
+        kind, lie = (SeededDisturbances, self._lie) if seeded else (SharedDisturbances, self._host_lie)
+        loads = self.plant.disturbance_input.shape[1]
+        return kind(noise_factor(self._normalised, scenario), lie, Turbulence.of(self.plant, scenario), loads, self.arrays)
 
-    def _undriven(self, state: Array, noise: Array, rows: Rows) -> Motion:
-        """Motion at the start of an episode, one row for each state (rows, n)."""
-        count = len(state)
-        index, energetic = self.plants.index[rows], state[:, : self.plant.blade_states]
-        output, noise = row_product(state, self.bank.readout[index]), noise[:, : len(self.plant.C)]
-        if self.electronics is None:
-            reading = np.clip(output + noise, -1.0, 1.0)
+    def _numbers(self, generators: Generators, those: Those, scenario: Scenario) -> Numbers:
+        """What is drawn for episodes that begin, as NumPy's of what each blade's own generator drew."""
+        assert self._disturbances is not None
+        widths = self._disturbances.columns, self._fault_draws, self.plants.draws, self.plant.loads
+        return draw(scenario, generators, on_host(those.rows), self.plants.group, *widths)
+
+    def _cases(self, scenario: Scenario, those: Those, numbers: Numbers) -> LoadCases:
+        """Load cases, on the host where each blade has its own generator."""
+        index, group = those.take(self.plants.index), self.plants.group[on_host(those.rows)]
+        lowest = self._lowest_frequency[group] if self.bank.groups > 1 else self._lowest_frequency[0]
+        if isinstance(self._disturbances, SeededDisturbances):
+            return load_cases(scenario, self.plant, lowest, numbers.load, numbers.turns, self.bank.speeds[on_host(index)])
+        exact = self.arrays.exact
+        load, turns, speeds = exact(numbers.load), exact(numbers.turns), self._speeds[index]
+        cases = load_cases(scenario, self.plant, lowest, load, turns, speeds)
+        return cases if self.arrays.of_numpy else cases.convert(self.arrays.floats)
+
+    def _initial_state(self, those: Those, deflection: Any, initial_state: Any) -> Any:
+        """(k, n) in the axes of the bank."""
+        bank, index = self._stepped, those.take(self.plants.index)
+        state = row_product(deflection, self._of(bank.release, index))
+        if bank.start is not None:
+            state = state + bank.start[self.plants.group[on_host(those.rows)]]
+        if initial_state is None:
+            return state
+        given = namespace(state).broadcast_to(self.arrays.floats(initial_state), state.shape)
+        if bank.own is not None:
+            given = row_product(given, bank.own[0][index].swapaxes(-1, -2))
+        return row_product(given, bank.axes[index].swapaxes(-1, -2))
+
+    def _begin_plants_and_faults(self, those: Those, numbers: Numbers) -> None:
+        """Which plant each blade has, what is wrong with it, and what loads of one's own it meets."""
+        exact = self.arrays.exact
+        if self.bank.walk is not None:
+            self.plants.set_out(those, exact(numbers.course))
+        elif self.plants.drawn:
+            self.plants.draw(those, exact(numbers.faults)[:, 0])
         else:
-            reading = self.electronics.first_reading(rows, output, noise)
+            self.plants.begin(those)
+        if self.electronics is not None:
+            self.electronics.begin(those, exact(numbers.faults))
+        if self.own_loads is not None:
+            rows = those.mask.nonzero()[:, 0] if isinstance(those, Masked) else those.rows
+            own = numbers.own[rows] if isinstance(those, Masked) else numbers.own
+            self.own_loads.begin(on_host(rows), on_host(own))
+
+    def _of(self, tables: Any, index: Any) -> Any:
+        """Arrays of the plants at ``index`` (k,); of tensors where there is one plant, that alone."""
+        return tables[0] if len(self.bank) == 1 and not self.arrays.of_numpy else tables[index]
+
+    def _undriven(self, state: Any, noise: Any, those: Those) -> Motion:
+        """Motion at the start of an episode, one row for each state (k, n)."""
+        bank, index, array = self._stepped, those.take(self.plants.index), namespace(state)
+        energetic, noise = state[:, : self.plant.blade_states], noise[:, : len(self.plant.C)]
+        output, none = row_product(state, self._of(bank.readout, index)), array.zeros_like(state[:, 0])
+        if self.electronics is None:
+            reading = array.clip(output + noise, -1.0, 1.0)
+        else:
+            reading = self.electronics.first_reading(those, output, noise)
         return Motion(
             observation=self._in_units(reading),
-            reward=np.zeros(count),
-            failed=np.zeros(count, dtype=np.bool_),
-            volts=np.zeros((count, self.plant.B.shape[1])),
-            tip_displacement=row_product(state, self.bank.tip[index]),
+            reward=none,
+            failed=none > 0.0,
+            volts=array.zeros_like(state[:, :1]) + array.zeros_like(self._stepped.effort_weight[0, 0]),
+            tip_displacement=row_product(state, self._of(bank.tip, index)),
             energy=0.5 * row_dot(energetic, energetic),
-            effort=np.zeros(count),
-            cost_increment=np.zeros(count),
+            effort=none + 0.0,
+            cost_increment=none + 0.0,
         )
 
-    def step(self, actions: Array, generators: Generators, resting: Rows | None = None) -> Motion:
+    def step(self, actions: Any, generators: Generators, resting: Rows | None = None) -> Motion:
         """Hold ``actions`` (…, m) over one control interval.
 
         ``resting`` are rows whose episode is over and that are about to begin another: no disturbance is drawn for them.
         """
         assert self._disturbances is not None
-        held = actions / self._drive if self._physical else actions
-        held = np.maximum(np.minimum(held, self._highest), self._lowest)
-        acting = held if self.electronics is None else self.electronics.drive(np.atleast_2d(held))
-        now, then = self._now, self._then
-        now.voltages[...] = acting.reshape(now.voltages.shape)
-        self._disturbances.loads(now.loads)
+        memory = self._memory
+        held = self._limited(actions / self._drive if self._physical else actions)
+        acting = held if self.electronics is None else self.electronics.drive(self._batched(held))
+        loads = self._disturbances.loads(memory.loads)
         if self.own_loads is not None:
-            self.own_loads.add(now.loads)
+            loads = self.own_loads.added(loads)
             self.own_loads.elapse()
-        _, reading, tip, increment = advance(self.plants.operators, now.joined, then.product, self._multiply, self._squares)
-        self._now, self._then = then, now  # the product begins with the next state
-        noise = self._disturbances.next(generators, resting)  # type: ignore[arg-type]
-        energy = weighted(np.square(then.energetic, out=self._squares), self._halves)
-        effort = row_dot(self._multiply(now.voltages, self.plants.effort_weight, self._weighted), now.voltages)
-        if self._changing and (passage := self.elapse()) is not None:
+        joined, voltages = memory.join(acting, loads)
+        state, reading, tip, increment = advance(self.plants.operators, joined, memory.product, self._multiply, memory.squares)
+        effort = row_dot(self._multiply(voltages, self.plants.effort_weight, memory.weighted), voltages)
+        memory.become(state)
+        noise = self._disturbances.next(generators, resting)
+        energy = weighted(memory.squares, self._halves)
+        if self._changing and (passage := self._elapse()) is not None:
             self._carry(passage)
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
@@ -288,7 +318,13 @@ class Blades:
             increment,
         )
 
-    def elapse(self) -> Passage | None:
+    def _limited(self, actions: Any) -> Any:
+        """Actions as the drive lets them through; NumPy is quicker with two calls than with one."""
+        if self.arrays.of_numpy:
+            return np.maximum(np.minimum(actions, self._highest), self._lowest)
+        return namespace(actions).clip(actions, self._lowest, self._highest)
+
+    def _elapse(self) -> Passage | None:
         """One control interval later: where plants follow one another, the next is on; what breaks then is broken.
 
         Where blades come to another plant, their states are to be carried to its coordinates.
@@ -301,11 +337,14 @@ class Blades:
 
     def _carry(self, passage: Passage) -> None:
         """The states of some blades in the coordinates of the plants that they have come to."""
-        rows, change = passage
-        at = self._lie.rows_of(rows) or ...
-        state = row_product(np.atleast_2d(self._now.state[at]), change)
-        self._now.state[at] = state if self._shape else state[0]
-        self._squares[at] = self._now.energetic[at] ** 2
+        those, change = passage
+        self._memory.carry(those, row_product(self._batched(self._memory.of(those)), change))
+
+    def detach(self) -> None:
+        """Cut what moves, tensors, from the graph that it came of: gradients do not pass further back."""
+        self._memory.detach()
+        if self.electronics is not None:
+            self.electronics.detach()
 
     def state_dict(self) -> dict[str, Any]:
         """What moves, from the first ``begin`` on: copies of arrays, in dictionaries; the generators are the caller's.
@@ -314,7 +353,7 @@ class Blades:
         for bit after ``load_state_dict``.
         """
         return {
-            "joined": self._now.joined.copy(),
+            "joined": self._memory.joined,
             "plants": self.plants.state_dict(),
             "disturbances": self.disturbances.state_dict(),
             "electronics": None if self.electronics is None else self.electronics.state_dict(),
@@ -323,8 +362,7 @@ class Blades:
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict``, of arrays or of what NumPy makes arrays of."""
-        self._now.joined[...] = np.asarray(state["joined"])
-        np.square(self._now.energetic, out=self._squares)
+        self._memory.load(state["joined"])
         self.plants.load_state_dict(state["plants"])
         self.disturbances.load_state_dict(state["disturbances"])
         if self.electronics is not None:
@@ -332,33 +370,52 @@ class Blades:
         if self.own_loads is not None:
             self.own_loads.load_state_dict(state["own_loads"])
 
-    def _by_blade(self, columns: Array) -> Array:
-        """A copy (…, columns) of what is laid out in blocks."""
+    def _by_blade(self, columns: Any) -> Any:
+        """A copy (…, columns) of what is laid out in blocks; tensors lie by blade."""
+        if not self.arrays.of_numpy:
+            return columns
         return np.array(columns, order="C").reshape(self.count or 1, -1) if self._shape else columns.copy()
 
-    def _observed(self, output: Array, noise: Array) -> Array:
+    def _batched(self, values: Any) -> Any:
+        """Values of a blade alone as of a batch of one."""
+        return values if self._shape else np.atleast_2d(values)
+
+    def _observed(self, output: Any, noise: Any) -> Any:
         """Readings (…, p) as the data acquisition gives them, in full scales or in amperes."""
         if self.electronics is not None:
-            flat = self.electronics.acquire(np.atleast_2d(self._by_blade(output)), np.atleast_2d(self._by_blade(noise)))
+            flat = self.electronics.acquire(*(self._batched(self._by_blade(each)) for each in (output, noise)))
             return self._in_units(flat if self._shape else flat[0])
-        noisy = np.empty(output.shape)  # the output may be part of the state
-        np.add(output, noise[..., : output.shape[-1]], out=noisy)
-        reading: Array = noisy.reshape(self.count or 1, -1) if self._shape else noisy
+        noise = noise[..., : output.shape[-1]]
+        if not self.arrays.of_numpy:
+            return self._in_units(namespace(output).clip(output + noise, -1.0, 1.0))
+        noisy = np.empty(output.shape, output.dtype)  # the output may be part of the state
+        np.add(output, noise, out=noisy)
+        reading = noisy.reshape(self.count or 1, -1) if self._shape else noisy
         np.minimum(reading, _FULL, out=reading)
         np.maximum(reading, _MINUS_FULL, out=reading)
         return self._in_units(reading)
 
-    def _in_units(self, reading: Array) -> Array:
+    def _in_units(self, reading: Any) -> Any:
         return reading * self._full_scale if self._physical else reading
 
-    def _failed(self, energy: Array) -> NDArray[np.bool_]:
-        """Only a blade with enough energy can have failed, and only then are its strains worked out."""
-        failed = np.zeros(energy.shape, dtype=np.bool_)
+    def _failed(self, energy: Any) -> Any:
+        """Only a blade with enough energy can have failed, and only then are its strains worked out; on a device they always are,
+        for it would have to be waited for.
+        """
+        bank = self._stepped
+        if not self.arrays.on_host:
+            strain, standing, limit = (
+                self._of(each, self.plants.index) for each in (bank.strain, bank.standing, bank.failure_strain)
+            )
+            return strained_too_much(strain, standing, limit, self.moving)
+        failed = namespace(energy).zeros_like(energy, dtype=bool) if self.arrays.of_numpy else energy < 0.0
         most = energy.max() if self._shape else energy
         if not most <= self._safe_energy:  # a NaN is not safe either
-            rows = np.flatnonzero(~(np.atleast_1d(energy) <= self._safe_energy))
-            state, index = np.atleast_2d(self.moving)[rows], self.plants.index[rows]
-            np.atleast_1d(failed)[rows] = strained_too_much(
-                self.bank.strain[index], self.bank.standing[index], self.bank.failure_strain[index], state
-            )
+            rows = np.flatnonzero(~(np.atleast_1d(on_host(energy)) <= self._safe_energy))
+            state, index = self._batched(self.moving)[rows], self.plants.index[rows]
+            found = strained_too_much(bank.strain[index], bank.standing[index], bank.failure_strain[index], state)
+            if self._shape:
+                failed[rows] = found
+            else:
+                failed[...] = found[0]
         return failed

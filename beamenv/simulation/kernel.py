@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import namespace
 from beamenv.plant.plant import Plant, SampledPlant, sample, sample_all
 
 
@@ -140,8 +140,3 @@ def row_dot(left: Any, right: Any) -> Any:
     if not isinstance(left, np.ndarray):
         return (left * right).sum(-1)
     return left.dot(right) if left.ndim == 1 else np.einsum("...i,...i->...", left, right)
-
-
-def namespace(values: Any) -> Any:
-    """The module whose functions take the array: NumPy, or torch for its tensors."""
-    return np if isinstance(values, (np.ndarray, np.generic)) else sys.modules["torch"]

@@ -1,4 +1,4 @@
-"""How a batch of blades lies in memory, column by column: in (blocks, size) blades, or in groups of a plant each."""
+"""How a batch of blades lies in memory: column by column in (blocks, size) blades or groups of a plant each; tensors by blade."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.simulation.kernel import row_product
+from beamenv.arrays import Arrays, SomeRows, copied, namespace
+from beamenv.simulation.kernel import Operators, row_product
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 Rows = NDArray[np.int64]
 
 _BLOCK = 256
@@ -41,7 +42,7 @@ class Arrangement:
     """Where in memory the blades of a batch are."""
 
     shape: tuple[int, ...]
-    """() for a blade alone, (blocks, size), or (1, N) where there are groups."""
+    """() for a blade alone, (blocks, size), or (1, N) where there are groups; (N,) of tensors."""
     runs: tuple[Run, ...] = ()
     """The groups; none where all blades are of one."""
 
@@ -59,24 +60,24 @@ class Arrangement:
             start += count * size
         return cls((1, sum(sizes)), tuple(runs))
 
-    def columns_first(self, columns: int) -> tuple[Array, Array]:
+    def columns_first(self, columns: int, dtype: str = "float64") -> tuple[Array, Array]:
         """Zeros that lie in memory as (blocks, column, blade), and the same seen as (blocks, blade, column): fast for large
         batches, since every column is contiguous. Both (column,) for a blade alone.
         """
         *blocks, size = self.shape or (0,)
         spread = -size % _PAGE + _SHIFT if self.runs else 0
-        memory = np.zeros((*blocks, columns, size + spread))[..., :size] if self.shape else np.zeros(columns)
+        memory = np.zeros((*blocks, columns, size + spread), dtype)[..., :size] if self.shape else np.zeros(columns, dtype)
         return memory, memory.swapaxes(-2, -1) if self.shape else memory
 
-    def rows_of(self, rows: Rows) -> tuple[Rows, ...]:
-        """Index of ``rows`` in arrays of the batch's shape."""
-        return np.divmod(rows, self.shape[-1]) if self.shape else ()
+    def those(self, rows: Any) -> SomeRows:
+        """Blades by their rows."""
+        return SomeRows(rows, (rows,) if len(self.shape) == 1 else np.divmod(rows, self.shape[-1]) if self.shape else ())
 
     def product(self, rows: Any, matrix: Any, out: Any = None) -> Any:
         """As ``row_product``; but matrices (groups, k, l) are one for each group's rows."""
         if not self.runs or matrix.ndim != 3:
             return row_product(rows, matrix, out)
-        out = np.empty((*self.shape, matrix.shape[-1])) if out is None else out
+        out = np.empty((*self.shape, matrix.shape[-1]), matrix.dtype) if out is None else out
         for run in self.runs:
             row_product(run.of(rows), matrix[run.groups, None], run.of(out))
         return out
@@ -107,6 +108,127 @@ class Instant(NamedTuple):
             energetic=memory[..., :own],
             product=memory[..., :width],
         )
+
+
+Sizes = tuple[int, int, int]
+"""Voltages, loads, and states of the blade's own."""
+
+
+class InPlace:
+    """The states of blades in NumPy's memory, which a step writes to: column by column where blades of a group have one plant,
+    blade by blade for a plant each, as BLAS likes it.
+    """
+
+    def __init__(self, lie: Arrangement, operators: Operators, sizes: Sizes, arrays: Arrays, by_column: bool) -> None:
+        n, (m, k, b), width = operators.states, sizes, operators.fused.shape[-1]
+        self._squares: Array
+        memories: list[Array] = []
+        for columns in (*[max(n + m + k, width)] * 2, m, b):
+            by_blade = np.zeros((*lie.shape, columns), arrays.precision)
+            memories.append(lie.columns_first(columns, arrays.precision)[1] if by_column else by_blade)
+        *both, self.weighted, self._squares = memories
+        self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in both)
+
+    @property
+    def state(self) -> Array:
+        """(…, n), as the batch lies: a view."""
+        return self._now.state
+
+    @property
+    def squares(self) -> Array:
+        """(…, b) of the blade's own states, which are kept from one instant to the next."""
+        return self._squares
+
+    @property
+    def loads(self) -> Array:
+        """(…, k): where loads are to be written."""
+        return self._now.loads
+
+    @property
+    def product(self) -> Array:
+        """(…, w): where the product of this instant is to be written."""
+        return self._then.product
+
+    def join(self, acting: Array, loads: Array) -> tuple[Array, Array]:
+        """[state, voltages, loads] (…, s), of which the loads have been written, and the voltages there."""
+        voltages = self._now.voltages
+        voltages[...] = acting.reshape(voltages.shape)
+        return self._now.joined, voltages
+
+    def become(self, state: Array) -> None:
+        """Go on to the state that the product begins with."""
+        self._now, self._then = self._then, self._now
+        np.square(self._now.energetic, out=self._squares)
+
+    def put(self, those: Any, state: Array) -> None:
+        """Put some blades into other states (k, n), at rest otherwise."""
+        those.lay(self._now.joined, 0.0)
+        self.carry(those, state)
+
+    def carry(self, those: Any, state: Array) -> None:
+        """Put some blades into other states (k, n)."""
+        those.lay(self._now.state, state)
+        those.lay(self._squares, state[:, : self._squares.shape[-1]] ** 2)
+
+    def of(self, those: Any) -> Array:
+        """The states (k, n) of some blades; (n,) of a blade alone."""
+        return self._now.state[those.at or ...]
+
+    def load(self, joined: Any) -> None:
+        """Go back to an earlier ``joined``."""
+        self._now.joined[...] = np.asarray(joined)
+        np.square(self._now.energetic, out=self._squares)
+
+    @property
+    def joined(self) -> Array:
+        """A copy (…, s) of state, voltages and loads."""
+        return self._now.joined.copy()
+
+
+class Fresh:
+    """The states of blades as tensors, of which each step makes new ones: gradients pass."""
+
+    loads = product = weighted = None
+
+    def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
+        self._own = sizes[-1]
+        self.state = arrays.zeros(count, operators.states)
+
+    @property
+    def squares(self) -> Any:
+        """(N, b) of the blade's own states."""
+        return self.state[:, : self._own] ** 2
+
+    def join(self, acting: Any, loads: Any) -> tuple[Any, Any]:
+        """[state, voltages, loads] (N, s), and the voltages."""
+        return namespace(acting).concatenate([self.state, acting, loads], -1), acting
+
+    def become(self, state: Any) -> None:
+        """Go on to another state (N, n)."""
+        self.state = state
+
+    def put(self, those: Any, state: Any) -> None:
+        """Put some blades into other states."""
+        self.state = those.put(self.state, state)
+
+    carry = put
+
+    def of(self, those: Any) -> Any:
+        """The states (k, n) of some blades."""
+        return those.take(self.state)
+
+    def load(self, joined: Any) -> None:
+        """Go back to an earlier ``joined``."""
+        self.state = copied(joined)
+
+    @property
+    def joined(self) -> Any:
+        """A copy (N, n) of the state."""
+        return copied(self.state)
+
+    def detach(self) -> None:
+        """Cut the state from the graph that it came of."""
+        self.state = self.state.detach()
 
 
 def batch_shape(count: int) -> tuple[int, int]:

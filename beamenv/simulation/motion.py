@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from typing import Any, NamedTuple
 
 
 class Motion(NamedTuple):
-    """What one control interval brought to each blade, in fresh arrays; "…" is N, or nothing for a single blade."""
+    """What one control interval brought to each blade, in fresh arrays or tensors; "…" is N, or nothing for a single blade."""
 
-    observation: Array
+    observation: Any
     """(…, p) sensor readings, clipped to full scale."""
-    reward: Array
+    reward: Any
     """(…,)"""
-    failed: NDArray[np.bool_]
+    failed: Any
     """(…,) strained beyond what the blade bears (``strain_limit``), or no longer finite."""
-    volts: Array
+    volts: Any
     """(…, m), V, asked for, after saturation: what the patches get unless delay, hysteresis or failure are between."""
-    tip_displacement: Array
+    tip_displacement: Any
     """(…, q), m: lag, flap, at the end of the interval; none where the plant does not tell."""
-    energy: Array
+    energy: Any
     """(…,), J: vibration energy at the end of the interval."""
-    effort: Array
+    effort: Any
     """(…,), J s: the actuators' share uᵀRu Δt of the cost increment."""
-    cost_increment: Array
+    cost_increment: Any
     """(…,), J s: ∫(xᵀQx + uᵀRu)dt over the interval."""

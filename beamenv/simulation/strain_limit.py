@@ -7,8 +7,12 @@ stands at without.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+from beamenv.arrays import namespace
 
 Array = NDArray[np.float64]
 
@@ -25,11 +29,13 @@ def safe_energy(strain: Array, standing: Array, limit: Array) -> float:
     return 0.5 * float(longest.min(initial=np.inf)) ** 2
 
 
-def strained_too_much(strain: Array, standing: Array, limit: Array, state: Array) -> NDArray[np.bool_]:
+def strained_too_much(strain: Any, standing: Any, limit: Any, state: Any) -> Any:
     """(N,) which of the states (N, n) strain their blades, with rows (N, k, n) beside strains (N, k) without vibration, beyond
     their limits (N,), or are no longer finite.
     """
-    if not strain.shape[1]:  # where no strain is known
-        return np.asarray(~np.isfinite(state).all(axis=-1))
-    largest = np.abs(standing + np.einsum("nki,ni->nk", strain, state)).max(axis=-1)
-    return np.asarray(~(largest <= limit))
+    array = namespace(state)
+    if not strain.shape[-2]:  # where no strain is known
+        return ~array.isfinite(state).all(-1)
+    moved = array.einsum("nki,ni->nk", strain, state) if strain.ndim == 3 else state @ strain.swapaxes(-1, -2)
+    strains = array.abs(standing + moved)
+    return ~(array.amax(strains, -1) <= limit)

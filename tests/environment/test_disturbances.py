@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from beamenv.arrays import SomeRows
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
@@ -29,7 +30,7 @@ def test_white_loads_and_sensor_noise_have_the_plants_covariance(plant):
     shared = SharedDisturbances(noise_factor(plant, SCENARIOS["white"]), Arrangement((8, 250)))
     rng = np.random.default_rng(0)
     cases = draw_load_cases(SCENARIOS["white"], plant, rng, 2000)
-    shared.begin(np.arange(2000), cases, rng.standard_normal((2000, shared.columns)))
+    shared.begin(Arrangement((8, 250)).those(np.arange(2000)), cases, rng.standard_normal((2000, shared.columns)))
     samples = []
     for _ in range(50):
         loads = np.empty((8, 250, 2))
@@ -48,7 +49,7 @@ def test_both_ways_of_drawing_have_the_same_covariance():
     factor = noise_factor(PLANT, SCENARIOS["white"])
     seeded = SeededDisturbances(factor, Arrangement((1, 100)))
     generators = [np.random.default_rng(seed) for seed in range(100)]
-    seeded.begin(np.arange(100), draw_load_cases(SCENARIOS["white"], PLANT, generators, 100), generators)
+    seeded.begin(SomeRows(np.arange(100), ()), draw_load_cases(SCENARIOS["white"], PLANT, generators, 100), generators)
     loads = np.empty((300, 1, 100, 2))
     noise = np.empty((300, 1, 100, SENSORS))
     for k in range(300):
@@ -69,7 +70,7 @@ def tape(seeds, instants, shape=None):
     shape = (1, len(seeds)) if shape is None else shape
     seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), Arrangement(shape))
     cases = draw_load_cases(SCENARIOS["default"], PLANT, generators, len(seeds))
-    noise = [seeded.begin(np.arange(len(seeds)), cases, generators)]
+    noise = [seeded.begin(SomeRows(np.arange(len(seeds)), ()), cases, generators)]
     loads = []
     for _ in range(instants):
         out = np.empty((*shape, 2))
@@ -102,13 +103,13 @@ def test_a_blade_that_begins_again_meets_what_it_would_meet_alone(restart, rest)
         shape = (1, len(seeds))
         seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), Arrangement(shape))
         cases = draw_load_cases(SCENARIOS["default"], PLANT, generators, len(seeds))
-        seeded.begin(np.arange(len(seeds)), cases, generators)
+        seeded.begin(SomeRows(np.arange(len(seeds)), ()), cases, generators)
         for _ in range(restart):
             seeded.next(generators)
         for _ in range(rest):
             seeded.next(generators, np.array([row]))
         again = draw_load_cases(SCENARIOS["default"], PLANT, [generators[row]], 1)
-        met = [seeded.begin(np.array([row]), again, generators)[0].copy()]
+        met = [seeded.begin(SomeRows(np.array([row]), ()), again, generators)[0].copy()]
         for _ in range(BLOCK + 3):
             out = np.empty((*shape, 2))
             seeded.loads(out)

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamenv import RotatingBeamEnv
+from beamenv.arrays import SomeRows
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
@@ -84,7 +85,7 @@ def test_load_cases_are_frozen():
 
 def test_some_blades_get_other_load_cases():
     cases, others = drawn("default", count=6, seed=1), drawn("default", count=2, seed=2)
-    exchanged = cases.replace(np.array([1, 4]), others)
+    exchanged = cases.replace(SomeRows(np.array([1, 4]), ()), others)
     steps = np.arange(300)[:, None]
     np.testing.assert_array_equal(exchanged.at(steps)[:, [1, 4]], others.at(steps))
     np.testing.assert_array_equal(exchanged.at(steps)[:, [0, 2, 3, 5]], cases.at(steps)[:, [0, 2, 3, 5]])

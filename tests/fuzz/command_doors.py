@@ -22,6 +22,7 @@ for _room in (
     "comparison.compare",
     "explore.server",
     "learning.job",
+    "tuning.tuning",
     "benchmark.campaign",
     "benchmark.showing.heat_map",
     "benchmark.showing.page",
@@ -46,7 +47,21 @@ WORD = Kind("word", lambda value: value, st.one_of(st.sampled_from(WORDS), st.te
 
 
 OTHER_NAMES = (
-    *("path", "file", "controller", "agent", "folder", "kind", "model", "name", "studies", "teacher", "minutes", "updates"),
+    *(
+        "path",
+        "file",
+        "controller",
+        "agent",
+        "recipe",
+        "folder",
+        "kind",
+        "model",
+        "name",
+        "studies",
+        "teacher",
+        "minutes",
+        "updates",
+    ),
     *("ption", "argument", "command", "json", "held_back", "drive_limit"),
 )
 """What sentences call arguments that have no option's name."""
@@ -121,6 +136,25 @@ COMMANDS = {
         ("--resume", "--overwrite"),
         ("train.learning.job.follow",),
     ),
+    "tune": (
+        ("gradient",),
+        {
+            "--scenario": "white",
+            "--trials": "3",
+            "--updates": "4",
+            "--seed": "0",
+            "--space": None,
+            "--folder": "made",
+            "--cluster": "local",
+            "--jobs": "1",
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--plant": None,
+        },
+        ("--json", "--overwrite"),
+        ("train.tuning.tuning._run",),
+    ),
     "benchmark": (
         (),
         {
@@ -131,6 +165,7 @@ COMMANDS = {
             "--folder": "made",
             "--model": None,
             "--jobs": "1",
+            "--cluster": None,
             "--docs": None,
             "--submit": None,
             "--tier": None,
@@ -141,7 +176,7 @@ COMMANDS = {
     ),
     "benchmark --submit": (
         (),
-        {"--submit": "lqg", "--tier": None, "--folder": "made", "--docs": "made", "--jobs": "1"},
+        {"--submit": "lqg", "--tier": None, "--folder": "made", "--docs": "made", "--jobs": "1", "--cluster": None},
         ("--json", "--trust", "--overwrite"),
         ("train.benchmark.campaign._cells",),
     ),
@@ -196,7 +231,12 @@ COMMANDS = {
         ("--json", "--measure"),
         ("train.export.compiled.seconds_a_step",),
     ),
-    "reproduce": (("table-3.4",), {"--output": "made", "--docs": None}, ("--fresh",), ("train.cli.reproduce.run_with_progress",)),
+    "reproduce": (
+        ("table-3.4",),
+        {"--output": "made", "--docs": None, "--jobs": "1", "--cluster": None},
+        ("--fresh",),
+        ("train.cli.reproduce.run_with_progress",),
+    ),
     "schema": (("blade",), {"--output": None}, (), ()),
     "speed": ((), {}, ("--json",), ("train.cli.speed.measured",)),
     "explore": (

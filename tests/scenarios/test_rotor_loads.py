@@ -27,7 +27,7 @@ def loads_of(chosen, kind, blades, instants):
         generators = [np.random.default_rng(seed) for seed in range(blades)]
     cases = draw_load_cases(chosen, PLANT, generators, blades, np.full(blades, 200.0))
     begins = generators if kind is SeededDisturbances else generators.standard_normal((blades, disturbances.columns))
-    disturbances.begin(np.arange(blades), cases, begins)
+    disturbances.begin(Arrangement(shape).those(np.arange(blades)), cases, begins)
     found = np.empty((instants, *shape, 2))
     for out in found:
         disturbances.loads(out)

@@ -30,7 +30,7 @@ def test_windows_follow_one_another_through_an_episode(plant):
     assert windows._phase.tolist() == [0, 1, 2, 3]
     windows.unroll(actor)
     assert windows._phase.tolist() == [1, 2, 3, 0]
-    assert not windows._state.requires_grad
+    assert not windows._blades.moving.requires_grad
 
 
 QUIET = {"white_load": False, "sensor_noise": False}

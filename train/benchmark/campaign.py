@@ -34,6 +34,7 @@ from train.shared.held_models import held_models
 from train.shared.held_out import SEEDS
 from train.shared.lock import alone_in
 from train.shared.versions import versions
+from train.workers.workers import Workers
 
 Progress = Callable[[int, int, Cell], None]
 
@@ -51,7 +52,8 @@ def benchmark(
     folder: Path | None = None,
     models: Sequence[Path] = (),
     trusted: bool = False,
-    jobs: int = 1,
+    jobs: int | None = None,
+    cluster: str | None = None,
     trained: Path = FOLDER,
     environment: Mapping[str, Any] | None = None,
     validation: bool = False,
@@ -67,7 +69,9 @@ def benchmark(
     - ``seeds``: held-out episodes, equal for every controller.
     - ``runs``: of each agent that many of its training runs, the first ones; all of them if None.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
-    - ``jobs``: processes, which objects of yours must be able to travel to; with 1 everything stays in this one.
+    - ``jobs``: processes, which objects of yours must be able to travel to; with 1, as if left out, everything stays in this one.
+    - ``cluster``: HOST:PORT or ray://HOST:PORT of a Ray cluster whose processes do it, or "local" for one that is started here; as
+      many as it has processors if ``jobs`` is left out.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
     - ``validation``: on the seeds and the bank of plants that contenders are chosen on, in place of those they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
@@ -80,7 +84,7 @@ def benchmark(
     no scenario is left, for a folder with a benchmark of other settings, which it would replace, and for one in which nothing can
     be written or another process is at work.
     """
-    seeds, jobs, trusted = checked("seeds", seeds, SEEDS), checked("jobs", jobs, Count()), checked("trusted", trusted, Flag())
+    seeds, workers, trusted = checked("seeds", seeds, SEEDS), Workers(jobs, cluster), checked("trusted", trusted, Flag())
     progress, validation = checked_progress(progress), checked("validation", validation, Flag())
     runs = None if runs is None else checked("runs", runs, Count())
     arguments = environment_json({} if environment is None else environment)
@@ -93,7 +97,7 @@ def benchmark(
         check_folder(folder)
     listed = [each.first(runs) for each in listed_controllers(controllers, own, models, trusted, trained)]
     asked = {*(scenarios or ()), *(controllers or ())}
-    options: dict[str, Any] = {"jobs": jobs, "arguments": arguments, "validation": validation, "progress": progress}
+    options: dict[str, Any] = {"workers": workers, "arguments": arguments, "validation": validation, "progress": progress}
     return of_listed(listed, scenarios, seeds, folder, asked=asked, **options)
 
 
@@ -111,7 +115,7 @@ def of_listed(
     seeds: int,
     folder: Path | None,
     *,
-    jobs: int = 1,
+    workers: Workers = Workers(),  # noqa: B008 - frozen
     arguments: str = "{}",
     validation: bool = False,
     progress: Progress | None = None,
@@ -134,7 +138,7 @@ def of_listed(
     with nullcontext() if folder is None else alone_in(folder):
         if folder is not None:
             claim(folder, made)
-        cells = _cells(queue, folder, jobs, progress or (lambda done, total, cell: None))
+        cells = _cells(queue, folder, workers, progress or (lambda done, total, cell: None))
         table = replace(tabulate(cells, listed, refused, made), left_out=() if fit is None else fit.sentences)
         if folder is not None:
             write_all(folder, table)
@@ -210,7 +214,7 @@ def _read(name: str) -> Scenario | str:
         return str(error)
 
 
-def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progress) -> list[Cell]:
+def _cells(queue: Sequence[Job], folder: Path | None, workers: Workers, progress: Progress) -> list[Cell]:
     """The cells of the queue, in its order: what is there already, and what is measured now, each written when it is whole."""
     kept = {job: cell for job in queue if folder is not None and (cell := read_cell(folder, job)) is not None}
     missing = [job for job in queue if job not in kept]
@@ -221,7 +225,7 @@ def _cells(queue: Sequence[Job], folder: Path | None, jobs: int, progress: Progr
             write_cell(folder, job, cell)
         progress(len(kept), len(queue), cell)
 
-    run(missing, jobs, finished)
+    run(missing, workers, finished)
     return [kept[job] for job in queue]
 
 

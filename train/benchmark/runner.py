@@ -1,50 +1,36 @@
-"""Measuring many cells, one after another or in several processes; each is handed over as soon as it is whole."""
+"""Measuring many cells, one after another or by several workers; each is handed over as soon as it is whole."""
 
 from __future__ import annotations
 
-import os
-import warnings
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
-from itertools import islice
-from typing import Any
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
+from pathlib import Path
 
 from train.benchmark.bench import Bench
 from train.benchmark.cells import Cell, Job, measured, together
 from train.controllers.sources import Source
-from train.shared.interruption import end_with_parent
-from train.shared.threads import ONE_THREAD
+from train.shared.held_models import files_of
+from train.workers.workers import Workers
 
 
-def run(jobs: Sequence[Job], processes: int, finished: Callable[[Job, Cell], None]) -> None:
-    """Measure every job and call ``finished`` for each, in this process or in several, each of them on one thread.
+def run(jobs: Sequence[Job], workers: Workers, finished: Callable[[Job, Cell], None]) -> None:
+    """Measure every job and call ``finished`` for each, in this process or by workers, each of them on one thread.
 
     Neighbours are measured together where they can be. An interruption loses only the cells that are being measured. Raises
-    ValueError for objects that cannot be sent to another process, ChildProcessError if a process dies.
+    ValueError for objects that cannot be sent to another process, ChildProcessError if processes die again and again.
     """
-    if processes == 1 or len(jobs) < 2:
-        with closing(Bench()) as bench:
-            for group in together(jobs):
-                _hand_over(group, measured(group, bench), finished)
-        return
-    check_portable(jobs)
-    waiting = together(jobs)
-    with workers(min(processes, len(jobs))) as pool:
-        running: dict[Future[list[Cell]], list[Job]] = {}
-        while True:
-            for group in islice(waiting, 2 * processes - len(running)):  # with more, an interrupted pool writes a traceback
-                running[pool.submit(_measured_here, group)] = group
-            if not running:
-                return
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                _hand_over(running.pop(future), future.result(), finished)
 
+    def hand_over(group: Sequence[Job], cells: Sequence[Cell]) -> None:
+        for job, cell in zip(group, cells, strict=True):
+            finished(job, cell)
 
-def _hand_over(jobs: Sequence[Job], cells: Sequence[Cell], finished: Callable[[Job, Cell], None]) -> None:
-    for job, cell in zip(jobs, cells, strict=True):
-        finished(job, cell)
+    workers = workers.at_most(len(jobs))
+    if not workers.alone:
+        check_portable(jobs)
+    with closing(Bench()) as bench:
+        work = partial(measured, bench=bench) if workers.alone else _measured_here
+        workers.do(work, together(jobs), hand_over, _files)
 
 
 BENCH = Bench()
@@ -55,27 +41,16 @@ def _measured_here(jobs: Sequence[Job]) -> list[Cell]:
     return measured(jobs, BENCH)
 
 
-@contextmanager
-def workers(processes: int) -> Iterator[Any]:
-    """Fresh interpreters of joblib's, on one thread each, that end with this block or with this process, whichever is first."""
-    from joblib.externals.loky import ProcessPoolExecutor  # takes a moment, and one process alone does without
-
-    pool = ProcessPoolExecutor(processes, initializer=end_with_parent, initargs=(os.getpid(),), env=ONE_THREAD)
-    try:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "A worker stopped", UserWarning)  # one that outgrew its memory, and was replaced
-            yield pool
-    except BrokenProcessPool:
-        raise ChildProcessError("a worker process died: what was finished is kept, and the same command resumes.") from None
-    finally:
-        pool.shutdown(wait=True, kill_workers=True)
+def _files(jobs: Sequence[Job]) -> list[Path]:
+    """What the jobs read."""
+    return [*files_of(jobs[0].setting.played), *(path for job in jobs for path in job.source.files())]
 
 
 def check_portable(jobs: Sequence[Job]) -> None:
     """``ValueError`` names a controller that cannot be sent to another process, say one that holds an open file."""
     for job in {job.controller: job for job in jobs}.values():
         if not is_portable(job.source):
-            raise ValueError(f"controller {job.controller!r} cannot be sent to another process: take jobs=1.")
+            raise ValueError(f"controller {job.controller!r} cannot be sent to another process: take jobs=1, and no cluster.")
 
 
 def is_portable(source: Source) -> bool:

@@ -30,6 +30,7 @@ from train.controllers.tiers import LEARNT
 from train.shared.digests import digest
 from train.shared.files import as_path, check_file, check_folder
 from train.shared.versions import versions
+from train.workers.workers import Workers
 
 SCENARIOS = ("all",)
 SEEDS = 128
@@ -51,7 +52,8 @@ def submit(
     tier: int | None = None,
     trusted: bool = False,
     overwrite: bool = False,
-    jobs: int = 1,
+    jobs: int | None = None,
+    cluster: str | None = None,
     progress: Progress | None = None,
 ) -> tuple[Entry, BenchmarkTable]:
     """Run an entry in all scenarios beside no control, LQG and the clairvoyant law, and append its row to the leaderboard.
@@ -62,13 +64,14 @@ def submit(
     - ``folder``: where the run's cells, tables and page are written; an earlier one's are resumed.
     - ``tier``: of information, 0, 1 or 2; what the entry says of itself if None, and else ``LEARNT``.
     - ``overwrite``: whether to replace another entry of this name.
+    - ``jobs``, ``cluster``: who measures, as in ``benchmark``.
 
     Raises ValueError of one sentence, and leaves the leaderboard as it is, for what is none of these, an entry of tier 3, one that
     is on the leaderboard already, and one that could not be measured in every scenario.
     """
     entry = checked("submit", entry, Text())
-    jobs, trusted, overwrite = (
-        checked("jobs", jobs, Count()),
+    workers, trusted, overwrite = (
+        Workers(jobs, cluster),
         checked("trusted", trusted, Flag()),
         checked("overwrite", overwrite, Flag()),
     )
@@ -84,7 +87,7 @@ def submit(
         check_folder(folder)
     beside = [each for each in listed_controllers([BOUND], {}, [], False) if each.name != listed.name]
     table = of_listed(
-        [*beside, listed], SCENARIOS, SEEDS, folder, jobs=jobs, arguments=ENVIRONMENT, progress=checked_progress(progress)
+        [*beside, listed], SCENARIOS, SEEDS, folder, workers=workers, arguments=ENVIRONMENT, progress=checked_progress(progress)
     )
     row = Entry({**measured(table, listed), "training_seconds": trained, "digest": mark, **today()})
     enter(place, row, overwrite)

@@ -15,6 +15,8 @@ from train.cli.identify import identify
 from train.cli.options import (
     RESUMES,
     BladeOption,
+    ClusterOption,
+    JobsOption,
     JsonOption,
     PlantOption,
     PresetOption,
@@ -24,12 +26,14 @@ from train.cli.options import (
     one_sentence,
     print_json,
     print_table,
+    working,
 )
 from train.cli.place import place
 from train.cli.schema import schema
 from train.cli.section import section
 from train.cli.speed import speed
 from train.cli.train import train
+from train.cli.tune import tune
 from train.cli.usage import OneSentence
 
 app = typer.Typer(
@@ -44,6 +48,7 @@ app.command()(identify)
 app.command()(place)
 app.command()(export)
 app.command()(train)
+app.command()(tune)
 app.command()(benchmark)
 app.command()(schema)
 app.command()(speed)
@@ -156,6 +161,8 @@ def reproduce(
     output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
     fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
     docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
 ) -> None:
     """Regenerate the thesis' tables and figures and judge its statements. About two minutes.
 
@@ -164,6 +171,6 @@ def reproduce(
     with one_sentence(RESUMES):
         from train.cli.reproduce import reproduce as run
 
-        status = run(names or [], output, fresh, docs)
+        status = run(names or [], output, fresh, docs, working(jobs, cluster))
     if status:
         raise typer.Exit(status)

@@ -14,7 +14,17 @@ from rich.console import Console
 from beamenv.configuration.files import ENDINGS
 from beamenv.scenarios.named import GROUPS
 from train.cli.benchmark_table import finite_row, show_entry, show_table
-from train.cli.options import RESUMES, JsonOption, PlantOption, one_sentence, print_json
+from train.cli.options import (
+    RESUMES,
+    ClusterOption,
+    JobsOption,
+    JsonOption,
+    PlantOption,
+    one_sentence,
+    print_json,
+    results_alone,
+    working,
+)
 from train.cli.quick import QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
 from train.shared.digests import digest
 from train.shared.files import check_folder
@@ -66,7 +76,8 @@ def benchmark(
     ] = None,
     tier: Annotated[int | None, typer.Option(help="Of the entry: 0, 1 or 2; what it says of itself, or 1, if left out.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace another entry of the same name.")] = False,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes at work side by side.")] = 2,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
     plant: PlantOption = None,
     docs: Annotated[
         Path | None,
@@ -81,6 +92,7 @@ def benchmark(
     left out with its reason, which is no failure; asked for by name, it is refused.
     """
     with one_sentence(RESUMES):
+        workers = working(jobs, cluster)
         chosen = {
             "scenario": scenario,
             "controller": controller,
@@ -91,7 +103,8 @@ def benchmark(
             "plant": plant,
         }
         if submit is not None:
-            entered(submit, chosen, folder, docs, as_json, tier=tier, trusted=trust, overwrite=overwrite, jobs=jobs)
+            how = {"trusted": trust, "overwrite": overwrite, "jobs": workers.jobs, "cluster": cluster}
+            entered(submit, chosen, folder, docs, as_json, tier=tier, **how)
             return
         for name, given in {"tier": tier, "overwrite": overwrite or None}.items():
             if given is not None:
@@ -110,7 +123,8 @@ def benchmark(
             folder=home,
             models=model or (),
             trusted=trust,
-            jobs=jobs,
+            jobs=workers.jobs,
+            cluster=cluster,
             environment={} if plant is None else {"plant": str(plant)},
         )
         if docs is not None:
@@ -134,7 +148,7 @@ def entered(
         raise ValueError(f"submit = {submit!r} runs what every entry is put through, so leave out {' and '.join(others)}.")
     board = Path("results") if docs is None else docs
     home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
-    with _Bar() as bar:
+    with _Bar() as bar, results_alone(arguments["cluster"]):
         entry, table = run(submit, board, folder=home, progress=bar.show, **arguments)
     if as_json:
         print_json(finite_row(entry))
@@ -146,7 +160,7 @@ def _measured(**arguments: Any) -> BenchmarkTable:
     """The benchmark, with its bar."""
     from train.benchmark.campaign import benchmark as run
 
-    with _Bar() as bar:
+    with _Bar() as bar, results_alone(arguments["cluster"]):
         return run(**arguments, progress=bar.show)
 
 

@@ -6,7 +6,7 @@ import json
 import shlex
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,9 +18,13 @@ from beamenv.blade.presets import PRESETS
 from beamenv.configuration import shown
 from beamenv.scenarios.scenario import SCENARIOS
 from train.shared.interruption import status_of
+from train.workers.workers import Workers
 
 RESUMES = "what was finished is kept, and the same command resumes"
 """What is said of an interruption where it holds."""
+
+JOBS = 2
+"""Processes, if nobody says how many."""
 
 PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
 SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
@@ -30,9 +34,12 @@ PlantOption = Annotated[
     typer.Option(help="A model of your own in the place of a blade: .npz, .mat or .json, with A, B, C and what is known."),
 ]
 ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
+JobsOption = Annotated[
+    int | None, typer.Option(min=1, help=f"Processes at work side by side; {JOBS}, or on a cluster as many as it has, if left out.")
+]
 ClusterOption = Annotated[
     str | None,
-    typer.Option(help="HOST:PORT of a Ray cluster that runs, or local: Ray on the cores of this machine. Of the extra cluster."),
+    typer.Option(help="HOST:PORT or ray://HOST:PORT of a Ray cluster that runs, or local: Ray here. Of the extra cluster."),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
@@ -49,6 +56,18 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None, 
     if blade is not None:
         arguments["blade"] = to_dict(load_config(blade))
     return arguments
+
+
+def working(jobs: int | None, cluster: str | None) -> Workers:
+    """Who works, by the options."""
+    return Workers(JOBS if jobs is None and cluster is None else jobs, cluster)
+
+
+@contextmanager
+def results_alone(cluster: str | None) -> Iterator[None]:
+    """Within it standard output is kept for results: what Ray has to say of workers that die goes where errors go."""
+    with nullcontext() if cluster is None else redirect_stdout(sys.stderr):
+        yield
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from pathlib import Path
 import typer
 
 from beamenv.configuration.writing import write_whole
-from train.reproduce.catalogue import STUDIES, chosen
+from train.reproduce.catalogue import NAMES, STUDIES, chosen
 from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
@@ -15,9 +15,16 @@ from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import Record, load, run
 from train.shared.files import check_folder
 from train.shared.lock import alone_in
+from train.workers.workers import Workers
 
 
-def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | None = None) -> int:
+def reproduce(
+    names: list[str],
+    output: Path,
+    fresh: bool = False,
+    docs: Path | None = None,
+    workers: Workers = Workers(),  # noqa: B008 - frozen
+) -> int:
     """Run the named studies (all for none), write the page, and return the exit status.
 
     0: done; 1: a study failed. After an interruption the page of what is finished is written, and it is raised again.
@@ -32,7 +39,7 @@ def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | 
             if not (fresh and study in studies):
                 load(output, study.name)
         try:
-            run_with_progress(studies, output, fresh, records)
+            run_with_progress(studies, output, fresh, records, workers)
         except KeyboardInterrupt:
             sum_up(output, records, docs)
             raise
@@ -40,7 +47,7 @@ def reproduce(names: list[str], output: Path, fresh: bool = False, docs: Path | 
     return int(any(record.error for record in records))
 
 
-def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, records: list[Record]) -> None:
+def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, records: list[Record], workers: Workers) -> None:
     """Run the studies under a progress bar, adding each record as it is finished."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -52,11 +59,12 @@ def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, rec
             records.append(record)
             progress.update(task, advance=1, description=next(following))
 
-        run(studies, output, fresh=fresh, finished=finished)
+        run(studies, output, fresh=fresh, finished=finished, workers=workers)
 
 
 def sum_up(output: Path, records: list[Record], docs: Path | None) -> None:
-    """The page, and in a few lines what came out."""
+    """The page, and in a few lines what came out, in the thesis' order whichever was done first."""
+    records = sorted(records, key=lambda record: NAMES.index(record.name))
     write_pages(output, records, docs)
     report(records, output)
 

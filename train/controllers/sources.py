@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -31,6 +32,10 @@ class Source(Protocol):
         """Changes with what the controller is made from; empty if that cannot be known."""
         ...
 
+    def files(self) -> Sequence[Path]:
+        """What a machine must be sent on which it is to be made."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Classical:
@@ -47,6 +52,10 @@ class Classical:
     def fingerprint(self) -> str:
         """Of its file."""
         return digest(inspect.getsource(inspect.getmodule(self.controller.build) or self.controller.build).encode())
+
+    def files(self) -> Sequence[Path]:
+        """None: what has a name is installed."""
+        return ()
 
 
 class _Designed:
@@ -80,7 +89,11 @@ class Trained:
 
     def fingerprint(self) -> str:
         """Of its weights and what is said of them."""
-        return digest(*((self.folder / name).read_bytes() for name in ("agent.json", "weights.npz")))
+        return digest(*(path.read_bytes() for path in self.files()))
+
+    def files(self) -> Sequence[Path]:
+        """Both."""
+        return tuple(self.folder / name for name in ("agent.json", "weights.npz"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +110,10 @@ class ModelFile:
         """Of the file."""
         return digest(self.path.read_bytes()) if self.path.is_file() else ""
 
+    def files(self) -> Sequence[Path]:
+        """The file, if it is there."""
+        return (self.path,) if self.path.is_file() else ()
+
 
 @dataclass(frozen=True, slots=True)
 class Given:
@@ -111,3 +128,7 @@ class Given:
     def fingerprint(self) -> str:
         """Empty: what an object will do nobody knows beforehand, so its cells are measured anew."""
         return ""
+
+    def files(self) -> Sequence[Path]:
+        """None that anybody knows of."""
+        return ()

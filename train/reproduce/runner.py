@@ -8,6 +8,7 @@ import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from beamenv.configuration.writing import write_whole
@@ -17,6 +18,7 @@ from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
 from train.shared.digests import digest, source_digest
 from train.shared.files import read_json
+from train.workers.workers import Workers
 
 DEPENDS_ON = ("beamenv", "baselines", "train.reproduce", "train.figures.figure", "train.figures.paper")
 """Packages that decide what a study finds and shows."""
@@ -44,8 +46,9 @@ def run(
     model: Model | None = None,
     fresh: bool = False,
     finished: Callable[[Record], None] = lambda record: None,
+    workers: Workers = Workers(),  # noqa: B008 - frozen
 ) -> list[Record]:
-    """Run studies into ``folder`` and return their records, calling ``finished`` after each.
+    """Run studies into ``folder`` and return their records in the same order, calling ``finished`` as each is done.
 
     A study whose record is there, made by the same sources from the same model, is not run again unless ``fresh``. One that fails
     is recorded with its error and does not stop the others.
@@ -53,28 +56,45 @@ def run(
     model = model or Model()
     folder.mkdir(parents=True, exist_ok=True)
     fingerprint = source_fingerprint(model)
-    records = []
-    for study in studies:
-        kept = None if fresh else load(folder, study.name, fingerprint)
-        record = kept or run_one(study, folder, model, fingerprint)
-        records.append(record)
+    records: dict[str, Record] = {}
+
+    def done(record: Record) -> None:
+        records[record.name] = record
         finished(record)
-    return records
+
+    def written(study: Study, made: Made) -> None:
+        write(folder, made)
+        done(made.record)
+
+    waiting = []
+    for study in studies:
+        if not fresh and (kept := load(folder, study.name, fingerprint)):
+            done(kept)
+        else:
+            waiting.append(study)
+    workers.at_most(len(waiting)).do(partial(made_of, model=model, fingerprint=fingerprint), waiting, written)
+    return [records[study.name] for study in studies]
 
 
-def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Record:
-    """Compute, judge, draw and write one study."""
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What a study comes to, on whichever machine."""
+
+    record: Record
+    csv: str = ""
+    picture: bytes = b""
+
+
+def made_of(study: Study, model: Model, fingerprint: str) -> Made:
+    """Compute, judge and draw one study."""
     start = time.perf_counter()
     try:
         outcome = study.compute(model)
         judgements = study.judge(outcome)
         picture = draw(outcome, f"{study.name.capitalize().replace('-', ' ')}: {study.title}")
     except Exception as error:  # noqa: BLE001 - whatever fails in one study must not stop the others
-        return Record(
-            study.name, time.perf_counter() - start, {}, error=f"{type(error).__name__}: {error}", fingerprint=fingerprint
-        )
-    write_whole(folder / f"{study.name}.csv", csv_text(outcome))
-    write_whole(folder / f"{study.name}.png", picture)
+        seconds, told = time.perf_counter() - start, f"{type(error).__name__}: {error}"
+        return Made(Record(study.name, seconds, {}, error=told, fingerprint=fingerprint))
     tabulated = study.name.startswith("table")
     record = Record(
         name=study.name,
@@ -85,8 +105,17 @@ def run_one(study: Study, folder: Path, model: Model, fingerprint: str) -> Recor
         rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if tabulated else (),
         fingerprint=fingerprint,
     )
-    write_whole(folder / f"{study.name}.json", json.dumps(asdict(record), ensure_ascii=False, indent=1))
-    return record
+    return Made(record, csv_text(outcome), picture)
+
+
+def write(folder: Path, made: Made) -> None:
+    """The files of a study that has not failed, the record last: with it they are whole."""
+    if made.record.error:
+        return
+    path = folder / made.record.name
+    write_whole(path.with_name(f"{path.name}.csv"), made.csv)
+    write_whole(path.with_name(f"{path.name}.png"), made.picture)
+    write_whole(path.with_name(f"{path.name}.json"), json.dumps(asdict(made.record), ensure_ascii=False, indent=1))
 
 
 def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
 import socket
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
@@ -14,30 +16,37 @@ from beamenv.configuration import Refused, clause
 LOCAL = "local"
 """In place of an address: the cores of this machine, for as long as this process needs them."""
 
-ALLOWED = f"{LOCAL}, or the address HOST:PORT of a Ray cluster that runs"
+CLIENT = "ray://"
+"""Before the address of a cluster that this machine is no part of."""
+
+ALLOWED = f"{LOCAL}, or the address HOST:PORT of a Ray cluster that runs, or {CLIENT}HOST:PORT from outside it"
 
 PATIENCE = 5.0
 """s, for a cluster to answer."""
 
-QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
-"""Ray's environment: it reports to nobody, and leaves what is asked of no GPU its environment."""
+QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_NUM_REDIS_GET_RETRIES": "1", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
+"""Ray's environment: it reports to nobody, tries an address once, and leaves what is asked of no GPU its environment."""
 
 
 @contextmanager
 def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
     """Within it Ray works at an address, or with so many cores of this machine, all if None; it prints nothing.
 
-    Raises ``ValueError`` of one sentence if no cluster answers at the address.
+    A connection that this process has already is used, whatever the address, and stays. Raises ``ValueError`` of one sentence if no
+    cluster answers at the address.
     """
     check_address(address)
+    os.environ |= {name: value for name, value in QUIET.items() if name not in os.environ}
     import ray
 
-    os.environ |= {name: value for name, value in QUIET.items() if name not in os.environ}
+    if ray.is_initialized():
+        yield
+        return
     where = {"address": address} if address != LOCAL else {"address": LOCAL, "num_cpus": cores, "include_dashboard": False}
     try:
-        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()), _handlers_kept():
             ray.init(**where, log_to_driver=False, logging_level=logging.CRITICAL)
-    except (OSError, ValueError, RuntimeError) as error:  # whatever else answers there
+    except (OSError, ValueError, RuntimeError, ImportError) as error:  # whatever else answers there
         raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but {clause(error)}.") from None
     try:
         yield
@@ -45,12 +54,23 @@ def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
         ray.shutdown()
 
 
+@contextmanager
+def _handlers_kept() -> Iterator[None]:
+    """Ray sets a handler of its own for the signal to end."""
+    before = signal.getsignal(signal.SIGTERM)
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, before)
+
+
 def check_address(address: str) -> None:
     """``ValueError`` of one sentence for what is no address, or one where nobody answers: Ray itself would wait for minutes."""
-    host, _, port = address.rpartition(":")
     if address == LOCAL:
         return
-    if not (host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
+    host, _, port = str(address).removeprefix(CLIENT).rpartition(":")
+    if not (isinstance(address, str) and host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
         raise Refused("cluster", address, ALLOWED)
     try:
         socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()

@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from beamenv.arrays import REFERENCE, Arrays, Masked, SomeRows, Those, copied, integers, namespace
 from beamenv.simulation.kernel import Operators, row_product
 from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.plants.bank import Bank
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 
@@ -24,9 +24,8 @@ SHARED = 4
 class Passage(NamedTuple):
     """Blades that come from one plant to another."""
 
-    rows: Rows
-    """(k,)"""
-    change: Array
+    those: Those
+    change: Any
     """(k, n, n): states, as rows, times this are those of the next plant."""
 
 
@@ -42,60 +41,71 @@ class Shared(NamedTuple):
 class Allotment:
     """The plants of N blades, their operators gathered; ``sizes`` says how many blades each of the bank's groups has."""
 
-    def __init__(self, bank: Bank, lie: Arrangement, sizes: Sequence[int]) -> None:
-        self._bank, self._lie = bank, lie
+    def __init__(self, bank: Bank, lie: Arrangement, sizes: Sequence[int], arrays: Arrays = REFERENCE) -> None:
+        self._bank, self._lie, self._arrays = bank, lie, arrays
         self._each = len(bank) // bank.groups
         self.group: Rows = np.repeat(np.arange(bank.groups), sizes)
         """(N,) which group each blade is of."""
-        self._first = self._each * self.group
+        self._first = arrays.exact(self._each * self.group)
         self._leads = np.searchsorted(self.group, np.arange(bank.groups))
-        self.index: Rows = self._first.copy()
+        self.index: Any = copied(self._first)
         """(N,) places in the bank."""
         self.drawn = self._each > 1 and not bank.runs
         """Whether each episode has a plant of its own, drawn from those of its group."""
-        walk = bank.walk
+        walk, count = bank.walk, len(self.group)
         self.draws = 0 if walk is None else walk.draws
         """Uniform numbers that the course of an episode takes."""
-        self._courses = np.zeros((len(self.group), 0 if walk is None else walk.courses(np.zeros((1, walk.draws))).shape[1]))
-        self._elapsed: Rows = np.zeros(len(self.group), dtype=np.int64)
+        self._courses = arrays.exact(np.zeros((count, 0 if walk is None else walk.courses(np.zeros((1, walk.draws))).shape[1])))
+        self._elapsed = arrays.exact(np.zeros(count, dtype=np.int64))
         self.operators: Operators
         """Of the one plant that all blades have now, of each group's (groups, …), or of each blade's (*shape, …)."""
-        self.effort_weight: Array
+        self.effort_weight: Any
         """(m, m), (groups, m, m) or (*shape, m, m), J s."""
         self._shared: Shared | None = None
         """None until it is asked for."""
         self._gather()
 
     @property
-    def within_group(self) -> Rows:
+    def within_group(self) -> Any:
         """(N,) places among the plants of each blade's group."""
         return self.index - self._first
 
-    def set_out(self, rows: Rows, uniform: Array) -> None:
-        """Put ``rows`` on the courses that uniform numbers (len(rows), draws) say."""
-        assert self._bank.walk is not None
-        self._courses[rows], self._elapsed[rows] = self._bank.walk.courses(uniform), 0
-        self._allot(rows, self._first[rows] + self._bank.walk.places(self._courses[rows], self._elapsed[rows]))
+    def set_out(self, those: Those, uniform: Any) -> None:
+        """Put some blades on the courses that uniform numbers (k, draws) say."""
+        walk = self._bank.walk
+        assert walk is not None
+        self._courses, self._elapsed = those.put(self._courses, walk.courses(uniform)), those.put(self._elapsed, 0)
+        own = walk.places(those.take(self._courses), those.take(self._elapsed))
+        self._allot(those, those.take(self._first) + own)
 
     def walk_on(self) -> Passage | None:
         """One control interval further on their courses; which blades so come to another plant, None if none does."""
-        assert self._bank.walk is not None and self._bank.to_common is not None and self._bank.from_common is not None
-        self._elapsed += 1
-        index = self._first + self._bank.walk.places(self._courses, self._elapsed)
-        rows = np.flatnonzero(index != self.index)
-        if not len(rows):
+        bank, before = self._bank, self.index
+        assert bank.walk is not None and bank.to_common is not None and bank.from_common is not None
+        self._elapsed = self._elapsed + 1
+        index = self._first + bank.walk.places(self._courses, self._elapsed)
+        those = self._moved(index != before)
+        if those is None:
             return None
-        passage = Passage(rows, self._bank.to_common[self.index[rows]] @ self._bank.from_common[index[rows]])
-        self._allot(rows, index[rows])
+        now = those.take(index)
+        passage = Passage(those, bank.to_common[those.take(before)] @ bank.from_common[now])
+        self._allot(those, now)
         return passage
 
-    def draw(self, rows: Rows, uniform: Array) -> None:
-        """Give ``rows`` the plants that uniform numbers (len(rows),) say."""
-        self._allot(rows, self._first[rows] + (uniform * self._each).astype(np.int64))
+    def _moved(self, moves: Any) -> Those | None:
+        """The blades of a mask (N,); None where there are none and it costs nothing to ask."""
+        if not self._arrays.on_host:
+            return Masked(moves)
+        rows = moves.nonzero()[0] if self._arrays.of_numpy else moves.nonzero()[:, 0]
+        return self._lie.those(rows) if len(rows) else None
 
-    def begin(self, rows: Rows) -> None:
-        """Give ``rows`` the first plants of their groups."""
-        self._allot(rows, self._first[rows])
+    def draw(self, those: Those, uniform: Any) -> None:
+        """Give some blades the plants that uniform numbers (k,) say."""
+        self._allot(those, those.take(self._first) + integers(uniform * self._each))
+
+    def begin(self, those: Those) -> None:
+        """Give some blades the first plants of their groups."""
+        self._allot(those, those.take(self._first))
 
     def product(self, rows: Any, matrix: Any, out: Any = None) -> Any:
         """As ``row_product``; blades that share a plant are multiplied by its operators together, where there are many such."""
@@ -106,10 +116,10 @@ class Allotment:
         if not self._shared.plants:
             return row_product(rows, matrix, out)
         order, sorted_rows = self._shared.order, rows.reshape(len(self.index), -1)[self._shared.order]
-        products = np.empty((len(order), matrix.shape[-1]))
+        products = np.empty((len(order), matrix.shape[-1]), matrix.dtype)
         for plant, those in self._shared.plants:
             np.matmul(sorted_rows[those], self._bank.operators.fused[plant], products[those])
-        out = np.empty((*rows.shape[:-1], matrix.shape[-1])) if out is None else out
+        out = np.empty((*rows.shape[:-1], matrix.shape[-1]), matrix.dtype) if out is None else out
         out.reshape(len(order), -1)[order] = products
         return out
 
@@ -121,31 +131,34 @@ class Allotment:
         ends = [*first[1:].tolist(), len(order)]
         return Shared(order, [(k, slice(a, b)) for k, a, b in zip(plants.tolist(), first.tolist(), ends, strict=True)])
 
-    def _allot(self, rows: Rows, index: Rows) -> None:
-        self.index[rows], self._shared = index, None
-        if self.drawn and self._lie.shape and len(rows) < len(self.index):
-            at = self._lie.rows_of(rows)  # in place: operators of many blades are many megabytes
-            self.operators.fused[at] = self._bank.operators.fused[index]
-            self.operators.weights[at] = self._bank.operators.weights[index]
-            self.effort_weight[at] = self._bank.effort_weight[index]
+    def _allot(self, those: Those, index: Any) -> None:
+        self.index, self._shared = those.put(self.index, index), None
+        in_place = self._arrays.of_numpy and self._lie.shape and isinstance(those, SomeRows)
+        if self.drawn and in_place and len(index) < len(self.index):  # operators of many blades are many megabytes
+            those.lay(self.operators.fused, self._bank.operators.fused[index])
+            those.lay(self.operators.weights, self._bank.operators.weights[index])
+            those.lay(self.effort_weight, self._bank.effort_weight[index])
         elif self._each > 1:
             self._gather()
 
     def follow(self) -> None:
         """Give each blade the next plant, where a bank's plants follow one another."""
-        self.index = np.minimum(self.index + 1, self._first + (self._each - 1))
+        last = self._first + (self._each - 1)
+        self.index = namespace(last).minimum(self.index + 1, last)
         self._gather()
 
     def state_dict(self) -> dict[str, Any]:
         """Which plant each blade has, and on what course it is."""
-        index = {"index": self.index.copy()}
-        return index | {"courses": self._courses.copy(), "elapsed": self._elapsed.copy()} if self._bank.walk else index
+        moving = {"index": self.index}
+        if self._bank.walk:
+            moving |= {"courses": self._courses, "elapsed": self._elapsed}
+        return {name: copied(values) for name, values in moving.items()}
 
-    def load_state_dict(self, state: Mapping[str, ArrayLike]) -> None:
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of an allotment of the same bank and batch."""
-        self.index = np.asarray(state["index"]).copy()
+        self.index = copied(state["index"])
         if self._bank.walk is not None:
-            self._courses, self._elapsed = (np.asarray(state[name]).copy() for name in ("courses", "elapsed"))
+            self._courses, self._elapsed = (copied(state[name]) for name in ("courses", "elapsed"))
         self._gather()
 
     def _gather(self) -> None:
@@ -160,6 +173,8 @@ class Allotment:
         """One place in the bank for all blades, one for each group or one for each blade: whichever is the least that will do."""
         if not self._lie.shape:
             return self.index[0]
+        if not self._arrays.of_numpy:
+            return self.index if self._each > 1 else 0
         first = self.index[self._leads]
         if self.drawn or not np.array_equal(self.index, first[self.group]):
             return self.index.reshape(self._lie.shape)

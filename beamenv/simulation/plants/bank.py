@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import REFERENCE, Arrays
 from beamenv.configuration.read_only import ReadOnly, read_only, sealed
 from beamenv.patches.material import MFC_STRAIN
 from beamenv.plant.energy import energy_coordinates, in_energy_coordinates
@@ -100,6 +102,16 @@ class Bank(ReadOnly):
         return sizes[0] == sizes[1] and all(
             np.array_equal(getattr(self.plant, name), getattr(other.plant, name)) for name in _ELECTRONICS
         )
+
+    def convert(self, arrays: Arrays) -> Bank:
+        """The same bank of other arrays, for those who step with them."""
+        if arrays == REFERENCE:
+            return self
+        floats = arrays.floats
+        parts = {name: getattr(self, name) for name in (*BY_PLANT, *NOT_ALWAYS)}
+        own = None if self.own is None else (floats(self.own[0]), floats(self.own[1]))
+        converted: dict[str, Any] = {name: None if part is None else floats(part) for name, part in parts.items()}
+        return replace(self, operators=self.operators.convert(floats), own=own, **converted)
 
     @classmethod
     def single(cls, plant: Plant, speed: float = 0.0, to_design: Array | None = None) -> Bank:
@@ -204,4 +216,6 @@ BY_PLANT = (
     "steady",
 )
 """Its arrays that have a row for each plant, the operators' aside."""
+NOT_ALWAYS = ("to_design", "to_common", "from_common", "start")
+"""Further arrays of numbers, which not every bank has."""
 _ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale", "reference_load")

@@ -19,6 +19,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import integers, namespace
 from beamenv.scenarios.tables import PlantVariation
 
 Array = NDArray[np.float64]
@@ -32,18 +33,18 @@ STATIONS = 16
 
 
 class Walk(Protocol):
-    """What places the blades have in a bank, each on a course told by a few numbers."""
+    """What places the blades have in a bank, each on a course told by a few numbers; arrays of NumPy or of torch."""
 
     @property
     def draws(self) -> int:
         """Uniform numbers that a course takes."""
         ...
 
-    def courses(self, uniforms: Array) -> Array:
+    def courses(self, uniforms: Any) -> Any:
         """Courses (N, c) of uniform numbers (N, ``draws``)."""
         ...
 
-    def places(self, courses: Array, elapsed: Rows) -> Rows:
+    def places(self, courses: Any, elapsed: Any) -> Any:
         """(N,) places in the bank in control interval ``elapsed`` (N,) of the episodes."""
         ...
 
@@ -70,25 +71,26 @@ class Wander:
         """J."""
         return COMPONENTS
 
-    def courses(self, uniforms: Array) -> Array:
+    def courses(self, uniforms: Any) -> Any:
         """Phases (N, J), rad."""
         return 2.0 * np.pi * uniforms
 
-    def ratios(self, courses: Array, time: NDArray[np.floating[Any]]) -> Array:
+    def ratios(self, courses: Any, time: Any) -> Any:
         """Ω/Ω₀ (N,) at times (N,) in control intervals."""
-        rates = 2.0 * np.pi * self.frequency * (np.arange(COMPONENTS) + 0.5) / COMPONENTS
-        waves = np.cos(rates * time[:, None] + courses).sum(axis=1)
-        return np.asarray(1.0 + self.deviation * np.sqrt(2.0 / COMPONENTS) * waves)
+        array, rates = namespace(courses), 2.0 * np.pi * self.frequency * (np.arange(COMPONENTS) + 0.5) / COMPONENTS
+        angles = array.stack([rate * time for rate in rates.tolist()], -1) + courses
+        return 1.0 + self.deviation * float(np.sqrt(2.0 / COMPONENTS)) * array.cos(angles).sum(-1)
 
     def stations(self) -> Array:
         """(K,) ratios."""
         return np.linspace(-1.0, 1.0, self.plants) * self.deviation * np.sqrt(2.0 * COMPONENTS) + 1.0
 
-    def places(self, courses: Array, elapsed: Rows) -> Rows:
+    def places(self, courses: Any, elapsed: Any) -> Any:
         """The nearest stations."""
-        ratios, stations = self.ratios(courses, elapsed + 0.5), self.stations()
-        place = np.rint((ratios - stations[0]) / (stations[-1] - stations[0]) * (self.plants - 1))
-        return np.clip(place, 0, self.plants - 1).astype(np.int64)
+        first, *_, last = self.stations().tolist()
+        place = (self.ratios(courses, elapsed + 0.5) - first) / (last - first) * (self.plants - 1)
+        array = namespace(place)
+        return integers(array.clip(array.round(place), 0, self.plants - 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,17 +109,18 @@ class Drift:
         """Course, onset, duration."""
         return 3
 
-    def courses(self, uniforms: Array) -> Array:
+    def courses(self, uniforms: Any) -> Any:
         """(N, 3) course, onset and duration, in control intervals."""
-        course = np.floor(uniforms[:, 0] * self.courses_known)
+        array = namespace(uniforms)
+        course = array.floor(uniforms[:, 0] * self.courses_known)
         times = (low + (high - low) * uniforms[:, k] for k, (low, high) in enumerate((self.onset, self.duration), 1))
-        return np.stack([course, *times], axis=1)
+        return array.stack([course, *times], -1)
 
-    def places(self, courses: Array, elapsed: Rows) -> Rows:
+    def places(self, courses: Any, elapsed: Any) -> Any:
         """The nearest stations."""
-        course, onset, duration = courses.T
-        share = np.clip((elapsed + 0.5 - onset) / np.maximum(duration, 1.0), 0.0, 1.0)
-        return (course * self.plants + np.rint(share * (self.plants - 1))).astype(np.int64)
+        (course, onset, duration), array = courses.T, namespace(courses)
+        share = array.clip((elapsed + 0.5 - onset) / array.clip(duration, 1.0, None), 0.0, 1.0)
+        return integers(course * self.plants + array.round(share * (self.plants - 1)))
 
 
 def walk_of(variation: PlantVariation, interval: float) -> Walk | None:

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import REFERENCE, Arrays, SomeRows, Those, copied, namespace
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.load_cases import LoadCases
 from beamenv.scenarios.scenario import Scenario
@@ -64,7 +65,7 @@ class Turbulence:
         rotor = scenario.rotor
         return cls(math.exp(-plant.scenario_interval / rotor.turbulence_time)) if rotor.turbulence else None
 
-    def following(self, gusts: Array, normals: Array) -> Array:
+    def following(self, gusts: Any, normals: Any) -> Any:
         """The loads (…, k) of the next instant, from this one's and normals of the right size."""
         return self.decay * gusts + math.sqrt(1.0 - self.decay**2) * normals
 
@@ -76,49 +77,58 @@ def _square_root(covariance: Array) -> Array:
 
 
 class SharedDisturbances:
-    """Disturbances of N blades from one generator, drawn anew at every instant.
+    """Disturbances of N blades from one generator, of NumPy or of torch, drawn anew at every instant.
 
-    Normals are drawn as (blocks, column, blade), group after group where the batch has groups.
+    NumPy's draws normals as (blocks, column, blade), group after group where the batch has groups: in the numbers of the blades'
+    arrays, or, of tensors, with 64 bits.
     """
 
-    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None, loads: int = 2) -> None:
-        shape, self._lie, self._loads = lie.shape, lie, loads
-        self._turbulence, self._gusts = turbulence, np.zeros((*shape, loads))
+    def __init__(
+        self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None, loads: int = 2, arrays: Arrays = REFERENCE
+    ) -> None:
+        count, self._lie, self._loads, self._arrays = math.prod(lie.shape), lie, loads, arrays
+        drawn_with = arrays.precision if arrays.of_numpy else REFERENCE.precision
         self._factor = factor if np.any(factor - np.diag(np.diagonal(factor))) else np.diagonal(factor).copy()
-        self._normals, self._rows = lie.columns_first(len(factor))
-        self._drawn = [(self._rows, self._rows)]
+        self._own_factor = arrays.floats(self._factor)
+        self._memory, self._seen = lie.columns_first(len(factor), drawn_with)
+        self._drawn = [(self._seen, self._seen)]
         """Normals (…, c), and where the disturbances made of them go."""
         if lie.runs:
-            self._normals = np.zeros((math.prod(shape), len(factor)))
-            self._drawn = [(_drawn_by_column(run, self._normals), run.of(self._rows)) for run in lie.runs]
-        _, self._amplitude = lie.columns_first(loads)
-        self._steps = np.zeros(math.prod(shape), dtype=np.int64)
+            self._memory = np.zeros((count, len(factor)), drawn_with)
+            self._drawn = [(_drawn_by_column(run, self._memory), run.of(self._seen)) for run in lie.runs]
+        self._turbulence = turbulence
+        if arrays.of_numpy:
+            self._rows: Any = self._seen
+            self._gusts: Any = np.zeros((*lie.shape, loads), arrays.precision)
+            self._amplitude: Any = lie.columns_first(loads, arrays.precision)[1]
+        else:
+            self._rows, self._gusts, self._amplitude = (arrays.zeros(count, width) for width in (len(factor), loads, loads))
+        self._steps = arrays.exact(np.zeros(count, dtype=np.int64))
         self._cases: LoadCases | None = None
 
     def __getstate__(self) -> tuple[Any, ...]:
-        carried = self._rows.copy(), self._amplitude.copy(), self._steps, self._cases, self._gusts
-        return self._factor, self._lie, self._turbulence, self._loads, *carried
+        carried = copied(self._rows), copied(self._amplitude), self._steps, self._cases, self._gusts
+        return self._factor, self._lie, self._turbulence, self._loads, self._arrays, *carried
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Views must be views again of what they show, or a copied batch would come to a halt."""
-        factor, lie, turbulence, loads, rows, amplitude, steps, cases, gusts = state
-        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, lie, turbulence, loads)  # type: ignore[misc]
+        factor, lie, turbulence, loads, arrays, rows, amplitude, steps, cases, gusts = state
+        self.__init__(np.diag(factor) if factor.ndim == 1 else factor, lie, turbulence, loads, arrays)  # type: ignore[misc]
         self._rows[...], self._amplitude[...] = rows, amplitude
         self._steps, self._cases, self._gusts = steps, cases, gusts
 
-    def begin(self, rows: Rows, cases: LoadCases, normals: Array) -> Array:
-        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − k).
+    def begin(self, those: Those, cases: LoadCases, normals: Any) -> Any:
+        """Start some blades at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (k, c − loads).
 
-        ``normals`` (len(rows), c) are standard normals for this instant.
+        ``normals`` (k, c) are standard normals for this instant.
         """
-        self._cases = merged(self._cases, rows, cases)
-        self._steps[rows] = 0
-        at = self._lie.rows_of(rows)
-        self._amplitude[at] = cases.amplitude
-        disturbance = normals * self._factor if self._factor.ndim == 1 else normals @ self._factor
-        self._rows[at] = disturbance
+        self._cases = merged(self._cases, those, cases)
+        self._steps = those.put(self._steps, 0)
+        self._amplitude = those.lay(self._amplitude, cases.amplitude)
+        disturbance = normals * self._own_factor if self._factor.ndim == 1 else normals @ self._own_factor
+        self._rows = those.lay(self._rows, disturbance)
         if self._turbulence is not None:
-            self._gusts[at] = disturbance[:, len(self._factor) - self._loads :]
+            self._gusts = those.lay(self._gusts, disturbance[:, len(self._factor) - self._loads :])
         return disturbance[:, self._loads :]
 
     @property
@@ -126,55 +136,75 @@ class SharedDisturbances:
         """c: how many normals an instant takes of each blade."""
         return len(self._factor)
 
-    def loads(self, out: Array) -> None:
-        """Write the line loads of this instant to ``out`` (…, k)."""
-        assert self._cases is not None
-        np.multiply(self._amplitude, self._cases.gain(self._steps).reshape(*out.shape[:-1], 1), out=out)
-        np.add(out, self._rows[..., : self._loads], out=out)
-        if self._cases.has_harmonics:
-            out += self._cases.of_rotor(self._steps).reshape(out.shape)
+    def loads(self, out: Any = None) -> Any:
+        """The line loads of this instant (…, k), with NumPy written to ``out``."""
+        cases, first = self._cases, self._rows[..., : self._loads]
+        assert cases is not None
+        gain = cases.gain(self._steps)
+        if self._arrays.of_numpy:
+            np.multiply(self._amplitude, gain.reshape(*out.shape[:-1], 1), out=out, casting="same_kind")
+            np.add(out, first, out=out)
+        else:
+            out = self._amplitude * gain[:, None] + first
+        if cases.has_harmonics:
+            out += cases.of_rotor(self._steps).reshape(out.shape)
         if self._turbulence is not None:
             out += self._gusts
+        return out
 
-    def next(self, generator: Generator, resting: Rows | None = None) -> Array:
-        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − k). ``resting`` makes no difference here."""
-        self._steps += 1
-        generator.standard_normal(out=self._normals)
-        for normals, rows in self._drawn:
-            if self._factor.ndim == 1:
-                np.multiply(normals, self._factor, out=rows)
-            else:
-                rows[...] = normals @ self._factor
+    def next(self, generator: Any, resting: Rows | None = None) -> Any:
+        """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − loads). ``resting`` makes no difference here."""
+        self._steps = self._steps + 1
+        self._draw(generator)
         if self._turbulence is not None:
             self._gusts = self._turbulence.following(self._gusts, self._rows[..., len(self._factor) - self._loads :])
         return self._rows[..., self._loads :]
 
+    def _draw(self, generator: Any) -> None:
+        factor = self._factor
+        if not isinstance(generator, np.random.Generator):
+            normals = normals_of(generator, self._rows)
+            self._rows = normals * self._own_factor if factor.ndim == 1 else normals @ self._own_factor
+            return
+        generator.standard_normal(out=self._memory, dtype=self._memory.dtype)
+        for normals, rows in self._drawn:
+            if factor.ndim == 1:
+                np.multiply(normals, factor, out=rows, casting="same_kind")
+            else:
+                rows[...] = normals @ factor
+        if not self._arrays.of_numpy:
+            self._rows = self._arrays.floats(self._seen.reshape(self._rows.shape))
+
     def state_dict(self) -> dict[str, Any]:
         """Copies of what moves; the generator is the caller's."""
-        return {
-            "rows": self._rows.copy(),
-            "amplitude": self._amplitude.copy(),
-            "steps": self._steps.copy(),
-            "gusts": self._gusts.copy(),
-            "cases": None if self._cases is None else self._cases.state_dict(),
-        }
+        names = "rows", "amplitude", "steps", "gusts"
+        moving = {name: copied(getattr(self, f"_{name}")) for name in names}
+        return {**moving, "cases": None if self._cases is None else self._cases.state_dict()}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to a ``state_dict`` of equally made disturbances."""
-        self._rows[...], self._amplitude[...] = np.asarray(state["rows"]), np.asarray(state["amplitude"])
-        self._steps, self._gusts = np.asarray(state["steps"]).copy(), np.asarray(state["gusts"]).copy()
+        self._rows[...], self._amplitude[...] = copied(state["rows"]), copied(state["amplitude"])
+        self._steps, self._gusts = copied(state["steps"]), copied(state["gusts"])
         self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
 
 
+def normals_of(generator: Any, values: Any) -> Any:
+    """As many standard normals as there are values in a tensor, from torch's generator, where it is."""
+    torch = namespace(values)
+    return torch.randn(values.shape, generator=generator, dtype=values.dtype, device=values.device)
+
+
 class SeededDisturbances:
-    """Disturbances of N blades, each from its own generator.
+    """Disturbances of N blades, each from its own generator of NumPy, drawn with 64 bits whatever the blades' arrays are.
 
     The rows of the next ``BLOCK`` instants lie in a ring that all blades read at the same place; each blade's part is
     drawn again whenever its own episode has used up its block.
     """
 
-    def __init__(self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None, loads: int = 2) -> None:
-        count, self._width = math.prod(lie.shape), loads
+    def __init__(
+        self, factor: Array, lie: Arrangement, turbulence: Turbulence | None = None, loads: int = 2, arrays: Arrays = REFERENCE
+    ) -> None:
+        count, self._width, self._arrays = math.prod(lie.shape), loads, arrays
         self._turbulence, self._gusts = turbulence, np.zeros((count, loads))
         self._factor, self._shape = factor, lie.shape
         self._ring = np.zeros((BLOCK, count, len(factor)))
@@ -204,20 +234,24 @@ class SeededDisturbances:
         self.__dict__.update(state)
         self._see_ring()
 
-    def begin(self, rows: Rows, cases: LoadCases, generators: Sequence[Generator]) -> Array:
-        """Start ``rows`` at instant 0 of their load cases; their sensor noise there, [noise (p) | …] (len(rows), c − k)."""
-        self._cases = merged(self._cases, rows, cases)
+    def begin(self, those: SomeRows, cases: LoadCases, generators: Sequence[Generator]) -> Any:
+        """Start some blades at instant 0 of their load cases, NumPy's; their sensor noise there, [noise (p) | …] (k, c − loads)."""
+        rows = np.asarray(those.rows)
+        self._cases = merged(self._cases, SomeRows(rows, ()), cases)
         self._begun[rows] = self._at
         self._see_due()
         self._drawn[rows] = 0
         self._draw(rows, generators)
-        return self._ring[self._at, rows, self._width :]
+        return self._arrays.floats(self._ring[self._at, rows, self._width :])
 
-    def loads(self, out: Array) -> None:
-        """Write the line loads of this instant to ``out`` (…, k)."""
+    def loads(self, out: Any = None) -> Any:
+        """The line loads of this instant (…, k), with NumPy written to ``out``."""
+        if not self._arrays.of_numpy:
+            return self._arrays.floats(self._loads[self._at])
         out[...] = self._loads[self._at]
+        return out
 
-    def next(self, generators: Sequence[Generator], resting: Rows | None = None) -> Array:
+    def next(self, generators: Sequence[Generator], resting: Rows | None = None) -> Any:
         """Go to the next instant; the sensor noise there, [noise (p) | …] (…, c − k).
 
         Nothing is drawn for blades that are ``resting``: their episode is over, their generator waits for the next.
@@ -226,7 +260,7 @@ class SeededDisturbances:
         due = self._due.get(self._at)
         if due is not None:
             self._draw(due if resting is None else np.setdiff1d(due, resting), generators)
-        return self._noise[self._at]
+        return self._arrays.floats(self._noise[self._at])
 
     def state_dict(self) -> dict[str, Any]:
         """Copies of what moves; the generators are the caller's."""
@@ -279,6 +313,7 @@ def _drawn_by_column(run: Run, normals: Array) -> Array:
     return normals[run.rows].reshape(groups, blocks, -1, size).swapaxes(-2, -1)
 
 
-def merged(cases: LoadCases | None, rows: Rows, others: LoadCases) -> LoadCases:
-    """``cases`` with those of ``rows`` exchanged for ``others``."""
-    return others if cases is None or len(rows) == len(cases) else cases.replace(rows, others)
+def merged(cases: LoadCases | None, those: Those, others: LoadCases) -> LoadCases:
+    """``cases`` with those of some blades exchanged for ``others``."""
+    all_of_them = cases is None or (isinstance(those, SomeRows) and len(those.rows) == len(cases))
+    return others if all_of_them else cases.replace(those, others)  # type: ignore[union-attr]

@@ -8,13 +8,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from beamenv.arrays import Those, copied, counting, integers, namespace
 from beamenv.scenarios.drawing import whole_intervals
 from beamenv.scenarios.load_cases import NEVER
 from beamenv.scenarios.tables import Failures
-from beamenv.simulation.kernel import namespace
 from beamenv.simulation.signals.hysteresis import Hysteresis
 
 DRAWS = 6
@@ -37,16 +36,14 @@ class Faults:
     sensor_bias: Any
     """(N, p), of full scale."""
 
-    def replace(self, rows: Any, others: Faults) -> Faults:
-        """These faults with those of ``rows`` exchanged for ``others``."""
-        exchanged = {each.name: getattr(self, each.name).copy() for each in fields(self)}
-        for name, values in exchanged.items():
-            values[rows] = getattr(others, name)
-        return Faults(**exchanged)
+    def replace(self, those: Those, others: Faults) -> Faults:
+        """These faults with those of some blades exchanged for ``others``."""
+        names = [each.name for each in fields(self)]
+        return Faults(**{name: those.put(getattr(self, name), getattr(others, name)) for name in names})
 
-    def rows(self, rows: Any) -> Faults:
+    def of(self, those: Those) -> Faults:
         """The faults of some of the blades."""
-        return self.convert(lambda values: values[rows])
+        return self.convert(those.take)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Faults:
         """The same faults with each array passed through ``to_array``."""
@@ -54,36 +51,41 @@ class Faults:
 
     def state_dict(self) -> dict[str, Any]:
         """A copy of each array by its name: ``Faults.from_state_dict`` makes equal faults of them."""
-        return {each.name: getattr(self, each.name).copy() for each in fields(self)}
+        return {each.name: copied(getattr(self, each.name)) for each in fields(self)}
 
     @classmethod
     def from_state_dict(cls, state: Mapping[str, ArrayLike]) -> Faults:
         """The faults of a ``state_dict``."""
-        return cls(**{name: np.asarray(values).copy() for name, values in state.items()})
+        return cls(**{name: copied(values) for name, values in state.items()})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Onsets:
     """From which sampling instant on, a whole number of control intervals, each of N blades has its faults."""
 
-    actuators: NDArray[np.int64]
+    actuators: Any
     """(N,)"""
-    sensors: NDArray[np.int64]
+    sensors: Any
     """(N,)"""
 
-    def set_in(self, faults: Faults, elapsed: NDArray[np.int64]) -> Faults:
+    def replace(self, those: Those, others: Onsets) -> Onsets:
+        """These with those of some blades exchanged for ``others``."""
+        return Onsets(those.put(self.actuators, others.actuators), those.put(self.sensors, others.sensors))
+
+    def set_in(self, faults: Faults, elapsed: Any) -> Faults:
         """Those of the faults that the blades have after ``elapsed`` (N,) control intervals."""
+        array = namespace(elapsed)
         actuators, sensors = (self.actuators <= elapsed)[:, None], (self.sensors <= elapsed)[:, None]
         return replace(
             faults,
-            actuator_gain=np.where(actuators, faults.actuator_gain, 1.0),
-            sensor_gain=np.where(sensors, faults.sensor_gain, 1.0),
-            sensor_bias=np.where(sensors, faults.sensor_bias, 0.0),
+            actuator_gain=array.where(actuators, faults.actuator_gain, 1.0),
+            sensor_gain=array.where(sensors, faults.sensor_gain, 1.0),
+            sensor_bias=array.where(sensors, faults.sensor_bias, 0.0),
         )
 
-    def begins(self, elapsed: NDArray[np.int64]) -> bool:
+    def begins(self, elapsed: Any) -> bool:
         """Whether a blade's fault sets in at this very instant."""
-        return bool(np.any((self.actuators == elapsed) | (self.sensors == elapsed)))
+        return bool(((self.actuators == elapsed) | (self.sensors == elapsed)).any())
 
 
 class SignalMemory(NamedTuple):
@@ -97,19 +99,20 @@ class SignalMemory(NamedTuple):
     """(N, p): the last readings shown."""
 
 
-def draw_faults(failures: Failures, delay: tuple[int, int], uniforms: NDArray[np.float64], actuators: int, sensors: int) -> Faults:
-    """Faults of N blades from uniform numbers (N, ``DRAWS``)."""
-    count = len(uniforms)
-    bias = failures.bias[0] + (failures.bias[1] - failures.bias[0]) * np.abs(2.0 * uniforms[:, 5] - 1.0)
+def draw_faults(failures: Failures, delay: tuple[int, int], uniforms: Any, actuators: int, sensors: int) -> Faults:
+    """Faults of N blades from uniform numbers (N, ``DRAWS``), of NumPy or of torch, as they are."""
+    array = namespace(uniforms)
+    bias = failures.bias[0] + (failures.bias[1] - failures.bias[0]) * array.abs(2.0 * uniforms[:, 5] - 1.0)
     low, high = failures.remaining
     lost = 1.0 - low - (high - low) * (uniforms[:, 2] * actuators % 1.0)  # which one it is does not say what is left of it
     faulty = _drawn(uniforms[:, 3], failures.faulty_sensors, sensors)
     biased = (uniforms[:, 4] < failures.biased_share)[:, None]
+    sound = array.ones_like(uniforms[:, :1])
     return Faults(
-        delay=delay[0] + np.floor(uniforms[:, 1] * (delay[1] - delay[0] + 1)).astype(np.int64),
+        delay=delay[0] + integers(array.floor(uniforms[:, 1] * (delay[1] - delay[0] + 1))),
         actuator_gain=1.0 - lost[:, None] * _drawn(uniforms[:, 2], failures.dead_actuators, actuators),
-        sensor_gain=np.where(faulty & ~biased, 0.0, np.ones((count, sensors))),
-        sensor_bias=np.where(faulty & biased, (np.sign(uniforms[:, 5] - 0.5) * bias)[:, None], 0.0),
+        sensor_gain=array.where(faulty & ~biased, 0.0, sound),
+        sensor_bias=array.where(faulty & biased, (array.sign(uniforms[:, 5] - 0.5) * bias)[:, None], 0.0),
     )
 
 
@@ -118,27 +121,27 @@ def fault_draws(failures: Failures) -> int:
     return DRAWS + (ONSET_DRAWS if failures.drawn_instants else 0)
 
 
-def draw_onsets(failures: Failures, interval: float, uniforms: NDArray[np.float64]) -> Onsets:
+def draw_onsets(failures: Failures, interval: float, uniforms: Any) -> Onsets:
     """When N blades break, from uniform numbers (N, ``ONSET_DRAWS``) and the control interval in s."""
-    low, high = failures.onset
+    array, (low, high) = namespace(uniforms), failures.onset
     actuators, sensors = whole_intervals(low + (high - low) * uniforms[:, :2], interval).T
     if failures.either:
         actuator = uniforms[:, 2] < 0.5
-        actuators, sensors = np.where(actuator, actuators, NEVER), np.where(actuator, NEVER, sensors)
+        actuators, sensors = array.where(actuator, actuators, NEVER), array.where(actuator, NEVER, sensors)
     return Onsets(actuators, sensors)
 
 
-def _drawn(uniform: NDArray[np.float64], count: int, among: int) -> NDArray[np.bool_]:
+def _drawn(uniform: Any, count: int, among: int) -> Any:
     """(N, among): ``count`` neighbours, in a ring, are drawn; each is as likely as any other."""
-    first = np.floor(uniform * among).astype(np.int64)
-    return ((np.arange(among) - first[:, None]) % among) < min(count, among)
+    first = integers(namespace(uniform).floor(uniform * among))
+    return ((counting(among, uniform) - first[:, None]) % among) < min(count, among)
 
 
 def drive(faults: Faults, hysteresis: Hysteresis | None, memory: SignalMemory, asked: Any) -> tuple[Any, SignalMemory]:
     """Voltages (N, m) that act on the blade, from those asked for, and the memory after them."""
     array = namespace(asked)
     commands = array.concatenate([asked[:, None], memory.commands[:, :-1]], axis=1)
-    acting = commands[array.arange(len(asked)), faults.delay] if commands.shape[1] > 1 else asked
+    acting = commands[counting(len(asked), asked), faults.delay] if commands.shape[1] > 1 else asked
     plays = memory.plays
     if hysteresis is not None:
         acting, plays = hysteresis.step(acting, plays)

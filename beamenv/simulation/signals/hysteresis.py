@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.simulation.kernel import namespace
+from beamenv.arrays import namespace
 
 PLAYS = 8
 _HALVINGS = 40

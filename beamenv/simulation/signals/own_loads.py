@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
+from beamenv.arrays import namespace
 from beamenv.configuration import clause
 from beamenv.scenarios.drawing import whole_intervals
 from beamenv.scenarios.own_loads import Load
@@ -60,11 +61,17 @@ class OwnLoads:
             for row in rows.tolist():
                 noises.pop(row, None)
 
-    def add(self, out: Array) -> None:
-        """Add what acts in this interval to disturbances (…, k)."""
-        for k, values in enumerate(self.values.T):
-            place = out[..., self._first + k]
-            place += values.reshape(place.shape)
+    def added(self, loads: Any) -> Any:
+        """Disturbances (…, k) with what acts in this interval: NumPy's in place."""
+        if isinstance(loads, np.ndarray):
+            for k, values in enumerate(self.values.T):
+                place = loads[..., self._first + k]
+                place += values.reshape(place.shape)
+            return loads
+        own = namespace(loads).as_tensor(self.values, dtype=loads.dtype, device=loads.device)
+        last = self._first + own.shape[-1]
+        parts = loads[..., : self._first], loads[..., self._first : last] + own, loads[..., last:]
+        return namespace(loads).concatenate(parts, -1)
 
     @property
     def values(self) -> Array:

@@ -1,0 +1,159 @@
+"""Pieces handed out to a cluster of Ray's, here of two processors: the same to the last bit, whatever happens to workers."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from tests.train.benchmarked import SMALL
+from tests.train.pieces import Mortal, halved, kill
+from train.benchmark import benchmark
+from train.benchmark.showing.report import as_json
+from train.cli.app import app
+from train.shared.cluster import connected
+from train.workers import arrival
+from train.workers.node import carried_out, opened, terms
+from train.workers.parcel import packed, unpacked
+from train.workers.workers import Workers
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def ray():
+    """Started once: it takes some seconds. What is asked for as "local" is this one."""
+    ray = pytest.importorskip("ray", reason="Ray is not installed")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(ROOT))
+        with connected("local", 2):
+            yield ray
+
+
+def files(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_cells_measured_on_a_cluster_are_those_of_one_process_to_the_last_bit(ray, tmp_path):
+    alone = benchmark(folder=tmp_path / "alone", **SMALL)
+    there = benchmark(folder=tmp_path / "there", cluster="local", **SMALL)
+    assert as_json(there) == as_json(alone)
+    cells = files(tmp_path / "alone" / "cells")
+    assert files(tmp_path / "there" / "cells") == cells and len(cells) == 6
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
+@pytest.mark.parametrize("cluster", ["local", pytest.param(None, marks=pytest.mark.slow)])
+def test_a_worker_that_is_killed_costs_its_own_piece(cluster, ray, tmp_path):
+    names, small = ("first", "second", "third", "fourth"), {**SMALL, "scenarios": ["nominal"]}
+    unkilled = benchmark({name: Mortal(tmp_path, name) for name in names}, **small)
+    begun = {name: len((tmp_path / f"{name}.count").read_text()) for name in names}
+    for name in names:
+        (tmp_path / f"{name}.count").unlink()
+    (tmp_path / "second.deadly").touch()
+    killed = benchmark({name: Mortal(tmp_path, name) for name in names}, jobs=2, cluster=cluster, **small)
+    assert not (tmp_path / "second.deadly").exists()
+    assert as_json(killed) == as_json(unkilled) and not killed.sentences
+    again = {name: len((tmp_path / f"{name}.count").read_text()) for name in names}
+    assert again["second"] > begun["second"]
+    if cluster is not None:
+        assert {name for name in names if again[name] != begun[name]} == {"second"}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
+def test_a_piece_that_kills_whoever_takes_it_is_given_up(ray):
+    with pytest.raises(ChildProcessError, match="a worker process died: what was finished is kept, and the same command resumes"):
+        Workers(2, "local").do(kill, [1], lambda piece, result: None)
+
+
+def test_what_a_piece_raises_is_raised_as_it_was(ray):
+    with pytest.raises(ValueError, match=r"^number = 3\.0 is not allowed\.$"):
+        Workers(2, "local").do(halved, [3.0], lambda piece, result: None)
+
+
+@pytest.mark.parametrize("workers", [Workers(), Workers(2, "local")], ids=["here", "cluster"])
+def test_a_piece_that_follows_from_another_is_done_too(workers, ray):
+    found = {}
+
+    def finished(piece, result):
+        found[piece] = result
+        return result if result >= 1.0 else None
+
+    workers.do(halved, [8.0, 5.0], finished)
+    assert found == {8.0: 4.0, 4.0: 2.0, 2.0: 1.0, 1.0: 0.5, 5.0: 2.5, 2.5: 1.25, 1.25: 0.625}
+
+
+def test_a_table_of_the_thesis_made_on_a_cluster_is_the_one_made_here(ray, tmp_path):
+    for name, options in {"here": ["--jobs", "1"], "there": ["--cluster", "local"]}.items():
+        result = CliRunner().invoke(app, ["reproduce", "table-3.4", "figure-3.3", "--output", str(tmp_path / name), *options])
+        assert result.exit_code == 0, result.output
+    here, there = files(tmp_path / "here"), files(tmp_path / "there")
+    records = [
+        {**json.loads(each.pop(f"{name}.json")), "seconds": 0.0} for each in (here, there) for name in ("table-3.4", "figure-3.3")
+    ]
+    assert records[:2] == records[2:]
+    assert there == here and {"table-3.4.csv", "table-3.4.png", "report.html"} <= set(here)
+
+
+def test_files_go_where_there_are_none_of_them(tmp_path):
+    plant, agent = tmp_path / "plant.npz", tmp_path / "agent" / "agent.json"
+    agent.parent.mkdir()
+    plant.write_text("modes")
+    agent.write_text("weights")
+    content = {"truth": str(plant), "folder": agent.parent, "name": "plant.npz"}
+    parcel = packed(content, [plant, agent])
+    assert unpacked(parcel) == content  # where they are, they stay
+    plant.write_text("others")
+    agent.unlink()
+    found = unpacked(parcel)
+    assert Path(found["truth"]).read_text() == "modes" and found["truth"] != str(plant)
+    assert (found["folder"] / "agent.json").read_text() == "weights"
+    assert found["name"] == "plant.npz"
+    assert plant.read_text() == "others"
+
+
+def test_another_version_on_a_machine_is_told_in_one_sentence():
+    parcel = packed((halved, 4.0))
+    assert opened(carried_out(terms(), parcel)) == 2.0
+    with pytest.raises(ValueError, match=r"^cluster has a machine, '.+', with numpy \S+ where .* has 1\.0: install the same"):
+        opened(carried_out({**terms(), "numpy": "1.0"}, parcel))
+    with pytest.raises(ValueError, match=r"with beamenv \S+ of sources \w{16} where .* has 0\.1\.0 of sources 00"):
+        opened(carried_out({**terms(), "beamenv": "0.1.0 of sources 00"}, parcel))
+
+
+def test_a_machine_without_the_package_is_told_in_one_sentence(monkeypatch):
+    monkeypatch.setitem(sys.modules, "beamenv.train.workers.node", None)
+    with pytest.raises(ValueError, match=r"^cluster has a machine, '.+', that lacks this version of beamenv \(.*\): install"):
+        opened(arrival.arrived({}, b"", arrival.NOT_INSTALLED))
+
+
+def test_the_first_function_needs_nothing_of_ours(ray):
+    code = "import pickle, sys; sys.modules['beamenv'] = None; arrived = pickle.loads(sys.stdin.buffer.read()); "
+    code += "print(pickle.loads(pickle.loads(arrived({}, b'', '{error}'))[0]))"
+    ray.cloudpickle.register_pickle_by_value(arrival)
+    run = subprocess.run([sys.executable, "-I", "-c", code], input=ray.cloudpickle.dumps(arrival.arrived), capture_output=True)
+    assert run.stdout.startswith(b"(False, ValueError(") and b"beamenv" in run.stdout, run.stderr
+
+
+@pytest.mark.parametrize("command", [["benchmark", "--folder", "made"], ["reproduce", "--output", "made"]])
+@pytest.mark.parametrize("address", ["nowhere", "127.0.0.1:1", "ray://127.0.0.1:1"])
+def test_a_cluster_that_does_not_answer_is_told_before_anything_is_written(command, address, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, [*command, "--cluster", address])
+    assert result.exit_code == 2
+    assert result.output.startswith("beamenv: cluster ") and result.output.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_ray_the_extra_is_named(tmp_path):
+    code = "import sys; sys.modules['ray'] = None; from train.cli.command import main; main()"
+    words = ["reproduce", "table-3.4", "--output", str(tmp_path), "--cluster", "local"]
+    run = subprocess.run([sys.executable, "-c", code, *words], cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 1
+    assert (
+        run.stderr.splitlines()[-1]
+        == "beamenv: the Python package 'ray' is missing; install it with pip install 'beamenv[cluster]'."
+    )
