@@ -72,7 +72,7 @@ class ForcedBlade:
         """Times (K,) in s and tip displacement (K,) in m after ``load`` N/m is applied to the blade at rest: exact."""
         dynamics, force, tip = self._dynamics()
         transition = expm(dynamics * interval)
-        final = -np.linalg.solve(dynamics, load * force)
+        final = -np.asarray(np.linalg.solve(dynamics, load * force), dtype=np.float64)
         times = np.linspace(0.0, duration, round(duration / interval) + 1)
         return times, (free_motion(transition, -final, len(times)) + final) @ tip
 
