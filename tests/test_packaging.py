@@ -170,7 +170,7 @@ ROOMS_OF_TRAIN = (
     {"workers"},
     {"controllers", "figures", "tools"},
     {"export", "identification", "learning", "page", "placement", "reproduce"},
-    {"benchmark", "comparison", "explore"},
+    {"benchmark", "comparison", "explore", "tuning"},
     {"cli"},
 )
 """Floor by floor: a room imports rooms below it."""

@@ -22,6 +22,7 @@ for _room in (
     "comparison.compare",
     "explore.server",
     "learning.job",
+    "tuning.tuning",
     "benchmark.campaign",
     "benchmark.showing.heat_map",
     "benchmark.showing.page",
@@ -46,7 +47,21 @@ WORD = Kind("word", lambda value: value, st.one_of(st.sampled_from(WORDS), st.te
 
 
 OTHER_NAMES = (
-    *("path", "file", "controller", "agent", "folder", "kind", "model", "name", "studies", "teacher", "minutes", "updates"),
+    *(
+        "path",
+        "file",
+        "controller",
+        "agent",
+        "recipe",
+        "folder",
+        "kind",
+        "model",
+        "name",
+        "studies",
+        "teacher",
+        "minutes",
+        "updates",
+    ),
     *("ption", "argument", "command", "json", "held_back", "drive_limit"),
 )
 """What sentences call arguments that have no option's name."""
@@ -113,6 +128,8 @@ COMMANDS = {
             "--recipe": None,
             "--from": None,
             "--device": "cpu",
+            "--jobs": "1",
+            "--cluster": None,
             "--preset": "thesis",
             "--speed": "20",
             "--blade": "blade.toml",
@@ -120,6 +137,25 @@ COMMANDS = {
         },
         ("--resume", "--overwrite"),
         ("train.learning.job.follow",),
+    ),
+    "tune": (
+        ("gradient",),
+        {
+            "--scenario": "white",
+            "--trials": "3",
+            "--updates": "4",
+            "--seed": "0",
+            "--space": None,
+            "--folder": "made",
+            "--cluster": "local",
+            "--jobs": "1",
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--plant": None,
+        },
+        ("--json", "--overwrite"),
+        ("train.tuning.tuning._run",),
     ),
     "benchmark": (
         (),

@@ -19,6 +19,7 @@ from tests.fuzz.meaning import (
     NOTHING,
     NUMBER,
     PATH,
+    RANGE,
     TEXT,
     Kind,
     instance,
@@ -35,6 +36,7 @@ from train.controllers.shipped import find_shipped, shipped
 from train.learning.agents import AGENTS
 from train.learning.recipe import _recipe, load_recipe, named_recipe
 from train.learning.session import Budget
+from train.tuning.space import _space
 
 SETTINGS = {name: type(agent.settings()) for name, agent in AGENTS.items()}
 
@@ -79,6 +81,18 @@ def recipe_door(name):
     )
 
 
+def space_door(name):
+    """What is tried of one setting, beside another that is as it ships."""
+    recipe = named_recipe(name)
+
+    def call(**given):
+        return _space({"agent": recipe.agent, "settings": {"learning_rate": given}}, "mine.toml", recipe)
+
+    kinds = {"between": maybe(RANGE), "times": maybe(RANGE), "choices": ANYTHING}
+    valid = {"times": [0.5, 2.0]}
+    return Door(f"space of {name}", call, kinds, lambda: dict(valid), lambda made: made.tried["learning_rate"], ("space",))
+
+
 TEXTS = Kind(
     "texts",
     lambda value: (
@@ -105,6 +119,7 @@ DOORS = [
         }.items()
     ),
     *(recipe_door(name) for name in ("gradient", "ppo", "residual", "sac")),
+    *(space_door(name) for name in ("gradient", "sac")),
     Door(
         "Budget",
         lambda **given: Budget(**given),

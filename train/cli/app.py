@@ -33,6 +33,7 @@ from train.cli.schema import schema
 from train.cli.section import section
 from train.cli.speed import speed
 from train.cli.train import train
+from train.cli.tune import tune
 from train.cli.usage import OneSentence
 
 app = typer.Typer(
@@ -47,6 +48,7 @@ app.command()(identify)
 app.command()(place)
 app.command()(export)
 app.command()(train)
+app.command()(tune)
 app.command()(benchmark)
 app.command()(schema)
 app.command()(speed)
