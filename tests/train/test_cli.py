@@ -201,7 +201,7 @@ def test_an_interrupted_training_says_the_whole_command_that_resumes_it(kept, tm
             (folder / "checkpoint.pt").touch()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("train.learning.job.run", interrupted)
+    monkeypatch.setattr("train.learning.several.run", interrupted)
     monkeypatch.chdir(tmp_path)
     told = run("train", "ppo", "--seed", "3", "--overwrite", "--folder", "my ppo", "--preset", "sound-blade").stderr
     again = "with `beamenv train ppo --seed 3 --folder 'my ppo' --resume --preset sound-blade` it resumes"

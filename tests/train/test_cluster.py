@@ -10,10 +10,13 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.train.benchmarked import SMALL
-from tests.train.pieces import Mortal, halved, kill
+from tests.train.brief import GRADIENT, assert_same, ignore, job, weights
+from tests.train.pieces import Mortal, halved, kill, killed_once
 from train.benchmark import benchmark
 from train.benchmark.showing.report import as_json
 from train.cli.app import app
+from train.learning.job import run
+from train.learning.several import train_all
 from train.shared.cluster import connected
 from train.workers import arrival
 from train.workers.node import carried_out, opened, terms
@@ -157,3 +160,17 @@ def test_without_ray_the_extra_is_named(tmp_path):
         run.stderr.splitlines()[-1]
         == "beamenv: the Python package 'ray' is missing; install it with pip install 'beamenv[cluster]'."
     )
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
+def test_trainings_on_a_cluster_are_those_made_one_by_one_though_a_worker_is_killed(ray, tmp_path, monkeypatch):
+    monkeypatch.setattr("train.learning.several.trained_on", killed_once)
+    trainings = {tmp_path / str(seed): job(GRADIENT, seed=seed) for seed in (0, 1)}
+    (tmp_path / "deadly").touch()
+    heard = []
+    train_all(trainings, Workers(2, "local"), lambda home, progress: heard.append((home.name, progress.updates)), stretch=0.0)
+    assert not (tmp_path / "deadly").exists()
+    assert sorted(heard) == [(str(seed), update) for seed in (0, 1) for update in range(1, 7)]
+    for home, training in trainings.items():
+        run(training, tmp_path / "alone" / home.name, ignore)
+        assert_same(weights(home), weights(tmp_path / "alone" / home.name))

@@ -29,10 +29,12 @@ from train.cli.options import (
     working,
 )
 from train.cli.place import place
+from train.cli.record import record
 from train.cli.schema import schema
 from train.cli.section import section
 from train.cli.speed import speed
 from train.cli.train import train
+from train.cli.tune import tune
 from train.cli.usage import OneSentence
 
 app = typer.Typer(
@@ -47,6 +49,8 @@ app.command()(identify)
 app.command()(place)
 app.command()(export)
 app.command()(train)
+app.command()(tune)
+app.command()(record)
 app.command()(benchmark)
 app.command()(schema)
 app.command()(speed)

@@ -101,12 +101,13 @@ def same_command(context: typer.Context, **changed: Any) -> str:
     words = ["beamenv", str(context.info_name)]
     for parameter in context.command.params:
         value = changed.get(str(parameter.name), context.params.get(str(parameter.name)))
+        several = list(value) if isinstance(value, (list, tuple)) else [value]
         if parameter.param_type_name == "argument":
-            words += [str(value)]
+            words += map(str, several)
         elif value is True:
             words += parameter.opts[:1]
         elif value not in (None, False, parameter.default):
-            words += [parameter.opts[0], str(value)]
+            words += [word for each in several for word in (parameter.opts[0], str(each))]
     return shlex.join(words)
 
 

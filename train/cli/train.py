@@ -3,29 +3,55 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 
 from beamenv.configuration import FileName, Number, checked
-from train.cli.options import BladeOption, PlantOption, PresetOption, SpeedOption, environment_arguments, one_sentence, same_command
+from train.cli.options import (
+    BladeOption,
+    ClusterOption,
+    JobsOption,
+    PlantOption,
+    PresetOption,
+    SpeedOption,
+    environment_arguments,
+    one_sentence,
+    results_alone,
+    same_command,
+    working,
+)
 from train.learning.recipes import NAMES
 
 if TYPE_CHECKING:
+    from train.learning.job import Job
+    from train.learning.recipe import Recipe
     from train.learning.session import Budget
 
 
 def train(
     context: typer.Context,
-    agent: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe.")],
-    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all but those kept for judging.")] = "nominal",
+    agent: Annotated[list[str], typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe; several of them.")],
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A name, a .toml file, or generalist: all but those kept for judging; repeat for more. nominal if left out."
+        ),
+    ] = None,
     minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
     updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
-    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the training.")] = 0,
+    seed: Annotated[
+        list[int] | None, typer.Option(min=0, max=2**63 - 1, help="Of the training; repeat for more. 0 if left out.")
+    ] = None,
     folder: Annotated[
-        Path | None, typer.Option(help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out.")
+        Path | None,
+        typer.Option(
+            help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out. Of several the folder of such folders."
+        ),
     ] = None,
     recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
     start: Annotated[
@@ -40,6 +66,8 @@ def train(
         str | None,
         typer.Option(help="cpu or cuda, of what is trained through the plant; the recipe's if left out."),
     ] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -47,36 +75,83 @@ def train(
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
-    The folder gets the policy, its learning curve, checkpoints and TensorBoard's files.
+    The folder gets the policy, its learning curve, checkpoints and TensorBoard's files. Of several agents, scenarios and seeds each
+    with each is a training, by several processes or a cluster; --resume then begins those that have not begun.
     """
-    home = folder or Path("results/agents") / f"{agent}-{Path(scenario).stem}-{seed}"
-    with one_sentence(lambda: _resumed_by(context, home)):
+    homes: dict[Path, tuple[str, str, int]] = {}
+    with one_sentence(lambda: _resumed_by(context, list(homes))):
         from train.cli.progress import Progressbar
-        from train.controllers.policy_files import read_about
-        from train.learning.job import Job, run
-        from train.learning.recipe import load_recipe, named_recipe
+        from train.learning.several import is_finished, train_all
 
-        checked("agent", agent, FileName())
-        chosen = named_recipe(agent) if recipe is None else load_recipe(recipe)
-        chosen = chosen if device is None else chosen.on(device)
-        budget = _budget(minutes, updates, chosen.updates)
+        recipes = {each: _recipe(each, recipe, device, len(agent)) for each in agent}
+        budgets = {each: _budget(minutes, updates, recipes[each].updates) for each in agent}
         environment = environment_arguments(preset, speed, blade, plant)
-        job = Job(agent, chosen, scenario, seed, budget, environment, start)
-        total, unit = (budget.updates, "updates") if math.isinf(budget.seconds) else (budget.seconds, "s")
-        with Progressbar({agent: total}, unit) as bar:
-            places = run(job, home, lambda progress: bar.training(agent, total, progress), resume, overwrite)
-        Console().print(f"{agent} saved in {', '.join(map(str, places))}", soft_wrap=True, markup=False)
-        if not read_about(places[0])["finished"]:
+        homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
+        trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
+        names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
+        totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
+        with Progressbar(totals, "updates" if minutes is None else "s") as bar, results_alone(cluster):
+            places = train_all(
+                trainings,
+                working(jobs, cluster),
+                lambda home, progress: bar.training(names[home], totals[names[home]], progress),
+                resume,
+                overwrite,
+            )
+        for home, made in places.items():
+            Console().print(f"{names[home]} saved in {', '.join(map(str, made))}", soft_wrap=True, markup=False)
+        if not all(is_finished(home) for home in homes):
             raise KeyboardInterrupt
 
 
-def _resumed_by(context: typer.Context, folder: Path) -> str:
+def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> dict[Path, tuple[str, str, int]]:
+    """The folder of each training, an agent, scenario and seed; ``ValueError`` where two would have one."""
+    parent, named = Path("results/agents") if folder is None else folder, dict[Path, tuple[str, str, int]]()
+    for agent, scenario, seed in trainings:
+        own = folder is None or len(trainings) > 1
+        home = parent / f"{agent}-{Path(scenario).stem}-{seed}" if own else parent
+        if home in named:
+            raise ValueError(f"agent, scenario and seed lead twice to the folder {str(home)!r}: name each once.")
+        named[home] = agent, scenario, seed
+    return named
+
+
+def _recipe(agent: str, own: Path | None, device: str | None, agents: int) -> Recipe:
+    """By its name, or of the user's own file."""
+    from train.learning.recipe import load_recipe, named_recipe
+
+    checked("agent", agent, FileName())
+    if own is not None and agents > 1:
+        raise ValueError(f"recipe = {str(own)!r} is of one agent: name one alone.")
+    chosen = named_recipe(agent) if own is None else load_recipe(own)
+    return chosen if device is None else chosen.on(device)
+
+
+def _job(
+    training: tuple[str, str, int],
+    recipes: Mapping[str, Recipe],
+    budgets: Mapping[str, Budget],
+    environment: Mapping[str, Any],
+    start: Path | None,
+) -> Job:
+    from train.learning.job import Job
+
+    agent, scenario, seed = training
+    return Job(agent, recipes[agent], scenario, seed, budgets[agent], environment, start)
+
+
+def _total(budget: Budget) -> float:
+    return budget.updates if math.isinf(budget.seconds) else budget.seconds
+
+
+def _resumed_by(context: typer.Context, homes: Sequence[Path]) -> str:
     """What is said of an interrupted training."""
     from train.learning.checkpoint import NAME
 
-    if not (folder / NAME).is_file():
+    if not any((home / NAME).is_file() for home in homes):
         return "it was too early for a checkpoint, so nothing is kept"
-    return f"with `{same_command(context, folder=folder, overwrite=False, resume=True)}` it resumes"
+    changed = {"folder": homes[0]} if len(homes) == 1 else {}
+    return f"with `{same_command(context, **changed, overwrite=False, resume=True)}` it resumes"
 
 
 def _budget(minutes: float | None, updates: int | None, otherwise: int) -> Budget:

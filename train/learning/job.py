@@ -14,7 +14,7 @@ import numpy as np
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.scenarios.named import BENCHMARK, OPEN, UNSEEN
 from beamenv.scenarios.of_models import fits_models
-from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.scenarios.scenario import SCENARIOS, Scenario
 from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
@@ -62,10 +62,14 @@ class Job:
     """Keyword arguments of the environment but the scenario, as JSON can hold them."""
     teacher: Path | None = None
     """Folder of a trained policy to start from; of several runs in it, the one that ended its training at the least cost."""
+    content: Scenario | None = None
+    """What the scenario's file says, for where it is not."""
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario; of a model of one's own a generalist has those that can be of it."""
         scenarios: tuple[Any, ...] = (self.scenario,)
+        if self.content is not None:
+            return {str(self.scenario): resolve_task(**{**self.environment, "scenario": self.content})}
         if self.scenario == GENERALIST:
             of_model = self.environment.get("plant") is not None
             scenarios = tuple(each for each in NAMES if not of_model or fits_models(SCENARIOS[each]))
@@ -83,6 +87,16 @@ class Job:
             "budget": [str(self.budget.updates), str(self.budget.seconds)],
             "teacher": weights,
         }
+
+    def told(self, tasks: Mapping[str, Task] | None = None) -> str:
+        """The identity with the scenarios as they are, as a checkpoint holds it; ``ValueError`` for what no task can be made of."""
+        tasks = self.tasks() if tasks is None else tasks
+        return json.dumps({**self.identity(), "scenarios": {name: task.scenario.to_dict() for name, task in tasks.items()}})
+
+    def check_resumed(self, folder: Path, before: Mapping[str, Any], tasks: Mapping[str, Task] | None = None) -> None:
+        """``ValueError`` if the checkpoint in a folder is another training's."""
+        if before["identity"] != self.told(tasks):
+            raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the same arguments.")
 
 
 def _weights(teacher: Path) -> Path:
@@ -105,11 +119,11 @@ def run(
     to be resumed is another one, and if another process is at work in the folder.
     """
     with alone_in(folder), ending_as_interrupted():
-        return _run(job, folder, report, _begun(folder, resume, overwrite), keeps_unfinished)
+        return _run(job, folder, report, begun(folder, resume, overwrite), keeps_unfinished)
 
 
-def _begun(folder: Path, resume: bool, overwrite: bool) -> Mapping[str, Any] | None:
-    """The checkpoint to resume from, None to begin."""
+def begun(folder: Path, resume: bool, overwrite: bool) -> Mapping[str, Any] | None:
+    """The checkpoint to resume from, None to begin; ``ValueError`` if the folder holds what is neither to be."""
     if resume and overwrite:
         raise ValueError("resume and overwrite must not both be given.")
     if resume:
@@ -130,14 +144,13 @@ def held_in(folder: Path) -> list[str]:
 def _run(job: Job, folder: Path, report: Report, before: Mapping[str, Any] | None, keeps_unfinished: bool) -> list[Path]:
     """What ``run`` does in a folder of its own, from a checkpoint on if there is one."""
     identity, tasks = job.identity(), job.tasks()
-    told = json.dumps({**identity, "scenarios": {name: task.scenario.to_dict() for name, task in tasks.items()}})
-    if before is not None and before["identity"] != told:
-        raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the same arguments.")
+    if before is not None:
+        job.check_resumed(folder, before, tasks)
     ending = None
     with one_torch_thread():
         start = AGENTS[job.recipe.agent].training
         training = start(list(tasks.values()), job.recipe.settings, job.seed, teacher_for(job.teacher, tasks))
-        journal = Journal(folder, job.budget, training, told, report)
+        journal = Journal(folder, job.budget, training, job.told(tasks), report)
         try:
             elapsed = journal.begin() if before is None else journal.resume(before)
             policies = follow(training, job.budget, journal.note, journal.keep, elapsed)

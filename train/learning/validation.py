@@ -23,26 +23,27 @@ HIGHEST = 100.0
 
 
 class Validation:
-    """The same episodes for every policy, of each of some tasks on the plants that choose."""
+    """The same episodes for every policy, of each of some tasks on the plants that choose; their seeds begin with ``first``."""
 
-    def __init__(self, tasks: Sequence[Task]) -> None:
+    def __init__(self, tasks: Sequence[Task], first: int = VALIDATION) -> None:
+        self._first = first
         self._tasks = [task.on_other_plants(on_validation_bank(task.scenario)) for task in tasks]
 
     def cost(self, policy: Policy) -> float:
         """J relative to no control, the mean over the tasks."""
-        costs = [_costs(task, policy) for task in self._tasks]
+        costs = [_costs(task, policy, self._first) for task in self._tasks]
         relative = [np.minimum(own / alone.mean(), HIGHEST).mean() for own, alone in zip(costs, self._alone, strict=True)]
         return float(np.mean(relative))
 
     @cached_property
     def _alone(self) -> list[NDArray[np.float64]]:
-        return [_costs(task, None) for task in self._tasks]
+        return [_costs(task, None, self._first) for task in self._tasks]
 
 
-def _costs(task: Task, policy: Policy | None) -> NDArray[np.float64]:
+def _costs(task: Task, policy: Policy | None, first: int) -> NDArray[np.float64]:
     """(EPISODES,) J in J s; without control for None."""
     blades = Blades(task.bank, task.scenario, EPISODES)
-    generators = [np.random.default_rng(VALIDATION + k) for k in range(EPISODES)]
+    generators = [np.random.default_rng(first + k) for k in range(EPISODES)]
     readings, memory = blades.begin(generators).observation, None
     action: Any
     action, total = np.zeros((EPISODES, task.plant.B.shape[1])), np.zeros(EPISODES)

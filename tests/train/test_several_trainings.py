@@ -1,0 +1,159 @@
+"""Several trainings: each in its folder, and none the worse for the others."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from tests.train.brief import GRADIENT, PPO, assert_same, ignore, interrupted_after, job, weights
+from train.cli.app import app
+from train.cli.train import homes_of
+from train.learning.checkpoint import NAME
+from train.learning.job import run, teacher_for
+from train.learning.several import Stretch, files, held, is_finished, train_all, trained_on, written
+from train.workers.parcel import packed, unpacked
+from train.workers.workers import Workers
+
+BRIEF = 'agent = "gradient"\ntitle = "Brief"\nupdates = 2\n[settings]\nepisodes = 8\nwindow = 20\n'
+
+
+def silent(home, progress):
+    pass
+
+
+def about(folder):
+    """What an agent tells but how long it took."""
+    return json.loads((folder / "agent.json").read_text()) | {"seconds": 0.0}
+
+
+def trained_in_stretches(training, home, seconds):
+    """As workers do it, one stretch after the other; how many there were."""
+    stretch, count = Stretch(held(training), home, None, seconds), 0
+    while True:
+        made, count = trained_on(unpacked(packed(stretch, files(stretch.job)))), count + 1
+        written(home, made.files, begins=stretch.checkpoint is None)
+        if made.finished:
+            return count
+        stretch = replace(stretch, checkpoint=made.files[NAME])
+
+
+@pytest.mark.parametrize("recipe", [GRADIENT, PPO], ids=["gradient", "ppo"])
+def test_a_training_in_stretches_of_one_update_is_the_whole_one(recipe, tmp_path):
+    run(job(recipe), tmp_path / "whole", ignore)
+    assert trained_in_stretches(job(recipe), tmp_path / "parts", 0.0) == 6
+    assert_same(weights(tmp_path / "whole"), weights(tmp_path / "parts"))
+    assert about(tmp_path / "whole") == about(tmp_path / "parts")
+
+
+def test_what_a_training_reads_goes_with_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lost.toml").write_text("[plants]\nbank = 2\ndamping_ratio = [0.003, 0.02]\n")
+    teacher = tmp_path / "teacher"
+    scenario = "lost.toml"
+    run(job(GRADIENT, scenario, updates=1), teacher, ignore)
+    training = replace(job(PPO, scenario), teacher=teacher)
+    told, taught = training.told(), weights(teacher)
+    parcel = packed(held(training), files(held(training)))
+    for name in ("lost.toml", "teacher/weights.npz", "teacher/agent.json"):
+        (tmp_path / name).unlink()
+    there = unpacked(parcel)
+    assert there.told() == told
+    assert_same(teacher_for(there.teacher, there.tasks()).weights, taught)
+
+
+def test_several_are_resumed_each_from_where_it_is(tmp_path):
+    trainings = {tmp_path / str(seed): job(GRADIENT, seed=seed) for seed in range(3)}
+    for home, training in trainings.items():
+        run(training, tmp_path / "alone" / home.name, ignore)
+    run(trainings[tmp_path / "0"], tmp_path / "0", ignore)
+    run(trainings[tmp_path / "1"], tmp_path / "1", interrupted_after(3))
+    touched = (tmp_path / "0" / "agent.json").stat().st_mtime_ns
+    with pytest.raises(ValueError, match="holds a training already: resume or overwrite it"):
+        train_all(trainings, Workers(), silent)
+    places = train_all(trainings, Workers(), silent, resume=True)
+    assert places == {home: [home] for home in trainings}
+    assert (tmp_path / "0" / "agent.json").stat().st_mtime_ns == touched
+    for home in trainings:
+        assert is_finished(home)
+        assert_same(weights(tmp_path / "alone" / home.name), weights(home))
+
+
+def test_an_interruption_ends_all_of_them_and_keeps_what_is_learnt(tmp_path):
+    trainings = {tmp_path / str(seed): job(GRADIENT, seed=seed) for seed in range(3)}
+
+    def told(home, progress):
+        interrupted_after(2)(progress) if home.name == "1" else None
+
+    assert list(train_all(trainings, Workers(), told)) == [tmp_path / "0", tmp_path / "1"]
+    assert [is_finished(home) for home in trainings] == [True, False, False]
+    assert (tmp_path / "1" / NAME).is_file() and not (tmp_path / "2").exists()
+
+
+def command(*words):
+    return CliRunner().invoke(app, ["train", *words])
+
+
+def test_each_agent_scenario_and_seed_has_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "brief.toml").write_text(BRIEF)
+    words = (
+        "mine",
+        "--recipe",
+        "brief.toml",
+        "--scenario",
+        "white",
+        "--scenario",
+        "pulse",
+        "--seed",
+        "3",
+        "--seed",
+        "4",
+        "--jobs",
+        "1",
+    )
+    result = command(*words)
+    assert result.exit_code == 0, result.output
+    names = {f"mine-{scenario}-{seed}" for scenario in ("white", "pulse") for seed in (3, 4)}
+    assert {each.name for each in (tmp_path / "results" / "agents").iterdir()} == names
+    assert {name for name in names if f"{name} saved in results/agents/{name}" in result.output} == names
+    assert command(*words[:3], "--scenario", "pulse", "--seed", "4", "--folder", "alone").exit_code == 0
+    assert_same(weights(tmp_path / "alone"), weights(tmp_path / "results/agents/mine-pulse-4"))
+    assert command(*words, "--resume").exit_code == 0
+    assert "holds a training already" in command(*words).stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("ppo", "--seed", "1", "--seed", "1"), "lead twice to the folder 'results/agents/ppo-nominal-1'"),
+        (("ppo", "sac", "--recipe", "brief.toml"), "recipe = 'brief.toml' is of one agent: name one alone"),
+        (("ppo", "dreamer"), "dreamer"),
+        (("ppo", "--seed", "0", "--seed", "-1"), "'--seed'"),
+        (("ppo", "--cluster", "nowhere"), "cluster is 'nowhere', but must be local"),
+    ],
+)
+def test_what_no_training_can_be_made_of_is_refused_before_any_begins(words, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = command(*words)
+    assert result.exit_code == 2 and said in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_of_one_training_the_folder_is_its_own_of_several_it_holds_theirs(tmp_path):
+    one, other = ("ppo", "nominal", 0), ("ppo", "a/gust.toml", 1)
+    assert list(homes_of([one], tmp_path)) == [tmp_path]
+    assert list(homes_of([one, other], tmp_path)) == [tmp_path / "ppo-nominal-0", tmp_path / "ppo-gust-1"]
+
+
+def test_an_interrupted_command_of_several_tells_the_one_that_resumes_it(tmp_path, monkeypatch):
+    def interrupted(jobs, *rest):
+        home = next(iter(jobs))
+        home.mkdir(parents=True)
+        (home / NAME).touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("train.learning.several.train_all", interrupted)
+    monkeypatch.chdir(tmp_path)
+    told = command("ppo", "sac", "--seed", "3", "--seed", "4", "--overwrite").stderr
+    assert told == "beamenv: interrupted: with `beamenv train ppo sac --seed 3 --seed 4 --resume` it resumes.\n"

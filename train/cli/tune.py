@@ -1,0 +1,153 @@
+"""The command ``beamenv tune``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from beamenv.configuration import Count, FileName, checked
+from train.cli.options import (
+    RESUMES,
+    BladeOption,
+    ClusterOption,
+    JsonOption,
+    PlantOption,
+    PresetOption,
+    SpeedOption,
+    environment_arguments,
+    one_sentence,
+    print_json,
+    print_table,
+)
+from train.learning.recipes import NAMES
+
+if TYPE_CHECKING:
+    from train.tuning.records import Record
+    from train.tuning.tuning import Tuned
+
+
+def tune(
+    recipe: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or one of your own, a TOML file.")],
+    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all but those kept for judging.")] = "nominal",
+    trials: Annotated[int, typer.Option(min=2, help="How many: the recipe as it is, and others drawn.")] = 16,
+    updates: Annotated[int | None, typer.Option(help="That each trial may have; the recipe's if left out.")] = None,
+    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of every training, and of what is drawn.")] = 0,
+    space: Annotated[
+        Path | None, typer.Option(help="What is tried, a TOML file; what ships for the recipe's trainer if left out.")
+    ] = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Where it is written; results/tuning/RECIPE-SCENARIO-SEED if left out.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace another tuning that the folder holds.")] = False,
+    cluster: ClusterOption = "local",
+    jobs: Annotated[int | None, typer.Option(min=1, help="Trials side by side; as many as there are cores if left out.")] = None,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    plant: PlantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Search a recipe's settings on validation seeds, and write the best recipe for `beamenv train --recipe`.
+
+    Trials have the same budget of updates; those that are behind at a sixteenth or a quarter of it are stopped (ASHA, by Ray Tune).
+    An interrupted search resumes from what its folder holds; the same command with more --trials goes on from there.
+    """
+    name = recipe if recipe in NAMES else Path(recipe).stem
+    home = folder or Path("results/tuning") / f"{name}-{Path(scenario).stem}-{seed}"
+    with one_sentence(RESUMES):
+        from train.learning.recipe import load_recipe, named_recipe
+        from train.tuning.space import space_of
+        from train.tuning.tuning import Tuning
+        from train.tuning.tuning import tune as run
+
+        chosen = named_recipe(recipe) if recipe in NAMES else load_recipe(Path(recipe))
+        chosen = chosen if updates is None else replace(chosen, updates=checked("updates", updates, Count()))
+        environment = environment_arguments(preset, speed, blade, plant)
+        tuning = Tuning(checked("recipe", name, FileName()), chosen, space_of(chosen, space), scenario, seed, trials, environment)
+        with _Bar(trials) as bar:
+            tuned = run(tuning, home, bar.show, cluster or "local", jobs, overwrite)
+    if as_json:
+        print_json(_content(tuned))
+    else:
+        _show(name, tuned)
+
+
+class _Bar:
+    """Trials that have ended, on standard error, with the best of those that had all their updates."""
+
+    def __init__(self, trials: int) -> None:
+        columns = (TextColumn("trials"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[best]}"), TimeElapsedColumn())
+        self._bars = Progress(*columns, console=Console(stderr=True))
+        self._task = self._bars.add_task("trials", total=trials, best="")
+
+    def __enter__(self) -> _Bar:
+        if self._bars.console.is_terminal:  # elsewhere bad input is to leave its one line alone
+            self._bars.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if self._bars.live.is_started:
+            self._bars.stop()
+
+    def show(self, records: Sequence[Record]) -> None:
+        """How far it is."""
+        from train.tuning.records import FINISHED, finished
+
+        best = "".join(f"J / no control {each.looks[-1].cost:.3f} at best" for each in finished(records)[:1])
+        if records[0].ended == FINISHED:
+            best += f", {records[0].looks[-1].cost:.3f} as it is"
+        self._bars.update(self._task, completed=sum(bool(each.ended) for each in records), best=best)
+
+
+def _show(name: str, tuned: Tuned) -> None:
+    """The trials, the best first, and what was chosen."""
+    from train.tuning.records import finished
+
+    whole = finished(tuned.records)
+    table = Table(title=Text(f"Trials of {name}, on validation seeds"))
+    for heading in ("trial", "ended", "updates", "J / no control", *tuned.untuned.settings):
+        table.add_column(heading, justify="right")
+    for each in [*whole, *(other for other in tuned.records if other not in whole)]:
+        cost = f"{each.looks[-1].cost:.3f}" if each.looks else "–"
+        values = [f"{value:.3g}" if isinstance(value, float) else str(value) for value in each.settings.values()]
+        table.add_row(*map(Text, [str(each.trial), each.ended, str(each.updates), cost, *values]))
+    print_table(table)
+    say = Console().print
+    say(_sentence(tuned, len(whole)), soft_wrap=True, markup=False, highlight=False)
+    for each in tuned.records:
+        if each.sentence:
+            print(f"beamenv: trial {each.trial} failed: {each.sentence}.", file=sys.stderr)  # noqa: T201 - the command's own voice
+    say(f"{tuned.path}, for {shlex.join(['beamenv', 'train', name, '--recipe', str(tuned.path)])}", soft_wrap=True, markup=False)
+
+
+def _sentence(tuned: Tuned, whole: int) -> str:
+    """What was chosen, of how many, and what that is worth."""
+    from train.learning.validation import EPISODES
+
+    best, own = tuned.chosen.looks[-1], tuned.untuned.looks[-1]
+    what = f"Trial {tuned.chosen.trial} is chosen" if tuned.chosen.trial else "The recipe as it is stays: no trial was better"
+    return (
+        f"{what}, of {len(tuned.records)}, {whole} of which had all their updates. J over no control {best.cost:.3f}, of the "
+        f"recipe as it is {own.cost:.3f}, on the {EPISODES} validation episodes that chose; {best.apart:.3f} and {own.apart:.3f} "
+        f"on {EPISODES} others. One training each, of one seed."
+    )
+
+
+def _content(tuned: Tuned) -> dict[str, Any]:
+    """As JSON."""
+    return {
+        "chosen": tuned.chosen.trial,
+        "recipe": tuned.recipe.to_dict(),
+        "path": str(tuned.path),
+        "trials": [asdict(each) for each in tuned.records],
+    }

@@ -1,0 +1,1 @@
+"""What ``beamenv tune`` tries of each trainer's settings, as TOML files of the trainers' names."""
