@@ -9,7 +9,7 @@ torch = pytest.importorskip("torch")
 
 COUNT, STEPS = 3, 40
 RISES = {"spin-up": 1e-3}
-"""So large where the return is 10⁷ of what changes; elsewhere 10⁻⁶, with which no reading reaches the limit at which it is clipped."""
+"""So large where the return is 10⁷ times what changes; elsewhere 10⁻⁶, with which no reading reaches its limit."""
 SMALL = {"modes": 4, "truth_modes": 4, "beam": {"terms": 8}}
 SCENARIOS = {
     "nominal": "nominal",
