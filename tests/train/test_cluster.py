@@ -30,10 +30,8 @@ ROOT = Path(__file__).resolve().parents[2]
 def ray():
     """Started once: it takes some seconds. What is asked for as "local" is this one."""
     ray = pytest.importorskip("ray", reason="Ray is not installed")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", str(ROOT))
-        with connected("local", 2):
-            yield ray
+    with connected("local", 2):
+        yield ray
 
 
 def files(folder):
