@@ -10,10 +10,10 @@ INSTALLED := .venv/.installed
 
 # Libraries of others, each installed into an environment of its own beside this package, and what that takes.
 CLIENTS := cleanrl minari rllib sbx skrl tianshou torchrl zoo
-QUICK_CLIENTS := minari torchrl
+QUICK_CLIENTS := torchrl
 REQUIRES_cleanrl := tensorboard setuptools
 ALONE_cleanrl := cleanrl==1.2.0
-REQUIRES_minari := minari[create,hdf5]
+REQUIRES_minari := minari[create,hdf5]>=0.5.3
 REQUIRES_rllib := ray[rllib]
 REQUIRES_sbx := sbx-rl
 REQUIRES_skrl := skrl
@@ -52,7 +52,7 @@ pages: $(INSTALLED)
 
 clients: quick-clients $(CLIENTS:%=client-%)
 
-# Stable-Baselines3 and skrl are in .venv; the wheel is built, installed apart and used by scripts called train.py.
+# Stable-Baselines3, skrl and Minari are in .venv, this without jax, which its own collector needs; the wheel is built, installed apart and used by scripts called train.py.
 quick-clients: $(INSTALLED) $(QUICK_CLIENTS:%=client-%)
 	$(BIN)/python -m pytest -m "slow or not slow" tests/clients tests/test_wings.py $(ARGS)
 

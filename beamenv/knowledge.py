@@ -145,6 +145,11 @@ def on_validation_bank(scenario: Scenario) -> Scenario:
     return _on_bank(scenario, 2)
 
 
+def on_recording_bank(scenario: Scenario) -> Scenario:
+    """The scenario with plants drawn from a fourth bank, that of episodes recorded for offline learning: no law is told them."""
+    return _on_bank(scenario, 3)
+
+
 def _on_bank(scenario: Scenario, further: int) -> Scenario:
     return replace(scenario, plants=replace(scenario.plants, seed=scenario.plants.seed + further))
 

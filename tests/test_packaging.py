@@ -70,7 +70,7 @@ def test_citation_cites_the_software_and_the_thesis():
     assert thesis["institution"]["name"] == "Indian Institute of Technology Guwahati"
 
 
-def test_command_without_its_extra_says_how_to_install_it():
+def test_command_without_typer_says_how_to_install_it():
     hide_typer_and_torch = "import sys; sys.modules.update(typer=None, torch=None); from train.cli.command import main; main()"
     run = subprocess.run([sys.executable, "-c", hide_typer_and_torch, "--help"], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 1
@@ -85,6 +85,7 @@ WITHOUT_TRAINING = (
     ["frequencies", "--json"],
     ["place", "--sensors", "1", "--method", "grid", "--picture", "p.png"],
     ["evaluate", "none", "--seeds", "2", "--json"],
+    ["record", "none", "--episodes", "1", "--folder", "sets"],
 )
 
 
@@ -102,12 +103,15 @@ for words in {WITHOUT_TRAINING}:
     assert (tmp_path / "p.png").is_file()
 
 
-def test_training_without_its_extra_says_how_to_install_it(tmp_path):
-    code = f"import sys; sys.modules['torch'] = None; sys.path.insert(0, {str(ROOT)!r}); "
+@pytest.mark.parametrize(
+    ("package", "extra", "words"), [("torch", "train", ["train", "ppo"]), ("minari", "record", ["record", "none"])]
+)
+def test_a_command_without_its_extra_says_how_to_install_it(tmp_path, package, extra, words):
+    code = f"import sys; sys.modules[{package!r}] = None; sys.path.insert(0, {str(ROOT)!r}); "
     code += "from beamenv.train.cli.command import main; main()"
-    run = subprocess.run([sys.executable, "-c", code, "train", "ppo"], cwd=tmp_path, capture_output=True, text=True)
+    run = subprocess.run([sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True)
     assert (run.returncode, run.stderr.count("\n")) == (1, 1)
-    assert "'torch' is missing; install it with pip install 'beamenv[train]'" in run.stderr
+    assert f"'{package}' is missing; install it with pip install 'beamenv[{extra}]'" in run.stderr
 
 
 # Imports run one way: configuration → structure → patches → plant → environment; baselines know plants, never environments;
@@ -169,7 +173,7 @@ ROOMS_OF_TRAIN = (
     {"shared"},
     {"workers"},
     {"controllers", "figures", "tools"},
-    {"export", "identification", "learning", "page", "placement", "reproduce"},
+    {"datasets", "export", "identification", "learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore", "tuning"},
     {"cli"},
 )

@@ -61,15 +61,25 @@ def attribute(env: Environment, name: str) -> Sequence[Any]:
     return inner.get_attr(name) if hasattr(inner, "get_attr") else [getattr(inner, name)]
 
 
-def _seen(observes: str, observation: Any, env: Environment) -> Any:
-    """What a controller is shown (N, …): the observation, with rotor speed (rad/s) or truth behind it, or the true state."""
+def beside_observation(observes: str, env: Environment) -> Array | None:
+    """What a controller is shown now besides the observation, or instead of it: (N, 1) rotor speed in rad/s, (N, k) the episode's
+    truth, (N, d) the true state; None where it is shown nothing else.
+    """
     if observes == "state":
         return np.vstack(attribute(env, "design_state"))
     if observes == "observation and speed":
-        return np.hstack([observation, np.hstack(attribute(env, "rotor_speed")).reshape(-1, 1)])
+        return np.hstack(attribute(env, "rotor_speed")).reshape(-1, 1)
     if observes == "observation and truth":
-        return np.hstack([observation, np.vstack(attribute(env, "episode_truth"))])
-    return observation
+        return np.vstack(attribute(env, "episode_truth"))
+    return None
+
+
+def _seen(observes: str, observation: Any, env: Environment) -> Any:
+    """What a controller is shown (N, …): the observation, with rotor speed (rad/s) or truth behind it, or the true state."""
+    beside = beside_observation(observes, env)
+    if beside is None or observes == "state":
+        return observation if beside is None else beside
+    return np.hstack([observation, beside])
 
 
 def _reset(env: Environment, seeds: Sequence[int], options: Mapping[str, Any] | None) -> tuple[Any, dict[str, Array]]:

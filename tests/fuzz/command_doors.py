@@ -20,6 +20,7 @@ from train.cli.app import app
 for _room in (
     "comparison.page",
     "comparison.compare",
+    "datasets",
     "explore.server",
     "learning.job",
     "tuning.tuning",
@@ -156,6 +157,23 @@ COMMANDS = {
         },
         ("--json", "--overwrite"),
         ("train.tuning.tuning._run",),
+    ),
+    "record": (
+        ("none",),
+        {
+            "--scenario": "white",
+            "--episodes": "2",
+            "--seed": "0",
+            "--name": "beamenv/made-v0",
+            "--folder": "made",
+            "--trained-seed": None,
+            "--preset": "thesis",
+            "--speed": "20",
+            "--blade": "blade.toml",
+            "--plant": None,
+        },
+        ("--json", "--overwrite"),
+        ("train.datasets.recording.put_in_place",),
     ),
     "benchmark": (
         (),

@@ -1,5 +1,6 @@
 """Doors of training: settings, recipes, budgets, jobs, policies, the benchmark."""
 
+import shutil
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from beamenv.plant.plant import Plant
 from tests.fuzz import small
-from tests.fuzz.env_doors import SINGLE, SINGLE_WORDS
+from tests.fuzz.env_doors import NAMED_SCENARIO, SINGLE, SINGLE_WORDS
 from tests.fuzz.law_kinds import finite
 from tests.fuzz.meaning import (
     ANYTHING,
@@ -33,6 +34,7 @@ from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy
 from train.controllers.shipped import find_shipped, shipped
+from train.datasets import record
 from train.learning.agents import AGENTS
 from train.learning.recipe import _recipe, load_recipe, named_recipe
 from train.learning.session import Budget
@@ -108,6 +110,15 @@ def benched(**given):
     return benchmark(**given).scenarios
 
 
+def recorded(**given):
+    before = set(Path.cwd().iterdir())
+    try:
+        return record(**given).total_episodes
+    finally:
+        for each in set(Path.cwd().iterdir()) - before:
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
+
+
 DOORS = [
     *(
         settings_door(name, cls)
@@ -153,6 +164,34 @@ DOORS = [
             "episode_start": np.array([True]),
         },
         check=finite,
+    ),
+    Door(
+        "record",
+        recorded,
+        {
+            "controller": ANYTHING,
+            "scenario": maybe(NAMED_SCENARIO),
+            "episodes": replace(COUNT, near=st.sampled_from([0, -1, 1.5, 1.0, True, "1"])),
+            "seed": COUNT,
+            "name": maybe(TEXT),
+            "folder": PATH,
+            "environment": maybe(table({k: v for k, v in SINGLE.items() if k != "scenario"})),
+            "trained_seed": maybe(COUNT),
+            "overwrite": FLAG,
+        },
+        lambda: {
+            "controller": "none",
+            "scenario": "nominal",
+            "episodes": 1,
+            "seed": 5,
+            "name": "beamenv/mine-v0",
+            "folder": "made",
+            "environment": {"blade": dict(small.BLADE), "duration": 0.002},
+            "trained_seed": None,
+            "overwrite": False,
+        },
+        told=("controller", *SINGLE_WORDS),
+        plain=False,
     ),
     Door(
         "benchmark",

@@ -14,8 +14,8 @@ import train.learning.job
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.task import resolve_task
 from tests.train.brief import GRADIENT, PPO, RECURRENT, SAC, SHORT, TQC, assert_same, ignore, interrupted_after, job, weights
-from train.benchmark.listed import told_tier
 from train.controllers.policy_files import load_policy
+from train.controllers.tiers import told_tier
 from train.learning.checkpoint import read_checkpoint
 from train.learning.job import run
 from train.learning.session import Budget, follow

@@ -9,20 +9,17 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from baselines.design.controller import LEAST_TIER, as_controller
-from beamenv.configuration import Count, FileName, Refused, checked
-from beamenv.configuration.files import of_file
-from beamenv.knowledge import TRUTH
+from baselines.design.controller import as_controller
+from beamenv.configuration import FileName, Refused, checked
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, any_scenario, discover
 from train.controllers.near import near
-from train.controllers.policy_files import read_about
-from train.controllers.runs import AGENT, runs_in
+from train.controllers.runs import runs_in
 from train.controllers.shipped import FOLDER, shipped
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
 from train.controllers.tiers import LEARNT as LEARNT
-from train.controllers.tiers import TIER
+from train.controllers.tiers import own_tier, told_tier
 
 GENERALIST = "generalist"
 """Trained on every scenario at once, and therefore run in every one."""
@@ -104,21 +101,9 @@ def of_folder(folder: Path, tier: int | None = None) -> ListedController:
     return ListedController(name, "learned", known, {run: Trained(place) for run, place in places.items()})
 
 
-def told_tier(folder: Path) -> int | None:
-    """The tier that an agent's own file tells; None if it tells none."""
-    about = read_about(folder)
-    with of_file(folder / AGENT):
-        return checked(TIER, about[TIER], Count(0, TRUTH - 1)) if TIER in about else None
-
-
 def place(tier: int, kind: str) -> tuple[int, int]:
     """By which tables and figures order controllers: by what they know, and then by kind."""
     return tier, ORDER.index(kind)
-
-
-def own_tier(controller: Any) -> int:
-    """Of a caller's controller: that of what it sees, and at least that of agents, for nobody knows what it was made from."""
-    return max(LEARNT, LEAST_TIER.get(getattr(controller, "observes", "observation"), 0))
 
 
 def _given(name: str, controller: Any) -> Given:

@@ -29,6 +29,7 @@ from train.cli.options import (
     working,
 )
 from train.cli.place import place
+from train.cli.record import record
 from train.cli.schema import schema
 from train.cli.section import section
 from train.cli.speed import speed
@@ -49,6 +50,7 @@ app.command()(place)
 app.command()(export)
 app.command()(train)
 app.command()(tune)
+app.command()(record)
 app.command()(benchmark)
 app.command()(schema)
 app.command()(speed)

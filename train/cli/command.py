@@ -11,6 +11,7 @@ _EXTRAS = {
     **dict.fromkeys(("cma", "pymoo"), "placement"),
     **dict.fromkeys(("matplotlib", "pygame"), "render"),
     **dict.fromkeys(("dash", "werkzeug"), "explore"),
+    **dict.fromkeys(("minari", "h5py"), "record"),
     "daqp": "predictive",
     "onnx": "export",
     "ray": "cluster",

@@ -1,8 +1,16 @@
-"""Tiers of information as tables show them: the agents', and in one sentence what each is."""
+"""Tiers of information: whose is which, as their files and the controllers themselves tell, and in one sentence what each is."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
+from baselines.design.controller import LEAST_TIER
+from beamenv.configuration import Count, checked
+from beamenv.configuration.files import of_file
 from beamenv.knowledge import TIERS, TRUTH
+from train.controllers.policy_files import read_about
+from train.controllers.runs import AGENT
 
 LEARNT = 1
 """The tier of agents: what they train on is the scenario's distribution, and they see the readings alone."""
@@ -18,3 +26,15 @@ def tiers_told() -> str:
         f"Tiers say what a controller is told and sees, each what those below it are too: {known}. "
         f"Tier {TRUTH}, which no real blade offers, is a reference and no rival."
     )
+
+
+def told_tier(folder: Path) -> int | None:
+    """The tier that an agent's own file tells; None if it tells none."""
+    about = read_about(folder)
+    with of_file(folder / AGENT):
+        return checked(TIER, about[TIER], Count(0, TRUTH - 1)) if TIER in about else None
+
+
+def own_tier(controller: Any) -> int:
+    """Of a caller's controller: that of what it sees, and at least that of agents, for nobody knows what it was made from."""
+    return max(LEARNT, LEAST_TIER.get(getattr(controller, "observes", "observation"), 0))

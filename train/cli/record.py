@@ -1,0 +1,100 @@
+"""The command ``beamenv record``: a controller's episodes as a data set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from train.cli.options import (
+    BladeOption,
+    JsonOption,
+    PlantOption,
+    PresetOption,
+    ScenarioOption,
+    SpeedOption,
+    environment_arguments,
+    one_sentence,
+    print_json,
+)
+from train.shared.held_out import RECORDED
+
+if TYPE_CHECKING:
+    from minari import MinariDataset
+
+
+def record(
+    controller: Annotated[
+        str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
+    ],
+    scenario: ScenarioOption = "default",
+    episodes: Annotated[int, typer.Option(min=1, help="How many.")] = 100,
+    seed: Annotated[
+        int,
+        typer.Option(
+            min=0, help="Of the first episode, each of the next has one more; not those that controllers are compared on."
+        ),
+    ] = RECORDED,
+    name: Annotated[str | None, typer.Option(help="Of the data set; beamenv/CONTROLLER-SCENARIO-v0 if left out.")] = None,
+    folder: Annotated[
+        Path | None,
+        typer.Option(help="Of all data sets; if left out where Minari looks, MINARI_DATASETS_PATH or ~/.minari/datasets."),
+    ] = None,
+    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the data set of this name.")] = False,
+    preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
+    blade: BladeOption = None,
+    plant: PlantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Record a controller's episodes as a Minari data set, for offline learning.
+
+    Nothing is written unless all is: an interrupted recording leaves no data set.
+    """
+    with one_sentence("nothing is kept"):
+        from train.datasets import record as run
+
+        with bar(episodes) as report:
+            made = run(
+                controller,
+                scenario,
+                episodes,
+                seed,
+                name=name,
+                folder=folder,
+                environment=environment_arguments(preset, speed, blade, plant),
+                trained_seed=trained_seed,
+                overwrite=overwrite,
+                progress=report,
+            )
+    _show(made, folder, as_json)
+
+
+@contextmanager
+def bar(episodes: int) -> Iterator[Callable[[int, int], None]]:
+    """Episodes done, on standard error."""
+    screen = Console(stderr=True)
+    columns = TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as progress:
+        task = progress.add_task("", total=episodes)
+        yield lambda done, total: progress.update(task, completed=done, total=total)
+
+
+def _show(made: MinariDataset, folder: Path | None, as_json: bool) -> None:
+    """Where it is, what it tells of itself, and how it is loaded."""
+    spec, told = made.spec, made.storage.metadata
+    if as_json:
+        about = {"dataset_id": spec.dataset_id, "folder": str(spec.data_path), "episodes": spec.total_episodes}
+        print_json({**about, "steps": spec.total_steps, **told["beamenv"]})
+        return
+    screen = Console(soft_wrap=True, highlight=False)
+    screen.print(f"written to {spec.data_path}: {spec.total_episodes} episodes, {spec.total_steps} steps", markup=False)
+    screen.print(told["description"], markup=False)
+    where = "" if folder is None else f", with MINARI_DATASETS_PATH={folder}"
+    screen.print(f"minari.load_dataset({spec.dataset_id!r}) loads it{where}", markup=False)

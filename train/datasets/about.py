@@ -1,0 +1,84 @@
+"""What a data set tells of itself: who acted, what that knew, in what, how well, and with which code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import minari
+import numpy as np
+
+import beamenv
+from baselines import Controller
+from baselines.design.controller import name_of
+from beamenv.knowledge import TIERS
+from train.controllers.named import discover
+from train.controllers.runs import AGENT
+from train.controllers.tiers import LEARNT, own_tier, told_tier
+from train.datasets.taped import SHOWN
+from train.shared.digests import CONTROLLERS, source_digest
+from train.shared.versions import versions
+
+BANK = "drawn from a bank of its own, on which controllers are neither compared, tuned nor chosen, and which no law is told"
+
+
+def tier_of(controller: Any, law: Controller) -> int:
+    """Of information: a named law's own, an agent's as its file tells, that of what it sees of anything else."""
+    if not isinstance(controller, str):
+        return own_tier(law)
+    if controller in discover():
+        return discover()[controller].tier
+    told = told_tier(Path(controller)) if (Path(controller) / AGENT).is_file() else None
+    return LEARNT if told is None else told
+
+
+def metadata(
+    name: str,
+    controller: str,
+    law: Controller,
+    tier: int,
+    trained_seed: int | None,
+    scenario: str,
+    eval_spec: str,
+    seeds: range,
+    costs: Sequence[float],
+) -> dict[str, Any]:
+    """Minari's own keys, and under "beamenv" what it has no keys for.
+
+    ``costs`` are J of each episode in J s, NaN where it ended by failure; the mean is of the others, None if there are none.
+    """
+    observes = getattr(law, "observes", "observation")
+    whole = [each for each in costs if each == each]
+    failed, mean, deviation = len(costs) - len(whole), None, None
+    if whole:
+        mean, deviation = float(np.mean(whole)), float(np.std(whole))
+    shown = f", which it is shown too: infos[{SHOWN[observes]!r}]" if observes in SHOWN else ""
+    own = {
+        "controller": controller,
+        "trained_seed": trained_seed,
+        "law": name_of(law),
+        "tier": tier,
+        "told": "; ".join(what for level, what in TIERS.items() if level <= tier),
+        "observes": observes,
+        "scenario": scenario,
+        "plants": BANK,
+        "seeds": [seeds[0], seeds[-1]],
+        "cost": {"unit": "J s", "mean": mean, "standard_deviation": deviation, "failed_episodes": failed},
+        "versions": versions(),
+        "code": source_digest(CONTROLLERS),
+    }
+    return {
+        "dataset_id": name,
+        "algorithm_name": controller,
+        "description": (
+            f"{name_of(law)} on {len(costs)} episodes of the scenario {scenario} of {beamenv.ENV_ID}; "
+            f"tier {tier}, told {own['told']}; "
+            f"it observes the {observes}{shown}. {failed} of the episodes ended by failure"
+            + ("." if mean is None else f", the mean cost J of the others is {mean:.4g} J s.")
+        ),
+        "eval_env_spec": eval_spec,
+        "minari_version": minari.__version__,
+        "requirements": [f"beamenv=={beamenv.__version__}"],
+        "beamenv": own,
+    }
