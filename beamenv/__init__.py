@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from beamenv.envs.placement import PlacementWrapper, VectorPlacementWrapper
     from beamenv.envs.single import RotatingBeamEnv
     from beamenv.envs.stable_baselines import BladeVecEnv
+    from beamenv.envs.torch_batch import TorchRotatingBeamVectorEnv, torch_vec
     from beamenv.knowledge import Prior
     from beamenv.patches import PatchLayout
     from beamenv.plant.files import load_plant, save_plant
@@ -68,6 +69,8 @@ _HOMES = {
     "Scenario": "scenarios.scenario",
     "scenario": "scenarios.scenario",
     "RotatingBeamVectorEnv": "envs.batch",
+    "TorchRotatingBeamVectorEnv": "envs.torch_batch",
+    "torch_vec": "envs.torch_batch",
     "SensorHistory": "envs.history",
     "VectorSensorHistory": "envs.history",
 }
@@ -96,6 +99,7 @@ __all__ = [
     "SampledPlant",
     "Scenario",
     "SensorHistory",
+    "TorchRotatingBeamVectorEnv",
     "UNSEEN_SCENARIOS",
     "VectorPlacementWrapper",
     "VectorSensorHistory",
@@ -106,6 +110,7 @@ __all__ = [
     "sample",
     "save_plant",
     "scenario",
+    "torch_vec",
 ]
 
 

@@ -31,7 +31,7 @@ def checked_seed(seed: Any, allowed: str = "an integer that is not negative, or 
     return number
 
 
-class SeededVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
+class SeededVectorEnv(VectorEnv[Any, Any, Any]):
     """A vector environment that may have a generator for each blade.
 
     ``np_random`` and ``np_random_seed`` are then tuples, as those of Gymnasium's own vector environments.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic_core import CoreSchema, core_schema
@@ -59,7 +60,7 @@ def _as_groups(value: Any) -> Any:
     return (value,) if isinstance(value, PatchGroup) else tuple(value) if isinstance(value, list) else value
 
 
-@configuration("blade.patches")
+@configuration("blade.patches", slots=False)
 class PatchLayout:
     """The patches of a blade: as numbers or positions, of one kind, actuators in the top wall and sensors in the bottom one; or as
     groups of any kind anywhere.
@@ -82,7 +83,17 @@ class PatchLayout:
 
     def groups(self, side: Side) -> Groups:
         """The groups of one side."""
-        given = self.actuators if side == "actuators" else self.sensors
+        return self._actuators if side == "actuators" else self._sensors
+
+    @cached_property
+    def _actuators(self) -> Groups:
+        return self._as_groups("actuators", self.actuators)
+
+    @cached_property
+    def _sensors(self) -> Groups:
+        return self._as_groups("sensors", self.sensors)
+
+    def _as_groups(self, side: Side, given: Any) -> Groups:
         if given == () or (isinstance(given, tuple) and isinstance(given[0], PatchGroup)):
             return given
         return (

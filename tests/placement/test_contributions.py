@@ -52,7 +52,8 @@ def test_contributions_add_up_to_the_assembled_blade(case):
     config = blade_config(preset, changes | {"model": "thesis"})
     parts, layout = contributions(config), layout_of(config)
     actuators, sensors = (np.array([layout[side]]) for side in ("actuators", "sensors"))
-    found = layout_matrices(parts, actuators, sensors, config.patches.length, config.patches.passive)
+    cut = Intervals.of(PatchEdges.of(actuators, sensors, config.patches.length, parts.span))
+    found = layout_matrices(parts, cut, config.patches.passive)
     # in mass, entries fall with the square of the frequency: compare them in unit modal mass
     unit = np.outer(parts.bare_frequencies, parts.bare_frequencies)
     scales = (1.0, unit, np.sqrt(unit), 1.0, 1.0)
@@ -93,13 +94,18 @@ def test_matrix_slopes_are_their_central_differences(model):
     config = blade_config(overrides={"model": model})
     parts, length, step = contributions(config), config.patches.length, 1e-4
     start = np.array([0.02, 0.31, 0.82, 1.2, 0.05, 0.29, 0.8, 1.25])
-    slopes = matrix_slopes(parts, start[:4], start[4:], length, True)
+
+    def cut(moved):
+        return Intervals.of(PatchEdges.of(moved[None, :4], moved[None, 4:], length, parts.span))
 
     def at(moved):
-        return layout_matrices(parts, moved[None, :4], moved[None, 4:], length, True)
+        return layout_matrices(parts, cut(moved), True)
+
+    slopes, of_sensors = (matrix_slopes(parts, cut(start), True, moved) for moved in (slice(None), slice(4, None)))
 
     stored = ("stored_energy",) if model == "blade" else ()
     for name in ("stiffness", "mass", "gyroscopic", "forces", "charges", *stored):
+        assert np.abs(getattr(of_sensors, name) - getattr(slopes, name)[4:]).max() <= 1e-12 * np.abs(getattr(slopes, name)).max()
         for k in range(8):
             shift = step * np.eye(8)[k]
             wide, narrow = (getattr(at(start + r * shift), name)[0] - getattr(at(start - r * shift), name)[0] for r in (2, 1))

@@ -23,6 +23,7 @@ from baselines.placement.model.equations import (
     regulator_slopes,
     trace_slopes,
 )
+from baselines.placement.model.intervals import Intervals, PatchEdges
 from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes, layout_matrices, matrix_slopes
 from baselines.placement.model.reduced_layouts import Reduction, reduce_layouts
 from baselines.placement.model.reduced_slopes import ReducedSlopes, reduce_with_slopes
@@ -110,24 +111,21 @@ class PlacementProblem:
 
     def cost_and_slopes(self, positions: Array) -> tuple[float, Array]:
         """The trace of one layout (count,) and its exact derivatives (count,) by the positions, per m."""
-        actuators, sensors = self._layouts(self._numbers(positions, 1)[None])
-        size = self.bounds.length, self.config.patches.only("actuators").passive
-        matrices = self._ganged(layout_matrices(self.parts, actuators, sensors, *size))
-        moved = self._ganged(matrix_slopes(self.parts, actuators[0], sensors[0], *size))
+        cut = self._cut(self._numbers(positions, 1)[None])
+        passive = self.config.patches.only("actuators").passive
+        matrices = self._ganged(layout_matrices(self.parts, cut, passive))
+        moved = self._ganged(matrix_slopes(self.parts, cut, passive, self._moved(cut)))
         reduced, slopes = reduce_with_slopes(self.parts, matrices, moved, Reduction.of(self.config))
         if self.reads == "charge":
             reduced, slopes = reading_charges(reduced), charge_slopes(reduced, slopes)
         equation = self.equation(reduced)
         solution = solve_riccati(*equation)[0]
-        by_patch = trace_slopes(equation, self._equation_slopes(reduced, slopes), solution)
-        own = slice(None, actuators.shape[1]) if self.side == "actuators" else slice(actuators.shape[1], None)
-        return float(np.trace(solution)), by_patch[own]
+        return float(np.trace(solution)), trace_slopes(equation, self._equation_slopes(reduced, slopes), solution)
 
     def reduced(self, positions: Array) -> ReducedBlades:
         """Layouts (N, count), m from the root, as reduced blades."""
-        actuators, sensors = self._layouts(self._numbers(positions, 2))
         passive = self.config.patches.only("actuators").passive
-        matrices = layout_matrices(self.parts, actuators, sensors, self.bounds.length, passive)
+        matrices = layout_matrices(self.parts, self._cut(self._numbers(positions, 2)), passive)
         reduced = reduce_layouts(self.parts, self._ganged(matrices), Reduction.of(self.config))
         return reading_charges(reduced) if self.reads == "charge" else reduced
 
@@ -154,13 +152,19 @@ class PlacementProblem:
             return regulator_slopes(reduced, slopes)
         return filter_slopes(reduced, slopes, self.load_noise, self.sensor_noise)
 
-    def _layouts(self, positions: Array) -> tuple[Array, Array]:
-        """Actuators (N, a) and sensors (N, s), m."""
+    def _cut(self, positions: Array) -> Intervals:
+        """Layouts (N, count), m, with the patches of the other side where those are."""
         patches, span = self.config.patches, self.config.beam.length
         if self.side == "actuators":
-            fixed = patches.sensor_positions(span)
-            return positions, np.tile(fixed, (len(positions), 1))
-        return np.tile(patches.actuator_positions(span), (len(positions), 1)), positions
+            both = positions, np.tile(patches.sensor_positions(span), (len(positions), 1))
+        else:
+            both = np.tile(patches.actuator_positions(span), (len(positions), 1)), positions
+        return Intervals.of(PatchEdges.of(*both, self.bounds.length, self.parts.span))
+
+    def _moved(self, cut: Intervals) -> slice:
+        """Which of all patches, actuators first, are to be placed."""
+        actuators = cut.patches.actuators.shape[1]
+        return slice(actuators) if self.side == "actuators" else slice(actuators, None)
 
     def _ganged(self, matrices: Matrices) -> Matrices:
         """With one voltage for all actuators, their forces are one."""

@@ -41,7 +41,8 @@ def doubling(A: Array, G: Array, Q: Array) -> Array:
         g = symmetric(g + forward @ g @ transposed(E))
         h = symmetric(h + change)
         E = forward @ E
-        if np.all(largest(change) <= SETTLED * largest(h)) or not np.all(np.isfinite(h)):
+        size = largest(h)
+        if np.all(largest(change) <= SETTLED * size) or not np.all(np.isfinite(size)):
             break
     return np.asarray(h * balance)
 

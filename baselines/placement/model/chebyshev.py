@@ -39,12 +39,11 @@ class ChebyshevSpan:
     def slopes(self, z: Array) -> Array:
         """dT_k/dz = k U_{k−1}·2/end at z (…,): (…, count), 1/m."""
         x = self._reference(z)
-        second = np.zeros((*x.shape, self.count))
-        if self.count > 1:
-            second[..., 1] = 1.0
+        second = np.zeros((self.count, *x.shape))
+        second[1:2] = 1.0
         for k in range(2, self.count):
-            second[..., k] = 2.0 * x * second[..., k - 1] - second[..., k - 2]
-        return np.asarray(np.arange(self.count) * second * (2.0 / self.end))
+            second[k] = 2.0 * x * second[k - 1] - second[k - 2]
+        return np.ascontiguousarray(np.arange(self.count) * np.moveaxis(second, 0, -1) * (2.0 / self.end))
 
     def _reference(self, z: Array) -> Array:
         return np.clip(2.0 * np.asarray(z) / self.end - 1.0, -1.0, 1.0)

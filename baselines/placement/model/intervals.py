@@ -49,17 +49,21 @@ class PatchEdges:
         own = np.stack([covered[:, :count], common.sum(axis=2)], axis=2)
         return own, np.stack([covered[:, count:], common.sum(axis=1)], axis=2)
 
-    def force_share_slopes(self) -> tuple[Array, Array]:
+    def slopes(self) -> Array:
+        """(N, 2 (a + s), k), 1/m: of the polynomials at the starts, then at the ends."""
+        root_side = np.concatenate([self.actuators, self.sensors], axis=1)
+        return self.span.slopes(np.concatenate([root_side, root_side + self.length], axis=1))
+
+    def force_share_slopes(self, slopes: Array) -> tuple[Array, Array]:
         """(N, a + s, a, 2, k) and (N, a + s, s, 2, k): derivatives of ``force_shares`` by every patch's position, 1/m."""
         a, s = self.actuators.shape[1], self.sensors.shape[1]
-        root_side = np.concatenate([self.actuators, self.sensors], axis=1)
-        start, end = self.span.slopes(root_side), self.span.slopes(root_side + self.length)
+        start, end = np.split(slopes, 2, axis=1)
         first, second = self.actuators[:, :, None], self.sensors[:, None, :]
         overlap = (np.abs(first - second) < self.length)[..., None]
         actuator_first = (first <= second)[..., None]
         by_actuator = overlap * np.where(actuator_first, end[:, :a, None], -start[:, :a, None])
         by_sensor = overlap * np.where(actuator_first, -start[:, None, a:], end[:, None, a:])
-        top, below = (np.zeros((len(root_side), a + s, patches, 2, self.span.count)) for patches in (a, s))
+        top, below = (np.zeros((len(slopes), a + s, patches, 2, self.span.count)) for patches in (a, s))
         own_top, own_below = np.arange(a), np.arange(s)
         top[:, own_top, own_top, 0] = (end - start)[:, :a]
         below[:, a + own_below, own_below, 0] = (end - start)[:, a:]
@@ -74,15 +78,15 @@ class PatchEdges:
 class Intervals:
     """N layouts cut at their E patch edges, root to tip: interval j lies between edge j and edge j + 1, edge 0 is the root."""
 
-    span: ChebyshevSpan
+    patches: PatchEdges
     edges: Array
     """(N, E + 1), m."""
     values: Array
     """(N, E + 1, k): the polynomials there."""
     covered: Array
     """(N, E, kinds): 1 for the kind of section that the interval has."""
-    patch: NDArray[np.intp]
-    """(N, E): number of the patch (actuators, then sensors) that edges 1 … E belong to."""
+    order: NDArray[np.intp]
+    """(N, E): which of the patches' starts (actuators, then sensors) and ends the edges 1 … E are."""
 
     @classmethod
     def of(cls, patches: PatchEdges) -> Intervals:
@@ -104,7 +108,7 @@ class Intervals:
         at_edges = np.take_along_axis(np.concatenate([patches.starts, patches.ends], axis=1), order[..., None], axis=1)
         values = np.concatenate([root, at_edges], axis=1)
         covered = (kind[..., None] == np.arange(KINDS)).astype(float)
-        return cls(patches.span, edges, values, covered, np.tile(np.arange(count), 2)[order])
+        return cls(patches, edges, values, covered, order)
 
     def share(self) -> Array:
         """(N, 3 k): Σ over the intervals of a kind of T(end) − T(start), for covered kinds."""
@@ -125,16 +129,14 @@ class Intervals:
         beyond = np.cumsum((at_end - at_start)[:, ::-1], axis=1)[:, ::-1]
         return at_start + beyond
 
-    def share_slopes(self) -> Array:
-        """(N, patches, 3 k): derivatives of ``share`` by the patches' positions, 1/m."""
+    def share_slopes(self, slopes: Array) -> Array:
+        """(N, patches, 3 k): derivatives of ``share`` by the patches' positions, 1/m, from the polynomials' slopes."""
         change = self.covered - np.pad(self.covered[:, 1:], ((0, 0), (0, 1), (0, 0)))
-        slope = self.span.slopes(self.edges[:, 1:])
-        return self._by_patch(change[..., BARE + 1 :, None] * slope[..., None, :])
+        return self._by_patch(change[..., BARE + 1 :, None] * self._in_order(slopes)[..., None, :])
 
-    def pulled_share_slopes(self, tension: Array) -> Array:
-        """(N, patches, 4 k): derivatives of ``pulled_share`` by the patches' positions, 1/m."""
-        pull, covered = self._pull(tension), self.covered
-        slope = self.span.slopes(self.edges[:, 1:])
+    def pulled_share_slopes(self, tension: Array, slopes: Array) -> Array:
+        """(N, patches, 4 k): derivatives of ``pulled_share`` by the patches' positions, 1/m, likewise."""
+        pull, covered, slope = self._pull(tension), self.covered, self._in_order(slopes)
         weighted = pull[..., None] * covered
         change = weighted - np.pad(weighted[:, 1:], ((0, 0), (0, 1), (0, 0)))
         following = np.pad(covered[:, 1:], ((0, 0), (0, 1), (0, 0)))
@@ -143,9 +145,13 @@ class Intervals:
         inboard = np.cumsum(covered[..., None] * steps[..., None, :], axis=1)
         return self._by_patch(change[..., None] * slope[..., None, :] + pull_slope[..., None, None] * inboard)
 
+    def _in_order(self, slopes: Array) -> Array:
+        """(N, E, k)."""
+        return np.take_along_axis(slopes, self.order[..., None], axis=1)
+
     def _by_patch(self, by_edge: Array) -> Array:
         """Sum (N, E, kinds, k) over the two edges of every patch: (N, patches, kinds k)."""
-        patches = self.patch.shape[1] // 2
-        belongs = (self.patch[..., None] == np.arange(patches)).astype(float)
+        patches = self.order.shape[1] // 2
+        belongs = (self.order[..., None] % patches == np.arange(patches)).astype(float)
         flat = by_edge.reshape(*by_edge.shape[:2], -1)
         return np.asarray(belongs.transpose(0, 2, 1) @ flat)

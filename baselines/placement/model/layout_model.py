@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.placement.model.contributions import Contributions
-from baselines.placement.model.intervals import Intervals, PatchEdges
+from baselines.placement.model.intervals import Intervals
 from baselines.placement.model.triangles import skew_from, symmetric_from
 
 Array = NDArray[np.float64]
@@ -32,19 +32,17 @@ class LayoutMatrices:
     """(N, a, a), J/V²: twice what the actuators store in the blade at rest; None: FᵀK⁻¹F."""
 
 
-def layout_matrices(parts: Contributions, actuators: Array, sensors: Array, length: float, passive: bool) -> LayoutMatrices:
-    """Blades with patches ``length`` m long at ``actuators`` (N, a) and ``sensors`` (N, s), m from the root."""
+def layout_matrices(parts: Contributions, cut: Intervals, passive: bool) -> LayoutMatrices:
+    """Blades with patches that cut them so."""
     n = len(parts.bare_frequencies)
-    patches = PatchEdges.of(actuators, sensors, length, parts.span)
     stiffness, mass, gyroscopic = np.eye(n)[None], np.diag(parts.bare_frequencies**-2.0)[None], parts.bare_gyroscopic[None]
     if passive:
-        cut = Intervals.of(patches)
         share = cut.share()
         both = np.concatenate([share, cut.pulled_share(parts.tension)], axis=1)
         stiffness = stiffness + symmetric_from(both @ parts.stiffness, n)
         mass = mass + symmetric_from(share @ parts.mass, n)
         gyroscopic = gyroscopic + skew_from(share @ parts.gyroscopic, n)
-    top, below = patches.force_shares()
+    top, below = cut.patches.force_shares()
     return LayoutMatrices(
         stiffness=stiffness,
         mass=mass,
@@ -67,7 +65,7 @@ def stored(shares: Array, series: Array | None) -> Array | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MatrixSlopes:
-    """Derivatives of one layout's matrices by its patches' positions (actuators, then sensors), p of them, per m."""
+    """Derivatives of one layout's matrices by the positions of p of its patches, per m."""
 
     stiffness: Array
     mass: Array
@@ -81,23 +79,22 @@ class MatrixSlopes:
     """(p, a, a)."""
 
 
-def matrix_slopes(parts: Contributions, actuators: Array, sensors: Array, length: float, passive: bool) -> MatrixSlopes:
-    """Derivatives for one layout: ``actuators`` (a,) and ``sensors`` (s,), m from the root."""
+def matrix_slopes(parts: Contributions, cut: Intervals, passive: bool, moved: slice = slice(None)) -> MatrixSlopes:
+    """Derivatives of one layout; by the positions of all patches, actuators first, or of those ``moved``."""
     n = len(parts.bare_frequencies)
-    patches = PatchEdges.of(actuators[None], sensors[None], length, parts.span)
-    stiffness = mass = gyroscopic = np.zeros((len(actuators) + len(sensors), n, n))
+    at_edges = cut.patches.slopes()
+    top, below = (each[0, moved] for each in cut.patches.force_share_slopes(at_edges))
+    stiffness = mass = gyroscopic = np.zeros((len(top), n, n))
     if passive:
-        cut = Intervals.of(patches)
-        share = cut.share_slopes()[0]
-        both = np.concatenate([share, cut.pulled_share_slopes(parts.tension)[0]], axis=1)
+        share = cut.share_slopes(at_edges)[0, moved]
+        both = np.concatenate([share, cut.pulled_share_slopes(parts.tension, at_edges)[0, moved]], axis=1)
         stiffness = symmetric_from(both @ parts.stiffness, n)
         mass, gyroscopic = symmetric_from(share @ parts.mass, n), skew_from(share @ parts.gyroscopic, n)
-    top, below = patches.force_share_slopes()
     return MatrixSlopes(
         stiffness=stiffness,
         mass=mass,
         gyroscopic=gyroscopic,
-        forces=along(top[0], parts.actuator_force).swapaxes(1, 2),
-        charges=along(below[0], parts.sensor_force),
-        stored_energy=stored(top[0], parts.actuator_energy),
+        forces=along(top, parts.actuator_force).swapaxes(1, 2),
+        charges=along(below, parts.sensor_force),
+        stored_energy=stored(top, parts.actuator_energy),
     )

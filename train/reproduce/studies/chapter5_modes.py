@@ -18,6 +18,7 @@ from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Small
 from train.reproduce.studies.closed_loop import Response, blade, patches, simulate
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.response import free_motion
 
 Array = NDArray[np.float64]
 
@@ -72,11 +73,8 @@ def step_outputs(A: Array, B: Array, C: Array, steps: int) -> Array:
     """(steps, outputs · inputs): responses to a unit step on each input, every control interval."""
     transition = expm(A * CONTROL_INTERVAL)
     final = -np.linalg.solve(A, B)
-    state, rows = -final, []
-    for _ in range(steps):
-        state = transition @ state
-        rows.append((C @ (state + final)).ravel())
-    return np.array(rows)
+    moved = np.stack([free_motion(transition, -column, steps + 1)[1:] + column for column in final.T])
+    return (C @ moved.transpose(1, 2, 0)).reshape(steps, -1)
 
 
 def truncation_errors(plant: Plant) -> dict[str, Array]:
