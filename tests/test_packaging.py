@@ -174,7 +174,7 @@ ROOMS_OF_TRAIN = (
     {"workers"},
     {"controllers", "figures", "tools"},
     {"datasets", "export", "identification", "learning", "page", "placement", "reproduce"},
-    {"benchmark", "comparison", "explore", "tuning"},
+    {"benchmark", "comparison", "explore", "rllib", "tuning"},
     {"cli"},
 )
 """Floor by floor: a room imports rooms below it."""

@@ -28,17 +28,20 @@ class Blade(gymnasium.Env[Array, Array]):
 
     def __init__(self, **arguments: Any) -> None:
         self._envs = BeliefVecEnv(1, **arguments)
+        self._envs.seed(None)  # others draw other episodes
         self.observation_space, self.action_space = self._envs.observation_space, self._envs.action_space
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
-        """Begin an episode; the first one draws from ``seed``, or from 0."""
+        """Begin an episode."""
+        super().reset(seed=seed)
         if seed is not None:
             self._envs.seed(seed)
         return self._envs.reset()[0], {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """Hold an action."""
-        observations, rewards, ended, infos = self._envs.step(np.asarray(action)[None])
+        stepped: Any = self._envs.step(np.asarray(action)[None])
+        observations, rewards, ended, infos = stepped
         cut = bool(ended[0]) and infos[0]["TimeLimit.truncated"]
         last = infos[0]["terminal_observation"] if ended[0] else observations[0]
         return last, float(rewards[0]), bool(ended[0]) and not cut, cut, {}
@@ -57,6 +60,7 @@ class Blades(VectorEnv[Array, Array, Array]):
 
     def __init__(self, num_envs: int, **arguments: Any) -> None:
         self._envs = BeliefVecEnv(num_envs, **arguments)
+        self._envs.seed(None)
         self.num_envs = num_envs
         self.metadata = {"autoreset_mode": AutoresetMode.NEXT_STEP}
         self.single_observation_space, self.single_action_space = self._envs.observation_space, self._envs.action_space
@@ -73,7 +77,8 @@ class Blades(VectorEnv[Array, Array, Array]):
 
     def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
         """Hold an action on each blade."""
-        observations, rewards, ended, infos = self._envs.step(actions)
+        stepped: Any = self._envs.step(actions)
+        observations, rewards, ended, infos = stepped
         observations, over = observations.copy(), ended & ~self._over
         cut = np.zeros_like(over)
         for row in np.flatnonzero(over).tolist():

@@ -10,31 +10,36 @@ from typing import Any
 
 import torch
 from ray.rllib.core.columns import Columns
+from ray.rllib.core.distribution.torch.torch_distribution import TorchDiagGaussian
 from ray.rllib.core.rl_module.apis import ValueFunctionAPI
 from ray.rllib.core.rl_module.torch import TorchRLModule
-from ray.rllib.models.torch.torch_distributions import TorchDiagGaussian
 from torch import nn
 
 
 class LinearOnBelief(TorchRLModule, ValueFunctionAPI):
-    """Of its ``model_config``: ``exploration`` is the logarithm of the standard deviation of the actions, which stays as it is, and
-    ``input_gain`` multiplies what the gain sees, and with it the rate at which it learns."""
+    """A gain and a quadratic.
+
+    Of its ``model_config``: ``exploration`` is the logarithm of the standard deviation of the actions, which stays as it is, and
+    ``input_gain`` multiplies what the gain sees, and with it the rate at which it learns.
+    """
 
     def setup(self) -> None:
         """The gain, zero at first, and the critic's weights."""
-        seen, voltages = self.observation_space.shape[0], self.action_space.shape[0]
+        spaces: Any = (self.observation_space, self.action_space)
+        seen, voltages = (space.shape[0] for space in spaces)
+        self.settings: Any = self.model_config
         self.action_dist_cls = TorchDiagGaussian
         self.gain = nn.Linear(seen, voltages, bias=False)
         self.value = nn.Linear(seen * (seen + 1) // 2, 1)
         for layer in (self.gain, self.value):
             nn.init.zeros_(layer.weight)
         nn.init.zeros_(self.value.bias)
-        self.register_buffer("log_std", torch.full((voltages,), float(self.model_config["exploration"])))
+        self.register_buffer("log_std", torch.full((voltages,), float(self.settings["exploration"])))
         self.register_buffer("pairs", torch.triu_indices(seen, seen))
 
     def _forward(self, batch: dict[str, Any], **kwargs: Any) -> dict[str, Any]:
         """Means and logarithms of standard deviations."""
-        mean = self.gain(batch[Columns.OBS] * self.model_config["input_gain"])
+        mean = self.gain(batch[Columns.OBS] * self.settings["input_gain"])
         return {Columns.ACTION_DIST_INPUTS: torch.cat([mean, self.log_std.expand_as(mean)], dim=-1)}
 
     def compute_values(self, batch: dict[str, Any], embeddings: Any = None) -> torch.Tensor:
