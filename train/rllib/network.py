@@ -6,7 +6,7 @@ Control*, section 4.1), and its value a quadratic.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import torch
 from ray.rllib.core.columns import Columns
@@ -27,7 +27,7 @@ class LinearOnBelief(TorchRLModule, ValueFunctionAPI):
         """The gain, zero at first, and the critic's weights."""
         spaces: Any = (self.observation_space, self.action_space)
         seen, voltages = (space.shape[0] for space in spaces)
-        self.settings: Any = self.model_config
+        self.settings = cast("dict[str, Any]", self.model_config)
         self.action_dist_cls = TorchDiagGaussian
         self.gain = nn.Linear(seen, voltages, bias=False)
         self.value = nn.Linear(seen * (seen + 1) // 2, 1)
