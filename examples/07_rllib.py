@@ -1,8 +1,8 @@
 # %% [markdown]
 # # PPO by RLlib
 #
-# A filter that knows the design turns readings $y_0, \dots, y_k$ into a belief $\hat x_k$ of the blade's slowest modes. Where belief,
-# plant and cost are linear and quadratic, the best policy is a gain and its value a quadratic,
+# A filter that knows the design turns readings $y_0, \dots, y_k$ into a belief $\hat x_k$ of the slowest modes of the blade. Where
+# belief, plant and cost are linear and quadratic, the best policy is a gain and its value a quadratic,
 #
 # $$
 # u_k = -K \hat x_k, \qquad V(\hat x) = \hat x^T P \hat x + c .
