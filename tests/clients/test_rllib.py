@@ -57,7 +57,6 @@ def test_two_iterations_change_the_gain_and_give_a_controller(cluster, rooms, ru
     results = [algorithm.train() for _ in range(2)]
     policy = rooms.policy_of(algorithm)
     algorithm.stop()
-    assert 10 < results[-1]["env_runners"]["episode_len_mean"] <= 20  # those of a batch begin out of step
     assert np.isfinite(results[-1]["env_runners"]["episode_return_mean"])
     assert not untrained.weights["weight0"].any()
     assert policy.weights["weight0"].any()
