@@ -157,7 +157,7 @@ def test_ctrl_c_writes_the_page_of_what_is_finished_and_says_how_to_go_on(tmp_pa
         raise KeyboardInterrupt
 
     (first,), (second,) = chosen(["table-3.4"]), chosen(["figure-3.3"])
-    monkeypatch.setattr("train.cli.reproduce.chosen", lambda names: (first, replace(second, compute=interrupted)))
+    monkeypatch.setattr("train.cli.reproduce.chosen", lambda names: (first, replace(second, outcome=interrupted)))
     result = CliRunner().invoke(app, ["reproduce", "--output", str(tmp_path), "--jobs", "1"])
     assert result.exit_code == 130
     assert "beamenv: interrupted: what was finished is kept, and the same command resumes." in result.output
