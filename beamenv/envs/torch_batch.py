@@ -68,11 +68,11 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
     after `reset(seed=7)`, within rounding (1e-10 of the largest number with 64 bits, 1e-4 with 32): what is random is then drawn
     on the host, and each step copies it to the device. `reset()` never re-seeds.
 
-    **Autoreset.** As `RotatingBeamVectorEnv`'s. On a GPU every blade begins another episode in each step, of which a mask keeps
-    those whose time it is: that takes less than to wait for the device. `"SameStep"` then tells `final_obs` (N, p) and
-    `final_info` with every step, `"NextStep"` what a reset tells, and the masks `_final_obs`, `_static_strain`, … say for which
-    blades they hold. On the processor they are told when an episode has ended or begun. With `"Disabled"` a step of blades whose
-    episode is over is refused on the processor; on a GPU they go on.
+    **Autoreset.** As `RotatingBeamVectorEnv`'s; but every step tells the same names: with `"SameStep"` also `final_obs` (N, p) and
+    `final_info`, with both that begin episodes also `static_stretch`, …, and the masks `_final_obs`, `_static_stretch`, … say for
+    which blades they hold. On a GPU all blades begin another episode in every step, of which a mask keeps those whose time it is:
+    that takes less than to wait for the device. With `"Disabled"` a step of blades whose episode is over is refused on the
+    processor; on a GPU they go on.
 
     **Info** is that of `RotatingBeamVectorEnv` without `note` and `assumed`, which are text: see `task.note`. The masks of what
     holds for all blades are one tensor, which is not to be written to.

@@ -26,7 +26,7 @@ class Outcome(NamedTuple):
     truncated: Any
     """(N,) bools"""
     begun: Any
-    """(N,) bools: which have begun another episode. None: none has, and it was known without asking a device."""
+    """(N,) bools: which have begun another episode; None where none does by itself."""
     final: Motion | None
     """Where the next episode begins in the same step, the motion before it did."""
 
@@ -65,25 +65,24 @@ class TorchEpisodes:
         truncated, begun, final = self.elapsed >= self.steps, None, None
         if next_step:
             truncated = truncated & ~resting
-            motion, begun = self._begun(resting, motion, generators)
+            motion, begun = self._begun(resting, motion, generators), resting
         reward, terminated = motion.reward, motion.failed
         self.over = terminated | truncated
         if self.mode is AutoresetMode.SAME_STEP:
-            final = motion
-            motion, begun = self._begun(self.over, motion, generators)
-            self.over = torch.zeros_like(resting)
+            final, begun = motion, self.over
+            motion, self.over = self._begun(begun, motion, generators), torch.zeros_like(resting)
         return Outcome(motion, reward, terminated, truncated, begun, final)
 
-    def _begun(self, mask: Any, motion: Motion, generators: Any) -> tuple[Motion, Any]:
-        """The motion with that of the mask's blades exchanged for the start of another episode; the mask, None if it is empty."""
+    def _begun(self, mask: Any, motion: Motion, generators: Any) -> Motion:
+        """The motion with that of the mask's blades exchanged for the start of another episode."""
         looks = self.arrays.on_host or not isinstance(generators, torch.Generator)
         rows = mask.nonzero()[:, 0] if looks else mask
         if looks and not len(rows):
-            return motion, None
+            return motion
         those: Those = SomeRows(rows, ()) if looks else Masked(mask)
         first = self.blades.begin(generators, rows)
         self.elapsed = those.put(self.elapsed, 0)
-        return Motion(*(those.put(each, new) for each, new in zip(motion, first, strict=True))), mask
+        return Motion(*(those.put(each, new) for each, new in zip(motion, first, strict=True)))
 
     def state_dict(self) -> dict[str, Any]:
         """Copies of what moves; the generator is the caller's."""

@@ -1,4 +1,4 @@
-"""skrl wraps one blade, Gymnasium's vectorisations and the native batch."""
+"""skrl wraps one blade, Gymnasium's vectorisations, the native batch and the batch of tensors."""
 
 import gymnasium
 import pytest
@@ -24,3 +24,15 @@ def test_its_wrapper_steps(count):
     for _ in range(20):
         observations, rewards, terminated, truncated, _ = env.step(torch.zeros((count or 1, 4)))
     assert truncated.all() and observations.dtype == torch.float32
+
+
+def test_its_wrapper_steps_the_batch_of_tensors():
+    import torch
+    from skrl.envs.wrappers.torch import wrap_env
+
+    env = wrap_env(beamenv.torch_vec(3, device="cpu", duration=0.01), wrapper="gymnasium")
+    observations, _ = env.reset()
+    assert observations.shape == (3, 4)
+    for _ in range(20):
+        observations, rewards, terminated, truncated, _ = env.step(torch.zeros((3, 4)))
+    assert truncated.all() and observations.dtype == rewards.dtype == torch.float32

@@ -28,6 +28,8 @@ def acting(steps, count=COUNT):
 
 def assert_alike(ours, theirs, share, largest):
     """Each tensor within a share of the largest number that its name has had; masked entries are left out."""
+    further = {name: mask for name, mask in ours.items() if name.startswith("_") and name not in theirs}
+    assert not any(mask.any() for mask in further.values()), list(further)
     for name, value in theirs.items():
         if isinstance(value, dict):
             assert_alike(ours[name], value, share, largest)
@@ -174,6 +176,38 @@ def test_an_equal_batch_goes_on_bit_for_bit_from_a_state(scenario):
         one, *others = (envs.step(torch.tensor(actions, dtype=torch.float32)) for envs in (first, second, copied))
         for other in others:
             assert torch.equal(one[0], other[0]) and torch.equal(one[1], other[1]) and torch.equal(one[3], other[3])
+
+
+def second_episodes(envs, count, zeros):
+    """Of each blade's second episode: J without control, energy at the start, load at the start and half-way, and the truth."""
+    envs.reset(seed=11)
+    steps, cost, half = envs.steps, np.zeros(count), None
+    for _ in range(steps):
+        *_, info = envs.step(zeros)
+    energy, begins, truth = info["energy"], envs.coming_loads, envs.episode_truth
+    for k in range(steps):
+        *_, info = envs.step(zeros)
+        cost += np.asarray((info if k < steps - 1 else info["final_info"])["cost_increment"])
+        half = envs.coming_loads if k == steps // 2 else half
+    return [np.asarray(each, dtype=np.float64) for each in (cost, energy, begins, half, truth)]
+
+
+MANY, SMALL = 1000, {"modes": 4, "truth_modes": 4, "beam": {"terms": 8}}
+
+
+@pytest.mark.usefixtures("looking")
+def test_what_a_device_draws_has_the_distribution_of_what_numpy_draws():
+    scenario = {"drive": {"delay": [0, 3]}, "failures": {"dead_actuators": 1, "faulty_sensors": 1}, "white_load": False}
+    made = {"scenario": {**scenario, "plants": {"speed_ratio": [0.8, 1.2], "bank": 3}}, "duration": 0.02, "blade": SMALL}
+    made["autoreset_mode"] = "SameStep"
+    ours = second_episodes(batch_of(MANY, **made), MANY, torch.zeros(MANY, 4))
+    theirs = second_episodes(RotatingBeamVectorEnv(MANY, **made), MANY, np.zeros((MANY, 4)))
+    for mine, other in zip(ours, theirs, strict=True):  # medians too, for J has a long tail
+        median = np.median(other, axis=0)
+        for one, two in ((mine, other), (mine**2, other**2), (mine > median, other > median), (mine == 0.0, other == 0.0)):
+            error = np.sqrt((one.var(axis=0) + two.var(axis=0)) / MANY)
+            assert np.all(np.abs(one.mean(axis=0) - two.mean(axis=0)) <= 4.0 * error)
+    assert ours[-1][:, 1].max() == 3.0 and set(ours[-1][:, 0]) == {0.0, 1.0, 2.0}
 
 
 @pytest.mark.parametrize(

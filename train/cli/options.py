@@ -7,6 +7,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, redirect_stdout
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -59,8 +60,10 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None, 
 
 
 def working(jobs: int | None, cluster: str | None) -> Workers:
-    """Who works, by the options."""
-    return Workers(JOBS if jobs is None and cluster is None else jobs, cluster)
+    """Who works, by the options; this process alone where joblib, which starts others, is not installed and nobody asks for any."""
+    if jobs is None and cluster is None and find_spec("joblib") is not None:
+        return Workers(JOBS)
+    return Workers(jobs, cluster)
 
 
 @contextmanager

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from train.shared.cluster import connected
+from train.shared.cluster import LOCAL, connected
 from train.shared.threads import ONE_THREAD
 from train.workers import arrival
 from train.workers.node import opened, terms
@@ -22,7 +24,8 @@ def cluster(address: str, jobs: int | None) -> Iterator[Cluster]:
     with connected(address, jobs):
         import ray
 
-        pool = Cluster(ray, jobs)
+        paths = {"PYTHONPATH": os.pathsep.join(each or os.curdir for each in sys.path)} if address == LOCAL else {}
+        pool = Cluster(ray, jobs, {**ONE_THREAD, **paths})
         try:
             yield pool
         finally:
@@ -38,10 +41,10 @@ def _clause(error: Exception) -> str:
 class Cluster:
     """Tasks of Ray's on a processor each, and on one thread. They are not retried by Ray: ``hand_out`` does that."""
 
-    def __init__(self, ray: Any, jobs: int | None) -> None:
+    def __init__(self, ray: Any, jobs: int | None, environment: Mapping[str, str]) -> None:
         ray.cloudpickle.register_pickle_by_value(arrival)
         self._ray, self._jobs = ray, jobs
-        self._task = ray.remote(arrival.arrived).options(num_cpus=1, max_retries=0, runtime_env={"env_vars": ONE_THREAD})
+        self._task = ray.remote(arrival.arrived).options(num_cpus=1, max_retries=0, runtime_env={"env_vars": dict(environment)})
         self._begun: dict[Future[Any], Any] = {}
 
     def room(self) -> int:
