@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import REFERENCE, Arrays
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.task import INFO, Task
@@ -15,16 +16,16 @@ from beamenv.task import INFO, Task
 Mask = NDArray[np.bool_]
 
 
-def blades_of(tasks: Sequence[Task], count: int) -> Blades | MixedBlades:
+def blades_of(tasks: Sequence[Task], count: int, arrays: Arrays = REFERENCE) -> Blades | MixedBlades:
     """Blade k that of task k modulo their number; equal ones are one."""
     if len(tasks) == 1:
-        return Blades(tasks[0].bank, tasks[0].scenario, count, tasks[0].physical_units)
+        return Blades(tasks[0].bank, tasks[0].scenario, count, tasks[0].physical_units, arrays)
     different: dict[Any, Task] = {}
     for task in tasks[:count]:
         different.setdefault((task.blade, task.design_blade), task)
     place = {blades: place for place, blades in enumerate(different)}
     kind = np.resize(np.array([place[task.blade, task.design_blade] for task in tasks[:count]]), count)
-    return MixedBlades([task.bank for task in different.values()], kind, tasks[0].scenario, tasks[0].physical_units)
+    return MixedBlades([task.bank for task in different.values()], kind, tasks[0].scenario, tasks[0].physical_units, arrays)
 
 
 def masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:

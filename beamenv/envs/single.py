@@ -21,6 +21,7 @@ from beamenv.simulation.blades import Blades
 from beamenv.simulation.motion import Motion
 from beamenv.task import (
     DesignArgument,
+    DType,
     Task,
     checked_action,
     checked_dtype,
@@ -253,7 +254,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         scenario: Scenario | Mapping[str, Any] | str | None = None,
         duration: float | None = None,
         physical_units: bool = False,
-        dtype: Any = "float32",
+        dtype: Any = None,
         render_mode: str | None = None,
         plant: PlantArgument | None = None,
         spread: Spread | Mapping[str, Any] | None = None,
@@ -261,7 +262,7 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, but must be None or one of {self.metadata['render_modes']}.")
         self.render_mode = render_mode
-        self._dtype = checked_dtype(dtype)
+        self._dtype: DType = "float32" if dtype is None else checked_dtype(dtype)
         self.set_task(resolve_task(preset, speed, blade, design, scenario, duration, physical_units, plant, spread))
 
     def set_task(self, task: Task) -> None:

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from beamenv.arrays import REFERENCE, Arrays, Masked, Those, namespace, on_host
 from beamenv.plant.plant import Plant, drive_limit, normalised
-from beamenv.scenarios.drawing import load_cases
-from beamenv.scenarios.load_cases import LoadCases
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, Numbers, draw
 from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
@@ -24,7 +22,8 @@ from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDi
 from beamenv.simulation.signals.electronics import Electronics
 from beamenv.simulation.signals.faults import fault_draws
 from beamenv.simulation.signals.own_loads import OwnLoads
-from beamenv.simulation.strain_limit import safe_energy, strained_too_much
+from beamenv.simulation.starts import Starts
+from beamenv.simulation.strain_limit import StrainLimit, safe_energy
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -61,39 +60,40 @@ class Blades:
         arrays: Arrays = REFERENCE,
     ) -> None:
         self.bank = plant if isinstance(plant, Bank) else Bank.single(plant)
-        self.plant, self.scenario, self.arrays = self.bank.plant, scenario, arrays
+        self.plant, self.scenario, self.arrays, self._of_numpy = self.bank.plant, scenario, arrays, arrays.of_numpy
         self._sizes = (count,) if isinstance(count, int) else None if count is None else tuple(count)
         self.count = None if self._sizes is None else sum(self._sizes)
         self._host_lie = Arrangement.of(self._sizes)
-        self._lie = self._host_lie if arrays.of_numpy else Arrangement((self.count or 1,))
+        self._lie = self._host_lie if self._of_numpy else Arrangement((self.count or 1,))
         self.shape = self._shape = self._lie.shape
-        self._physical = physical_units
+        self._physical, self._sensors = physical_units, len(self.plant.C)
         self._normalised = normalised(self.plant)
         limits = drive_limit(self.plant), self.plant.sensor_full_scale, *self._normalised.voltage_limits
         self._drive, self._full_scale, self._lowest, self._highest = (arrays.floats(_alike(limit)) for limit in limits)
-        self._strained = self.bank.strain.shape[-2] > 0
-        self._safe_energy = safe_energy(self.bank.strain, self.bank.standing, self.bank.failure_strain)
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         n = self.count or 1
         self.electronics = Electronics(self.plant, scenario, n, arrays) if scenario.imperfect else None
         self.own_loads = OwnLoads(scenario.loads, self.plant.control_interval, n, self.plant.loads) if scenario.loads else None
-        self._stepped, self._speeds = self.bank.convert(arrays), arrays.exact(self.bank.speeds)
+        self._stepped = self.bank.convert(arrays)
+        tables = self._stepped.strain, self._stepped.standing, self._stepped.failure_strain
+        safe = safe_energy(self.bank.strain, self.bank.standing, self.bank.failure_strain)
+        self._limit = StrainLimit(*tables, safe, arrays)
         self.plants = Allotment(self._stepped, self._lie, self._sizes or (1,), arrays)
-        several = self.plants.product if self.plants.drawn and self._shape and arrays.of_numpy else row_product
-        self._multiply = self._lie.product if self._lie.runs else several  # a blade alone has no time to ask
+        self._starts = Starts(self.bank, self._stepped, self.plants, arrays, arrays.exact(self.bank.speeds))
+        own = self.plants.product if self.plants.drawn and not self._lie.runs else self._lie.product
+        self._multiply = own if self._shape and self._of_numpy else row_product  # a blade alone has no time to ask
         self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
         self._changing = (
             self.bank.runs or self.bank.walk is not None or (self.electronics is not None and self.electronics.changing)
         )
-        own = self.plant, *self.bank.others
-        self._lowest_frequency = np.array([plant.natural_frequencies[0] for plant in own])
-        per_cost = np.array([-1.0 / reward_scale(plant) for plant in own])
-        self._reward_per_cost: Any = per_cost[0] if len(own) == 1 else per_cost[self.plants.group]
+        moving = self.plant, *self.bank.others
+        per_cost = np.array([-1.0 / reward_scale(plant) for plant in moving])
+        self._reward_per_cost = arrays.floats(per_cost[0] if len(moving) == 1 else per_cost[self.plants.group])
         sizes = self.plant.B.shape[1], self.plant.disturbance_input.shape[1], self.plant.blade_states
         by_column = len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups)
         operators = self._stepped.operators
         self._memory: Any = (
-            InPlace(self._lie, operators, sizes, arrays, by_column) if arrays.of_numpy else Fresh(n, operators, sizes, arrays)
+            InPlace(self._lie, operators, sizes, arrays, by_column) if self._of_numpy else Fresh(n, operators, sizes, arrays)
         )
         self._halves = arrays.floats(np.full(sizes[-1], 0.5))
         """Weights of the squares of the blade's own states in the energy."""
@@ -153,9 +153,7 @@ class Blades:
     @property
     def coming_loads(self) -> Any:
         """(…, k) N/m, lag and flap: the line loads, white ones included, that act over the interval to come."""
-        out = (
-            np.zeros((*self._shape, self.plant.disturbance_input.shape[1]), self.arrays.precision) if self.arrays.of_numpy else None
-        )
+        out = np.zeros((*self._shape, self.plant.disturbance_input.shape[1]), self.arrays.precision) if self._of_numpy else None
         loads = self.disturbances.loads(out)
         return self._by_blade(loads if self.own_loads is None else self.own_loads.added(loads))
 
@@ -200,10 +198,11 @@ class Blades:
         those = Masked(rows) if rows.dtype == namespace(rows).bool else self._lie.those(rows)
         numbers = self._numbers(generators, those, scenario)
         self._begin_plants_and_faults(those, numbers)
-        cases, seeded = self._cases(scenario, those, numbers), isinstance(generators, Sequence)
+        seeded = isinstance(generators, Sequence)
+        cases = self._starts.cases(scenario, those, numbers, seeded)
         chance: Any = self._disturbances
         noise = chance.begin(those, cases, generators if seeded else self.arrays.floats(numbers.noise))
-        state = self._initial_state(those, self.arrays.floats(cases.deflection), initial_state)
+        state = self._starts.state(those, self.arrays.floats(cases.deflection), initial_state)
         self._memory.put(those, state)
         motion = self._undriven(state, noise, those)
         return motion if self._shape else Motion(*(field[0] for field in motion))
@@ -219,30 +218,6 @@ class Blades:
         assert self._disturbances is not None
         widths = self._disturbances.columns, self._fault_draws, self.plants.draws, self.plant.loads
         return draw(scenario, generators, on_host(those.rows), self.plants.group, *widths)
-
-    def _cases(self, scenario: Scenario, those: Those, numbers: Numbers) -> LoadCases:
-        """Load cases, on the host where each blade has its own generator."""
-        index, group = those.take(self.plants.index), self.plants.group[on_host(those.rows)]
-        lowest = self._lowest_frequency[group] if self.bank.groups > 1 else self._lowest_frequency[0]
-        if isinstance(self._disturbances, SeededDisturbances):
-            return load_cases(scenario, self.plant, lowest, numbers.load, numbers.turns, self.bank.speeds[on_host(index)])
-        exact = self.arrays.exact
-        load, turns, speeds = exact(numbers.load), exact(numbers.turns), self._speeds[index]
-        cases = load_cases(scenario, self.plant, lowest, load, turns, speeds)
-        return cases if self.arrays.of_numpy else cases.convert(self.arrays.floats)
-
-    def _initial_state(self, those: Those, deflection: Any, initial_state: Any) -> Any:
-        """(k, n) in the axes of the bank."""
-        bank, index = self._stepped, those.take(self.plants.index)
-        state = row_product(deflection, self._of(bank.release, index))
-        if bank.start is not None:
-            state = state + bank.start[self.plants.group[on_host(those.rows)]]
-        if initial_state is None:
-            return state
-        given = namespace(state).broadcast_to(self.arrays.floats(initial_state), state.shape)
-        if bank.own is not None:
-            given = row_product(given, bank.own[0][index].swapaxes(-1, -2))
-        return row_product(given, bank.axes[index].swapaxes(-1, -2))
 
     def _begin_plants_and_faults(self, those: Those, numbers: Numbers) -> None:
         """Which plant each blade has, what is wrong with it, and what loads of one's own it meets."""
@@ -260,15 +235,11 @@ class Blades:
             own = numbers.own[rows] if isinstance(those, Masked) else numbers.own
             self.own_loads.begin(on_host(rows), on_host(own))
 
-    def _of(self, tables: Any, index: Any) -> Any:
-        """Arrays of the plants at ``index`` (k,); of tensors where there is one plant, that alone."""
-        return tables[0] if len(self.bank) == 1 and not self.arrays.of_numpy else tables[index]
-
     def _undriven(self, state: Any, noise: Any, those: Those) -> Motion:
         """Motion at the start of an episode, one row for each state (k, n)."""
         bank, index, array = self._stepped, those.take(self.plants.index), namespace(state)
         energetic, noise = state[:, : self.plant.blade_states], noise[:, : len(self.plant.C)]
-        output, none = row_product(state, self._of(bank.readout, index)), array.zeros_like(state[:, 0])
+        output, none = row_product(state, self._starts.of(bank.readout, index)), array.zeros_like(state[:, 0])
         if self.electronics is None:
             reading = array.clip(output + noise, -1.0, 1.0)
         else:
@@ -278,7 +249,7 @@ class Blades:
             reward=none,
             failed=none > 0.0,
             volts=array.zeros_like(state[:, :1]) + array.zeros_like(self._stepped.effort_weight[0, 0]),
-            tip_displacement=row_product(state, self._of(bank.tip, index)),
+            tip_displacement=row_product(state, self._starts.of(bank.tip, index)),
             energy=0.5 * row_dot(energetic, energetic),
             effort=none + 0.0,
             cost_increment=none + 0.0,
@@ -298,7 +269,8 @@ class Blades:
             loads = self.own_loads.added(loads)
             self.own_loads.elapse()
         joined, voltages = memory.join(acting, loads)
-        state, reading, tip, increment = advance(self.plants.operators, joined, memory.product, self._multiply, memory.squares)
+        operators, multiply = self.plants.operators, self._multiply
+        state, reading, tip, increment = advance(operators, joined, memory.product, multiply, memory.squares, memory.views)
         effort = row_dot(self._multiply(voltages, self.plants.effort_weight, memory.weighted), voltages)
         memory.become(state)
         noise = self._disturbances.next(generators, resting)
@@ -310,7 +282,7 @@ class Blades:
         return Motion(
             self._observed(reading, noise),
             increment * self._reward_per_cost,
-            self._failed(energy if self._strained else energy + increment),  # where no strain is known, only what is no number
+            self._limit.failed(energy, increment, lambda: self.moving, self.plants.index),
             held * self._drive,
             self._by_blade(tip),
             energy,
@@ -320,7 +292,7 @@ class Blades:
 
     def _limited(self, actions: Any) -> Any:
         """Actions as the drive lets them through; NumPy is quicker with two calls than with one."""
-        if self.arrays.of_numpy:
+        if self._of_numpy:
             return np.maximum(np.minimum(actions, self._highest), self._lowest)
         return namespace(actions).clip(actions, self._lowest, self._highest)
 
@@ -372,7 +344,7 @@ class Blades:
 
     def _by_blade(self, columns: Any) -> Any:
         """A copy (…, columns) of what is laid out in blocks; tensors lie by blade."""
-        if not self.arrays.of_numpy:
+        if not self._of_numpy:
             return columns
         return np.array(columns, order="C").reshape(self.count or 1, -1) if self._shape else columns.copy()
 
@@ -385,37 +357,14 @@ class Blades:
         if self.electronics is not None:
             flat = self.electronics.acquire(*(self._batched(self._by_blade(each)) for each in (output, noise)))
             return self._in_units(flat if self._shape else flat[0])
-        noise = noise[..., : output.shape[-1]]
-        if not self.arrays.of_numpy:
-            return self._in_units(namespace(output).clip(output + noise, -1.0, 1.0))
-        noisy = np.empty(output.shape, output.dtype)  # the output may be part of the state
-        np.add(output, noise, out=noisy)
-        reading = noisy.reshape(self.count or 1, -1) if self._shape else noisy
+        if noise.shape[-1] > self._sensors:
+            noise = noise[..., : self._sensors]
+        reading = output + noise
+        if not self._of_numpy:
+            return self._in_units(namespace(output).clip(reading, -1.0, 1.0))
         np.minimum(reading, _FULL, out=reading)
         np.maximum(reading, _MINUS_FULL, out=reading)
-        return self._in_units(reading)
+        return self._in_units(self._by_blade(reading) if self._shape else reading)
 
     def _in_units(self, reading: Any) -> Any:
         return reading * self._full_scale if self._physical else reading
-
-    def _failed(self, energy: Any) -> Any:
-        """Only a blade with enough energy can have failed, and only then are its strains worked out; on a device they always are,
-        for it would have to be waited for.
-        """
-        bank = self._stepped
-        if not self.arrays.on_host:
-            strain, standing, limit = (
-                self._of(each, self.plants.index) for each in (bank.strain, bank.standing, bank.failure_strain)
-            )
-            return strained_too_much(strain, standing, limit, self.moving)
-        failed = namespace(energy).zeros_like(energy, dtype=bool) if self.arrays.of_numpy else energy < 0.0
-        most = energy.max() if self._shape else energy
-        if not most <= self._safe_energy:  # a NaN is not safe either
-            rows = np.flatnonzero(~(np.atleast_1d(on_host(energy)) <= self._safe_energy))
-            state, index = self._batched(self.moving)[rows], self.plants.index[rows]
-            found = strained_too_much(bank.strain[index], bank.standing[index], bank.failure_strain[index], state)
-            if self._shape:
-                failed[rows] = found
-            else:
-                failed[...] = found[0]
-        return failed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,40 +86,77 @@ def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
     return np.ascontiguousarray(fused)
 
 
+class Views(NamedTuple):
+    """Parts of what goes into a product and of what comes out of it."""
+
+    crossing: Any
+    """(…, s − ``crossing``) of what goes in: what has a cost with ``costs``."""
+    lagging: tuple[Any, Any] | None
+    """The amplifiers' voltages (…, m) and those held, where their states are not in the product."""
+    product: Any
+    """(…, first states that are)"""
+    state: Any
+    output: Any
+    tip: Any
+    costs: Any
+
+
+def views_of(operators: Operators, joined: Any, product: Any) -> Views:
+    """The parts of rows (…, s) that go in and of rows (…, w) that come out."""
+    n, lag, read, tip, cost = operators.states, operators.lagging, operators.reads, operators.tips, operators.costs
+    crossing = joined[..., operators.crossing :]
+    return Views(
+        crossing,
+        (joined[..., n - lag : n], joined[..., n : n + lag]) if lag else None,
+        product[..., : n - lag],
+        product[..., :n],
+        product[..., read : read + operators.outputs],
+        product[..., tip : tip + operators.displaced],
+        product[..., cost : cost + crossing.shape[-1]],
+    )
+
+
 def advance(
-    operators: Operators, joined: Any, out: Any = None, multiply: Callable[[Any, Any, Any], Any] | None = None, squares: Any = None
+    operators: Operators,
+    joined: Any,
+    out: Any = None,
+    multiply: Callable[[Any, Any, Any], Any] | None = None,
+    squares: Any = None,
+    views: Views | None = None,
 ) -> tuple[Any, Any, Any, Any]:
     """One control interval, exactly.
 
     ``joined`` (..., n + m + k) is [state, voltages (V), line loads (N/m)]. Returns the next state (..., n), the
     noise-free sensor output there (..., p) in A, the tip displacement there (..., q) in m (lag, flap), and the
     increment of J over the interval (...,) in J s. With NumPy, ``out`` (..., w) may be given to hold the product, and the first
-    three arrays are then views of it. ``squares`` (..., b) are those of the first b states, where they are known. ``multiply``
-    stands in for ``row_product``.
+    three arrays are then views of it. ``squares`` (..., b) are those of the first b states, and ``views`` the parts of ``joined``
+    and ``out``, where they are known. ``multiply`` stands in for ``row_product``.
     """
-    read, tip, cost, diagonal = operators.reads, operators.tips, operators.costs, operators.weights.shape[-1]
     product = (multiply or row_product)(joined, operators.fused, out)
-    crossing = joined[..., operators.crossing :]
-    increment = row_dot(product[..., cost : cost + crossing.shape[-1]], crossing)
+    parts = views_of(operators, joined, product) if views is None else views
+    increment = row_dot(parts.costs, parts.crossing)
+    diagonal = operators.weights.shape[-1]
     if diagonal:
         increment = increment + weighted(joined[..., :diagonal] ** 2 if squares is None else squares, operators.weights)
-    state = product[..., : operators.states] if not operators.lagging else _with_amplifiers(operators, joined, product, out)
-    return state, product[..., read : read + operators.outputs], product[..., tip : tip + operators.displaced], increment
+    state = parts.state if parts.lagging is None else _with_amplifiers(operators.decay, parts, out is not None)
+    return state, parts.output, parts.tip, increment
 
 
-def _with_amplifiers(operators: Operators, joined: Any, product: Any, out: Any) -> Any:
+def _with_amplifiers(decay: float, parts: Views, in_place: bool) -> Any:
     """The next state (..., n): that of blade and filters from the product, and the voltages that amplifiers then give."""
-    n, first = operators.states, operators.states - operators.lagging
-    held = joined[..., n : n + operators.lagging]
-    given = held + operators.decay * (joined[..., first:n] - held) if operators.decay else held
-    if out is None:
-        return namespace(product).concatenate([product[..., :first], given], -1)
-    product[..., first:n] = given  # in the place of what the cost no longer needs
-    return product[..., :n]
+    assert parts.lagging is not None
+    before, held = parts.lagging
+    given = held + decay * (before - held) if decay else held
+    if not in_place:
+        return namespace(given).concatenate([parts.product, given], -1)
+    parts.state[..., parts.product.shape[-1] :] = given  # in the place of what the cost no longer needs
+    return parts.state
 
 
 def weighted(squares: Any, weights: Any) -> Any:
     """Sums (...,) of squares (..., b) times weights (b,) or (..., b)."""
+    if squares.ndim == 1 and isinstance(squares, np.ndarray):
+        return squares.dot(weights)  # starts faster
     return squares @ weights if weights.ndim == 1 else row_dot(squares, weights)
 
 
@@ -132,7 +169,7 @@ def row_product(rows: Any, matrix: Any, out: Any = None) -> Any:
         return (each @ matrix if out is None else np.matmul(each, matrix, out[..., None, :]))[..., 0, :]
     if out is None:
         return rows @ matrix
-    return np.dot(rows, matrix, out) if rows.ndim == 1 else np.matmul(rows, matrix, out)  # for one row, dot starts faster
+    return rows.dot(matrix, out) if rows.ndim == 1 else np.matmul(rows, matrix, out)  # for one row, dot starts faster
 
 
 def row_dot(left: Any, right: Any) -> Any:

@@ -11,13 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.arrays import Arrays, SomeRows, copied, namespace
-from beamenv.simulation.kernel import Operators, row_product
+from beamenv.simulation.kernel import Operators, row_product, views_of
 
 Array = NDArray[Any]
 Rows = NDArray[np.int64]
 
 _BLOCK = 256
 """Blades that lie together in memory: BLAS multiplies blocks of this size fastest."""
+
+_SMALL = 1_000_000
+"""Products of up to so many multiplications BLAS does without rearranging the matrices first, a third faster."""
 
 _PAGE, _SHIFT = 64, 24
 """Columns of groups begin this many numbers after a multiple of that: powers of two apart they would share the cache's lines."""
@@ -76,10 +79,10 @@ class Arrangement:
     def product(self, rows: Any, matrix: Any, out: Any = None) -> Any:
         """As ``row_product``; but matrices (groups, k, l) are one for each group's rows."""
         if not self.runs or matrix.ndim != 3:
-            return row_product(rows, matrix, out)
+            return row_product(rows, matrix, out) if matrix.ndim > 2 or out is None else product_in_parts(rows, matrix, out)
         out = np.empty((*self.shape, matrix.shape[-1]), matrix.dtype) if out is None else out
         for run in self.runs:
-            row_product(run.of(rows), matrix[run.groups, None], run.of(out))
+            product_in_parts(run.of(rows), matrix[run.groups, None], run.of(out))
         return out
 
 
@@ -121,23 +124,23 @@ class InPlace:
 
     def __init__(self, lie: Arrangement, operators: Operators, sizes: Sizes, arrays: Arrays, by_column: bool) -> None:
         n, (m, k, b), width = operators.states, sizes, operators.fused.shape[-1]
-        self._squares: Array
+        self.squares: Array
+        """(…, b) of the blade's own states, which are kept from one instant to the next."""
         memories: list[Array] = []
         for columns in (*[max(n + m + k, width)] * 2, m, b):
             by_blade = np.zeros((*lie.shape, columns), arrays.precision)
             memories.append(lie.columns_first(columns, arrays.precision)[1] if by_column else by_blade)
-        *both, self.weighted, self._squares = memories
+        *both, self.weighted, self.squares = memories
         self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in both)
+        self.views, self._other_views = (
+            views_of(operators, one.joined, other.product) for one, other in ((self._now, self._then), (self._then, self._now))
+        )
+        """Of this instant's product."""
 
     @property
     def state(self) -> Array:
         """(…, n), as the batch lies: a view."""
         return self._now.state
-
-    @property
-    def squares(self) -> Array:
-        """(…, b) of the blade's own states, which are kept from one instant to the next."""
-        return self._squares
 
     @property
     def loads(self) -> Array:
@@ -151,14 +154,15 @@ class InPlace:
 
     def join(self, acting: Array, loads: Array) -> tuple[Array, Array]:
         """[state, voltages, loads] (…, s), of which the loads have been written, and the voltages there."""
-        voltages = self._now.voltages
-        voltages[...] = acting.reshape(voltages.shape)
-        return self._now.joined, voltages
+        joined, _, voltages, *_ = self._now
+        voltages[...] = acting if acting.shape == voltages.shape else acting.reshape(voltages.shape)
+        return joined, voltages
 
     def become(self, state: Array) -> None:
         """Go on to the state that the product begins with."""
         self._now, self._then = self._then, self._now
-        np.square(self._now.energetic, out=self._squares)
+        self.views, self._other_views = self._other_views, self.views
+        np.square(self._now.energetic, out=self.squares)
 
     def put(self, those: Any, state: Array) -> None:
         """Put some blades into other states (k, n), at rest otherwise."""
@@ -168,7 +172,7 @@ class InPlace:
     def carry(self, those: Any, state: Array) -> None:
         """Put some blades into other states (k, n)."""
         those.lay(self._now.state, state)
-        those.lay(self._squares, state[:, : self._squares.shape[-1]] ** 2)
+        those.lay(self.squares, state[:, : self.squares.shape[-1]] ** 2)
 
     def of(self, those: Any) -> Array:
         """The states (k, n) of some blades; (n,) of a blade alone."""
@@ -177,7 +181,7 @@ class InPlace:
     def load(self, joined: Any) -> None:
         """Go back to an earlier ``joined``."""
         self._now.joined[...] = np.asarray(joined)
-        np.square(self._now.energetic, out=self._squares)
+        np.square(self._now.energetic, out=self.squares)
 
     @property
     def joined(self) -> Array:
@@ -188,7 +192,7 @@ class InPlace:
 class Fresh:
     """The states of blades as tensors, of which each step makes new ones: gradients pass."""
 
-    loads = product = weighted = None
+    loads = product = weighted = views = None
 
     def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
         self._own = sizes[-1]
@@ -229,6 +233,17 @@ class Fresh:
     def detach(self) -> None:
         """Cut the state from the graph that it came of."""
         self.state = self.state.detach()
+
+
+def product_in_parts(rows: Array, matrix: Array, out: Array) -> Array:
+    """Blocks of rows (…, size, k) times a matrix (…, k, l), each block in as many equal parts as make its products small."""
+    size, each = rows.shape[-2], matrix.shape[-2] * matrix.shape[-1]
+    parts = next((parts for parts in (1, 2, 4, 8) if size % parts == 0 and size // parts * each <= _SMALL), 1)
+    if parts == 1:
+        return np.matmul(rows, matrix, out)
+    rows, seen = (array.reshape(*array.shape[:-2], parts, size // parts, -1) for array in (rows, out))
+    np.matmul(rows, matrix if matrix.ndim == 2 else matrix[..., None, :, :], seen)
+    return out
 
 
 def batch_shape(count: int) -> tuple[int, int]:

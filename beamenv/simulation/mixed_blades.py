@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beamenv.arrays import REFERENCE, Arrays
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades, Rows
 from beamenv.simulation.chance import Generators
@@ -21,10 +22,12 @@ class MixedBlades:
     """N blades, blade k of ``banks[kind[k]]``, with the interface of ``Blades``; all have equally many states and patches.
 
     Blades of one kind lie together, and neighbouring kinds that are alike are one batch of as many groups.
-    One generator for all serves kind after kind, in their order.
+    One generator for all serves kind after kind, in their order. ``arrays`` are of NumPy, as ``Blades`` has them.
     """
 
-    def __init__(self, banks: Sequence[Bank], kind: Rows, scenario: Scenario, physical_units: bool = False) -> None:
+    def __init__(
+        self, banks: Sequence[Bank], kind: Rows, scenario: Scenario, physical_units: bool = False, arrays: Arrays = REFERENCE
+    ) -> None:
         self.count = len(kind)
         members = [rows for rows in (np.flatnonzero(kind == k) for k in range(len(banks))) if len(rows)]
         present = [bank for k, bank in enumerate(banks) if np.any(kind == k)]
@@ -33,7 +36,7 @@ class MixedBlades:
         for together in _alike([len(rows) for rows in members], present):
             rows = np.concatenate([members[k] for k in together])
             sizes = [len(members[k]) for k in together]
-            self._parts.append(Blades(Bank.joined([present[k] for k in together]), scenario, sizes, physical_units))
+            self._parts.append(Blades(Bank.joined([present[k] for k in together]), scenario, sizes, physical_units, arrays))
             self._rows.append(rows)
         self._part, self._own = np.empty(self.count, dtype=np.int64), np.empty(self.count, dtype=np.int64)
         for part, rows in enumerate(self._rows):

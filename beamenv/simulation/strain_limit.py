@@ -7,12 +7,14 @@ stands at without.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.arrays import namespace
+from beamenv.arrays import Arrays, namespace, on_host
 
 Array = NDArray[np.float64]
 
@@ -27,6 +29,44 @@ def safe_energy(strain: Array, standing: Array, limit: Array) -> float:
     left = np.maximum(limit[..., None] - np.abs(standing), 0.0)
     longest = np.divide(left, steepness, out=np.full_like(left, np.inf), where=steepness > 0.0)
     return 0.5 * float(longest.min(initial=np.inf)) ** 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StrainLimit:
+    """What the plants of a bank bear; arrays of the blades that have these plants."""
+
+    strain: Any
+    """(K, s, n) per √J."""
+    standing: Any
+    """(K, s)"""
+    limit: Any
+    """(K,)"""
+    safe: float
+    """``safe_energy`` of them all."""
+    arrays: Arrays
+
+    def failed(self, energy: Any, increment: Any, moving: Callable[[], Any], index: Any) -> Any:
+        """(N,) whether blades with plants ``index`` (N,) have failed, or () of a blade alone, by their energy in J.
+
+        Only a blade with enough energy can have, and only then are its strains worked out of the states (N, n) that ``moving``
+        gives; on a device they always are, for it would have to be waited for. Where no strain is known only what is no longer a
+        number has failed, be it in the ``increment`` of J alone.
+        """
+        energy = energy if self.strain.shape[-2] else energy + increment
+        if not self.arrays.on_host:
+            own = 0 if len(self.limit) == 1 else index
+            return strained_too_much(self.strain[own], self.standing[own], self.limit[own], moving())
+        if not energy.ndim:
+            return bool(not energy <= self.safe and self._strained([0], moving()[None], index)[0])
+        failed = energy < -np.inf
+        if not energy.max() <= self.safe:  # a NaN is not safe either
+            rows = np.flatnonzero(~(on_host(energy) <= self.safe))
+            failed[rows] = self._strained(rows, moving(), index)
+        return failed
+
+    def _strained(self, rows: Any, states: Any, index: Any) -> Any:
+        own = index[rows]
+        return strained_too_much(self.strain[own], self.standing[own], self.limit[own], states[rows])
 
 
 def strained_too_much(strain: Any, standing: Any, limit: Any, state: Any) -> Any:

@@ -27,7 +27,7 @@ def checked_dtype(dtype: Any) -> DType:
     raise Refused("dtype", dtype, "'float32' or 'float64'")
 
 
-_DOUBLE = np.dtype(np.float64)
+_FLOATS = {"float64": np.dtype(np.float64), "float32": np.dtype(np.float32)}
 
 
 def checked_task(task: Any) -> Task:
@@ -37,10 +37,13 @@ def checked_task(task: Any) -> Task:
     raise Refused("task", task, "a Task, such as resolve_task makes")
 
 
-def checked_action(action: Any, shape: tuple[int, ...]) -> Array:
-    """The action as float64; ValueError unless it has the shape and all its numbers are finite."""
-    if type(action) is not np.ndarray or action.dtype is not _DOUBLE:  # a blade alone has no time to look closer
+def checked_action(action: Any, shape: tuple[int, ...], precision: DType = "float64") -> NDArray[Any]:
+    """The action in this precision; ValueError unless it has the shape and all its numbers are finite."""
+    wanted = _FLOATS[precision]
+    if type(action) is not np.ndarray or action.dtype not in _FLOATS.values():  # a blade alone has no time to look closer
         action = real_numbers("action", action)
+    if action.dtype is not wanted:
+        action = action.astype(wanted)
     if action.shape != shape:
         raise ValueError(f"action has shape {action.shape}, but must have shape {shape}.")
     finite = np.isfinite(action)

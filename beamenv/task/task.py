@@ -27,7 +27,7 @@ from beamenv.task.sharing import shared
 Array = NDArray[np.float64]
 
 DType = Literal["float32", "float64"]
-"""Numbers of the spaces, and of what is in them; what is stepped has 64 bits always."""
+"""Numbers of the spaces, and of what is in them; a batch may be stepped with as many bits."""
 
 
 @dataclass(frozen=True)

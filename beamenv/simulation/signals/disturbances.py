@@ -20,11 +20,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.arrays import REFERENCE, Arrays, SomeRows, Those, copied, namespace
+from beamenv.arrays import REFERENCE, Arrays, SomeRows, Those, copied
 from beamenv.plant.plant import Plant
 from beamenv.scenarios.load_cases import LoadCases
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.memory import Arrangement, Run
+from beamenv.simulation.signals.normals import Normals, normals_like
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -90,12 +91,13 @@ class SharedDisturbances:
         drawn_with = arrays.precision if arrays.of_numpy else REFERENCE.precision
         self._factor = factor if np.any(factor - np.diag(np.diagonal(factor))) else np.diagonal(factor).copy()
         self._own_factor = arrays.floats(self._factor)
-        self._memory, self._seen = lie.columns_first(len(factor), drawn_with)
+        memory, self._seen = lie.columns_first(len(factor), drawn_with)
         self._drawn = [(self._seen, self._seen)]
         """Normals (…, c), and where the disturbances made of them go."""
         if lie.runs:
-            self._memory = np.zeros((count, len(factor)), drawn_with)
-            self._drawn = [(_drawn_by_column(run, self._memory), run.of(self._seen)) for run in lie.runs]
+            memory = np.zeros((count, len(factor)), drawn_with)
+            self._drawn = [(_drawn_by_column(run, memory), run.of(self._seen)) for run in lie.runs]
+        self._normals = Normals(memory)
         self._turbulence = turbulence
         if arrays.of_numpy:
             self._rows: Any = self._seen
@@ -161,15 +163,15 @@ class SharedDisturbances:
         return self._rows[..., self._loads :]
 
     def _draw(self, generator: Any) -> None:
-        factor = self._factor
+        factor = self._own_factor if self._arrays.of_numpy else self._factor
         if not isinstance(generator, np.random.Generator):
-            normals = normals_of(generator, self._rows)
+            normals = normals_like(generator, self._rows)
             self._rows = normals * self._own_factor if factor.ndim == 1 else normals @ self._own_factor
             return
-        generator.standard_normal(out=self._memory, dtype=self._memory.dtype)
+        self._normals.draw(generator)
         for normals, rows in self._drawn:
             if factor.ndim == 1:
-                np.multiply(normals, factor, out=rows, casting="same_kind")
+                np.multiply(normals, factor, out=rows)
             else:
                 rows[...] = normals @ factor
         if not self._arrays.of_numpy:
@@ -186,12 +188,6 @@ class SharedDisturbances:
         self._rows[...], self._amplitude[...] = copied(state["rows"]), copied(state["amplitude"])
         self._steps, self._gusts = copied(state["steps"]), copied(state["gusts"])
         self._cases = None if state["cases"] is None else LoadCases.from_state_dict(state["cases"])
-
-
-def normals_of(generator: Any, values: Any) -> Any:
-    """As many standard normals as there are values in a tensor, from torch's generator, where it is."""
-    torch = namespace(values)
-    return torch.randn(values.shape, generator=generator, dtype=values.dtype, device=values.device)
 
 
 class SeededDisturbances:
