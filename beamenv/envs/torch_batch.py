@@ -29,8 +29,8 @@ from beamenv.envs.torch_arguments import (
     torch,
     torch_seed,
 )
-from beamenv.envs.torch_graph import CapturedStep
 from beamenv.envs.torch_episodes import Outcome, TorchEpisodes
+from beamenv.envs.torch_graph import CapturedStep
 from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
@@ -67,8 +67,8 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
     - `dtype`: `"float32"` (the default) or `"float64"`: the numbers of the spaces and of what is stepped.
     - `differentiable`: keep the graph from actions to all that follows of them, across steps, until `detach()`. Otherwise steps
       run without gradients. Where an episode begins, nothing passes from the one before.
-    - `graph`: on a GPU capture the step as a CUDA graph after each reset, and replay it: to start a small batch's kernels one by one
-      takes longer than they do. Not measured on a GPU, nor run on one: the processor replays what is recorded, in tests.
+    - `graph`: on a GPU capture the step as a CUDA graph after each reset, and replay it: to start the kernels of a small batch one
+      by one takes longer than they do. Not measured on a GPU, nor run on one: in tests the processor replays what is recorded.
 
     **Actions** are a tensor (N, m) on the device; an array of NumPy, such as the action space samples, is taken too, and copied.
     On the processor numbers that are not finite are refused; on a GPU nobody looks, which would be to wait for it: such a

@@ -55,7 +55,7 @@ class StaticStep:
         for (into, _), new in zip(pairs, [self._apart(new) for _, new in pairs], strict=True):
             into.copy_(new)
         self._put_back()
-        return outcome  # type: ignore[no-any-return]
+        return outcome
 
     def _apart(self, tensor: torch.Tensor) -> torch.Tensor:
         """The tensor, copied if it lies where a step writes to."""
@@ -70,7 +70,7 @@ class CapturedStep:
     """A step on a GPU that is captured once and replayed from then on."""
 
     def __init__(self, episodes: TorchEpisodes, actions: torch.Tensor, generator: torch.Generator) -> None:
-        stream = torch.cuda.Stream(actions.device)
+        stream = torch.cuda.Stream(actions.device)  # type: ignore[no-untyped-call]
         stream.wait_stream(torch.cuda.current_stream(actions.device))
         with torch.cuda.stream(stream):
             self._step = StaticStep(episodes, actions, generator)
@@ -84,8 +84,9 @@ class CapturedStep:
         """What a step brings, in tensors that later ones leave alone."""
         self._step.actions.copy_(actions)
         self._graph.replay()
-        copies: dict[int, torch.Tensor] = {}
-        return mapped(self._outcome, lambda leaf: copies.setdefault(id(leaf), leaf.clone()))  # type: ignore[no-any-return]
+        copies = {id(leaf): leaf for leaf in leaves(self._outcome)}
+        copies = {name: leaf.clone() for name, leaf in copies.items()}
+        return mapped(self._outcome, lambda leaf: copies[id(leaf)])
 
 
 def owners(root: Any) -> Iterator[Any]:
