@@ -1,7 +1,7 @@
 # %% [markdown]
 # # PPO on a batch of tensors
 #
-# Proximal policy optimisation in plain PyTorch, on a GPU if there is one: `python 07_ppo_on_a_gpu.py --device cuda --minutes 2`.
+# Proximal policy optimisation in plain PyTorch, on a GPU if there is one: `python 08_ppo_on_a_gpu.py --device cuda --minutes 2`.
 # The policy sees the readings of the last 24 ms and the voltages that it gave, nothing else. By least squares they tell the two
 # slowest modes and the line loads, which a simulation knows; what is learnt is a gain on that estimate,
 #
