@@ -2,20 +2,56 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
-from baselines.design.controller import Array
+from baselines.design.controller import Array, Observes
 from baselines.design.feedthrough import with_feedthrough
 from baselines.design.instruments import checked_plant
 from beamenv.plant.plant import Plant, SampledPlant, sample
 
-if TYPE_CHECKING:
-    from baselines.design.linear import LinearController
+
+class LinearLaw(Protocol):
+    """What is asked here of a ``LinearController``, which says what its matrices are; it is built on this, not this on it."""
+
+    @property
+    def name(self) -> str:
+        """What sentences call it."""
+        ...
+
+    @property
+    def observes(self) -> Observes:
+        """What it measures."""
+        ...
+
+    @property
+    def transition(self) -> Array:
+        """F (s, s)."""
+        ...
+
+    @property
+    def measurement_input(self) -> Array:
+        """G (s, p)."""
+        ...
+
+    @property
+    def voltage_input(self) -> Array:
+        """H (s, m)."""
+        ...
+
+    @property
+    def state_gain(self) -> Array:
+        """M (m, s)."""
+        ...
+
+    @property
+    def measurement_gain(self) -> Array:
+        """T (m, p)."""
+        ...
 
 
-def sampled(plant: Plant | SampledPlant, law: LinearController | None = None) -> SampledPlant:
+def sampled(plant: Plant | SampledPlant, law: LinearLaw | None = None) -> SampledPlant:
     """The plant as it is, or sampled; ``ValueError`` for what is neither.
 
     What readings show of the voltages before is part of its state (``with_feedthrough``), but for a ``law`` that observes the state
@@ -30,7 +66,7 @@ def spectral_radius(transition: Array) -> float:
     return float(np.abs(np.linalg.eigvals(transition)).max(initial=0.0))
 
 
-def closed_loop(held: SampledPlant, law: LinearController) -> tuple[Array, Array, Array, Array, Array]:
+def closed_loop(held: SampledPlant, law: LinearLaw) -> tuple[Array, Array, Array, Array, Array]:
     """Φ, Γ, Z_x, Z_n of X⁺ = Φ X + Γ n, z = Z_x X + Z_n n and the covariance N of n = [d; v]; u = T C x + M ξ + T v.
 
     ``held`` is as ``sampled`` gives it for the law. Raises ValueError for a law that has other measurements or voltages than the

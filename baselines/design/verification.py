@@ -5,30 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
-from baselines.design.loop import closed_loop, sampled, spectral_radius
+from baselines.design.loop import LinearLaw, closed_loop, sampled, spectral_radius
 from baselines.design.out_of_reach import undamped_out_of_reach
 from baselines.design.riccati import RESIDUAL, Solution, Unsolved
 from beamenv.configuration import Flag, checked
 from beamenv.plant.plant import Plant, SampledPlant
 
-if TYPE_CHECKING:
-    from baselines.design.linear import LinearController
+L = TypeVar("L", bound=LinearLaw)
 
 DECAYS = 1.0 - 1e-12
 """The spectral radius below which a loop counts as stable."""
 
 
 def verified(
-    law: LinearController,
+    law: L,
     plant: Plant | SampledPlant,
     *solutions: Solution,
-    norm: Callable[[SampledPlant, LinearController], float] | None = None,
+    norm: Callable[[SampledPlant, L], float] | None = None,
     norm_below: float = math.inf,
     instead: str = "another plant or gain",
     verify: bool = True,
-) -> LinearController:
+) -> L:
     """The law, once it has been seen that it keeps what is promised of it on ``plant``, sampled, while no limit acts.
 
     These are: its Riccati ``solutions`` leave no more than 1e-9 of their terms; its loop is stable; its ``norm``, such as
@@ -58,7 +57,7 @@ def solvable(plant: Plant) -> Iterator[None]:
         raise ValueError(f"{cause}: no law is the optimum then, allowed are plants in which every such mode is damped.") from None
 
 
-def _broken(law: LinearController, held: SampledPlant, what: str, instead: str) -> ValueError:
+def _broken(law: LinearLaw, held: SampledPlant, what: str, instead: str) -> ValueError:
     mode = undamped_out_of_reach(held)
     gives = "gives" if mode is None else f"has {mode}: it gives"
     return ValueError(f"plant {gives} {law.name} {what}; allowed is {instead}, or verify=False for the law as it is.")

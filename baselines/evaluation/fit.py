@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.vector import VectorEnv
 
-from baselines.design.controller import Controller, name_of
+from baselines.design.controller import Array, Controller, name_of
 from baselines.design.law import Law
 from baselines.evaluation.conditions import check_alike
 from baselines.evaluation.loop import Environment, attribute
@@ -43,6 +43,8 @@ def check_fit(controller: Controller, env: Any) -> None:
         check_state_told(controller, task)
     if isinstance(controller, Law):
         _check_clock(controller, attribute(env, "plant")[0].control_interval)
+        if isinstance(task, Task) and not task.physical_units:
+            _check_full_scale(controller, task.plant.sensor_full_scale)
     _check_model(controller, env)
     check_spaces(env, ("action", "observation") if _reads_the_sensors(controller) else ("action",))
 
@@ -90,6 +92,19 @@ def _check_clock(law: Law, interval: float) -> None:
             f"controller = {law.name} decides every {law.instruments.interval:g} s, but the environment wants one that does every "
             f"{interval:g} s."
         )
+
+
+def _check_full_scale(law: Law, full_scale: Array) -> None:
+    """A reading of 1 must be to the law what it is on the blade."""
+    if law.observes == "state":
+        return
+    taken = law.instruments.measurement_scale[: len(full_scale)]  # behind them, what else it sees
+    for sensor, (own, there) in enumerate(zip(taken, full_scale, strict=False), start=1):
+        if not np.isclose(own, there, rtol=1e-6):
+            raise ValueError(
+                f"controller = {law.name} takes a reading of 1 of sensor {sensor} for {own:.6g}, but in the environment that is "
+                f"{there:.6g}, its full scale: design it for a plant of this full scale, such as env.unwrapped.design_plant."
+            )
 
 
 def _check_model(controller: Controller, env: Environment) -> None:

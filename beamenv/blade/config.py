@@ -105,7 +105,7 @@ class BeamConfig:
     """m, of the walls."""
     hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.2023
     """m."""
-    material: Annotated[str | Lamina, Choice(MATERIALS, Lamina)] = "graphite-epoxy"
+    material: Annotated[str | Lamina, Choice(MATERIALS, Lamina, dict.fromkeys(MODULI, SOFTEST))] = "graphite-epoxy"
     """A name or a lamina; in a dictionary or file also a table of a lamina's fields, which completes from the material before."""
     ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
     """Degrees from the contour tangent, inner to outer face, for ("all", angles) or wall by wall; a list or a mapping will do."""

@@ -19,7 +19,7 @@ from beamenv.configuration.read_only import sealed
 from beamenv.patches import PatchResponse
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.limits import VOLTAGES
-from beamenv.plant.model_files import plant_from_file, plant_from_table, plant_table
+from beamenv.plant.model_files import ENDINGS, plant_from_file, plant_from_table, plant_table
 from beamenv.plant.model_rules import priced_alike
 from beamenv.plant.plant import Plant, drive_limit
 from beamenv.plant.reduction import FullModel, ModalModel
@@ -166,8 +166,14 @@ def tables_of(given: Any) -> Any:
 
 
 def _one_or_several(given: Any) -> tuple[Plant, ...]:
-    if isinstance(given, (str, Path)) and Path(given).is_dir():
-        given = _in_folder(Path(given))
+    if isinstance(given, (str, Path)):
+        if Path(given).is_dir():
+            given = _in_folder(Path(given))
+        elif Path(given).suffix.lower() not in ENDINGS and not Path(given).exists():
+            allowed = (
+                f"the folder of an identification or a file that ends in {' or '.join(ENDINGS)}, and there is none of this name"
+            )
+            raise Refused("plant", str(given), allowed)
     several = isinstance(given, (list, tuple))
     if several and not given:
         raise Refused("plant", given, "one model, or a list of them")

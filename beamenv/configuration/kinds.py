@@ -138,11 +138,13 @@ class FileName(Kind):
 class Choice(Kind):
     """One of several names; where they are those of a mapping's objects, a table in its place departs from the object named.
 
-    ``own`` is the class of objects that may be given instead of a name.
+    ``own`` is the class of objects that may be given instead of a name, and ``least`` what an editor is told of their fields here:
+    the least values, which the table that has the field sees to.
     """
 
     names: Sequence[str] | Mapping[str, Any]
     own: type[Any] | None = None
+    least: Mapping[str, float] | None = None
 
     @property
     def allowed(self) -> str:
@@ -163,7 +165,10 @@ class Choice(Kind):
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
         if self.own is None:
             return Kind.__get_pydantic_json_schema__(self, schema, handler)
-        return {"anyOf": [self.json(), handler(self.own.__pydantic_core_schema__)]}
+        own = handler(self.own.__pydantic_core_schema__)
+        if self.least:
+            own = {"allOf": [own, {"properties": {name: {"minimum": value} for name, value in self.least.items()}}]}
+        return {"anyOf": [self.json(), own]}
 
 
 @dataclass(frozen=True, slots=True)

@@ -119,8 +119,13 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
         self._history = RollingHistory(env.num_envs, length, len(plant.C), len(self._drive))
         self.single_observation_space = _space(self._history)
         self.observation_space = batch_space(self.single_observation_space, env.num_envs)
-        self._mode = env.metadata["autoreset_mode"]
+        self._mode = self.autoreset_mode
         self._over = np.zeros(env.num_envs, dtype=np.bool_)
+
+    @property
+    def autoreset_mode(self) -> AutoresetMode:
+        """The batch's: Gymnasium tells it in ``metadata``, and TorchRL asks for it by this name."""
+        return self.env.metadata["autoreset_mode"]
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         """Begin every episode with an empty past, or those of a "reset_mask" alone."""

@@ -9,7 +9,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
-from gymnasium.vector import VectorEnv, VectorWrapper
+from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
@@ -118,6 +118,11 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
         self._tasks: dict[tuple[Positions, ...], Task] = {}
         """By positions: what layouts have had their blades built for, as long as they are in use."""
         self._move_to(self._positions)
+
+    @property
+    def autoreset_mode(self) -> AutoresetMode:
+        """The batch's: Gymnasium tells it in ``metadata``, and TorchRL asks for it by this name."""
+        return self.env.metadata["autoreset_mode"]
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode of every blade."""

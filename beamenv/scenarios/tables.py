@@ -79,6 +79,8 @@ class PlantVariation:
             raise Refused(named, list(getattr(self, named)), "1 where other plants are drawn")
         if (self.speed_wander or self.drifts) and self.bank < 2:
             raise Refused("bank", self.bank, "at least 2 where the blade changes within an episode")
+        if self.spin_up is not None and not max(self.spin_up):
+            raise Refused("spin_up", self.spin_up, "two speeds of which one is above 0 rad/s: from 0 to 0 no rotor runs up")
         if self.spin_up is not None and self.varies:
             raise Refused("spin_up", self.spin_up, "None where other plants are drawn")
         if self.truth is not None and (self.varies or self.spin_up is not None):

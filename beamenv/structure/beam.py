@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -151,8 +152,21 @@ class RotatingBeam:
         with in_scale("beam"):
             matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
+            self._check_terms()
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
         return matrices
+
+    def _check_terms(self) -> None:
+        """``ValueError`` names the trial functions where they are why there are no matrices: with as many as usual there are."""
+        terms, usual = self.space.terms, terms_of(self.model, None)
+        if terms <= usual:
+            return
+        try:
+            _ = replace(self, terms=usual).matrices
+        except ValueError:
+            return
+        beside = f" beside two for each of {count} breaks along the span" if (count := len(self.space.breaks)) else ""
+        raise Refused("beam.terms", terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not")
 
     def _wall_matrices(self) -> BeamMatrices:
         stations = Stations.between(self.breakpoints(self._edges), self.stations_per_span)

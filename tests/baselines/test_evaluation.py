@@ -48,8 +48,9 @@ def test_environments_that_gymnasium_vectorises_serve_too(env, plant):
     )
 
 
-def test_an_id_is_as_good_as_an_environment(plant):
+def test_an_id_is_as_good_as_an_environment():
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=2)
+    plant = envs.unwrapped.design_plant
     by_id, by_env = evaluate(lqg(plant), beamenv.ENV_ID, [3, 4]), evaluate(lqg(plant), envs, [3, 4])
     assert by_id.row() == by_env.row()
 

@@ -10,7 +10,7 @@ from gymnasium.spaces import Box
 from gymnasium.vector import SyncVectorEnv
 
 import beamenv
-from baselines import evaluate, lqr, no_control, roll_out
+from baselines import evaluate, lqg, lqr, no_control, roll_out
 
 SHORT = {"duration": 0.02, "blade": {"model": "thesis"}}
 ONE, HUGE = np.float32(1.0), 10**9
@@ -164,3 +164,18 @@ def test_progress_may_take_more_where_it_need_not(env):
     told = []
     roll_out(np.zeros_like, env, range(1), progress=lambda done, total, *rest, last=0: told.append((done, total)))
     assert told == [(1, 1)]
+
+
+def test_a_law_that_takes_readings_for_others_is_refused(env, law):
+    plant = env.unwrapped.design_plant
+    doubled = replace(plant, sensor_full_scale=plant.sensor_full_scale * np.array([1.0, 1.0, 2.0, 1.0]))
+    for each in (env, batch()):
+        with pytest.raises(
+            ValueError, match="^controller = LQG takes a reading of 1 of sensor 3 for .*, its full scale: design"
+        ) as told:
+            evaluate(lqg(doubled), each, range(2))
+        assert "\n" not in str(told.value)
+    cost = evaluate(lqg(plant), env, range(2)).cost.value
+    in_units = evaluate(lqg(doubled).in_physical_units(), single(physical_units=True), range(2))  # where there is no scale
+    assert in_units.cost.value == pytest.approx(cost, rel=1e-5)
+    evaluate(lqr(doubled), env, range(2))  # which reads no sensor

@@ -53,3 +53,32 @@ def test_every_import_goes_down_the_table():
 def test_imports_are_seen():
     assert (("beamenv", "plant"), ("beamenv", "structure")) in imports()
     assert len(imports()) > 60
+
+
+def modules():
+    """Every module with those of the project that it imports, for types alone too."""
+    files = {dotted(path): path for wing in WINGS for path in (ROOT / wing).rglob("*.py")}
+    found = {}
+    for name, path in files.items():
+        nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.ImportFrom)]
+        targets = {f"{node.module}.{each.name}" for node in nodes for each in node.names} | {node.module for node in nodes}
+        found[name] = {each for each in targets if each in files and each != name}
+    return found
+
+
+def dotted(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def test_no_module_leads_back_to_itself():
+    """What a package offers comes from its modules, which may name it no further: only its own modules are followed."""
+    imported = {name: {each for each in there if not (ROOT / each.replace(".", "/")).is_dir()} for name, there in modules().items()}
+    order, pending = [], dict(imported)
+    while ready := [name for name, there in pending.items() if not there & pending.keys()]:
+        order += ready
+        for name in ready:
+            del pending[name]
+    assert sorted(pending) == []
+    assert (
+        order.index("baselines.design.loop") < order.index("baselines.design.verification") < order.index("baselines.design.linear")
+    )

@@ -82,3 +82,10 @@ def test_a_history_of_one_is_the_last_reading_and_voltage():
     window, *_, info = envs.step(np.full((2, 4), 0.25))
     np.testing.assert_allclose(window[:, 4:], 0.25)
     np.testing.assert_allclose(info["volts"], 375.0)
+
+
+@pytest.mark.parametrize("wrap", [beamenv.VectorSensorHistory, beamenv.VectorPlacementWrapper])
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+def test_a_wrapped_batch_tells_when_its_episodes_begin_anew(wrap, mode):
+    envs = wrap(gymnasium.make_vec(beamenv.ENV_ID, num_envs=2, autoreset_mode=mode))
+    assert envs.autoreset_mode.value == mode

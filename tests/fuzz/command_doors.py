@@ -248,7 +248,7 @@ COMMANDS = {
             "--trained-seed": None,
             "--plant": None,
         },
-        ("--json", "--measure"),
+        ("--json", "--measure", "--overwrite"),
         ("train.export.compiled.seconds_a_step",),
     ),
     "reproduce": (

@@ -151,6 +151,7 @@ WRONG = [
     ({"plants": {"bank": 0}}, "scenario.plants.bank is 0, but must be a whole number from 1 to 4096"),
     ({"plants": {"seed": -1}}, "scenario.plants.seed is -1, but must be a whole number not below 0"),
     ({"plants": {"spin_up": [300.0, -100.0]}}, "scenario.plants.spin_up"),
+    ({"plants": {"spin_up": [0.0, 0.0]}}, "scenario.plants.spin_up is .0.0, 0.0., but must be two speeds of which one is above 0"),
     (
         {"plants": {"spin_up": [1.0, 2.0], "speed_ratio": [0.9, 1.1]}},
         "scenario.plants.spin_up is .1.0, 2.0., but must be None where other plants are drawn",

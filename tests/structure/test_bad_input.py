@@ -1,10 +1,14 @@
 """One sentence names the argument, its value and what is allowed."""
 
 import math
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import pytest
 
+from beamenv.blade.build import build_beam
+from beamenv.blade.files import load_config
 from beamenv.structure import (
     GRAPHITE_EPOXY,
     BoxSection,
@@ -208,3 +212,14 @@ def test_inlay_that_fits_the_root_but_not_the_tapered_tip_is_refused():
 def test_patches_may_touch():
     pair = (Inlay("top", start, 0.1, 0.05, Ply(GRAPHITE_EPOXY, 90.0), 3e-4) for start in (0.1, 0.2))
     assert blade(inlays=tuple(pair)).natural_frequencies(0.0, 1)[0] > 0.0
+
+
+def test_trial_functions_too_many_to_be_told_apart_are_named():
+    z = load_config(Path(__file__).parents[2] / "examples" / "blades" / "z-stringer.toml")
+    beam = build_beam(replace(z, beam=replace(z.beam, terms=30)))
+    with pytest.raises(
+        ValueError, match=r"^beam\.terms is 30, but must be fewer beside two for each of \d breaks along the span: so"
+    ):
+        beam.natural_frequencies(0.0, count=3)
+    with pytest.raises(ValueError, match="^beam cannot be computed: one of its numbers"):  # as many as usual would not do either
+        blade(terms=30, length=1e6).natural_frequencies(0.0, count=3)

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from train.cli.app import app
 from train.comparison.compare import CLASSICAL, Comparison, Listener, compare
+from train.comparison.figures import _tip_panel
 from train.controllers.policy_files import read_about
 
 A = np.array([[0.0, 30.0, 0.0], [-30.0, -0.6, 0.0], [0.0, 0.0, -60.0]])
@@ -106,6 +107,20 @@ def test_displacements_that_a_model_tells_are_drawn(tmp_path):
     assert np.isfinite(evaluations[0].peak_tip.value)
     page = (tmp_path / "results" / "report.html").read_text(encoding="utf-8")
     assert "<h2>Displacements and voltages</h2>" in page and "displacement 2" in page
+
+
+@pytest.mark.parametrize("points", [1, 2, 3])
+def test_displacements_of_a_model_are_not_called_lag_and_flap(tmp_path, points):
+    import gymnasium as gym
+
+    import beamenv
+    from baselines import evaluate
+
+    arguments = {"plant": write(tmp_path / "mine.npz", tip_displacement=1e-3 * np.eye(3)[:points])}
+    for made, names in ((arguments, [f"displacement {point}" for point in range(points)]), ({}, ["lag", "flap"])):
+        env = gym.make(beamenv.ENV_ID, duration=0.1, **made)
+        found = evaluate(lambda seen: np.zeros((1, env.action_space.shape[0])), env, range(2))  # noqa: B023 - called here
+        assert [curve.label for curve in _tip_panel(found, 0).curves[1::2]] == [f"tip, {name}" for name in names]
 
 
 def test_a_folder_of_an_identification_is_compared_on(tmp_path):

@@ -47,8 +47,18 @@ def test_a_model_of_ones_own_is_what_it_is_designed_for(command, tmp_path):
 @pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 def test_step_time_is_told_beside_the_interval(command):
     assert "% of the control interval of 500 µs" in command("velocity", "--measure").stdout
-    told = json.loads(command("velocity", "--measure", "--json").stdout)
+    told = json.loads(command("velocity", "--measure", "--json", "--overwrite").stdout)
     assert 0.0 < told["seconds_a_step"] < 5e-4 and told["interval"] == "0.0005 s" and told["file"] == "velocity.c"
+
+
+def test_a_file_that_is_there_is_kept_unless_it_is_to_be_replaced(command, tmp_path):
+    (tmp_path / "lqg.c").write_text("mine")
+    refused = command("lqg")
+    assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+    assert "output = 'lqg.c' is there already: overwrite it, or name another file." in refused.stderr
+    assert (tmp_path / "lqg.c").read_text() == "mine"
+    assert command("lqg", "--overwrite").exit_code == 0
+    assert "int lqg_step" in (tmp_path / "lqg.c").read_text()
 
 
 @pytest.mark.parametrize("form", ["mat", "onnx"])

@@ -46,6 +46,7 @@ def export(
     plant: PlantOption = None,
     trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
@@ -53,24 +54,19 @@ def export(
         from beamenv.configuration import Refused
         from beamenv.task import resolve_task
         from train.controllers.choice import chosen
-        from train.export import FORMATS, export, exported
+        from train.export import export, exported
         from train.export.exported import identifier
-        from train.export.writing import checked_format
-        from train.shared.files import check_file
 
-        ending = "" if output is None else output.suffix.lower().removeprefix(".")
-        format = format or (ending if ending in FORMATS else "c")
-        format = checked_format(format, output or Path(), "output")
+        format = _format(format, output)
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
         task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
         called = identifier(Path(controller).name) if name is None else name
         path = output or Path(f"{called}.{format}")
-        check_file(path, "output")
+        _check_free(path, overwrite)
         law = chosen(controller, task, scenario, trained_seed)
         model = f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}" if plant is None else f"plant {plant}"
-        note = f"{controller}, {model}, scenario {scenario}"
-        more: dict[str, Any] = {"precision": precision, "name": called, "note": note}
+        more: dict[str, Any] = {"precision": precision, "name": called, "note": f"{controller}, {model}, scenario {scenario}"}
         found = exported(law, task.design_plant, **more)
         seconds = _measured(found) if measure else None
         export(law, task.design_plant, path, format=format, **more)
@@ -78,6 +74,24 @@ def export(
         print_json({"file": str(path), "format": format, "name": found.name, **found.facts, "seconds_a_step": seconds})
     else:
         _show(found, path, seconds)
+
+
+def _format(format: str | None, output: Path | None) -> str:
+    """The one that is asked for, else that of the output's ending, else C."""
+    from train.export import FORMATS
+    from train.export.writing import checked_format
+
+    ending = "" if output is None else output.suffix.lower().removeprefix(".")
+    return checked_format(format or (ending if ending in FORMATS else "c"), output or Path(), "output")
+
+
+def _check_free(path: Path, overwrite: bool) -> None:
+    """``ValueError`` for a file that cannot be written, and for one that is there and is to stay."""
+    from train.shared.files import check_file
+
+    check_file(path, "output")
+    if path.is_file() and not overwrite:
+        raise ValueError(f"output = {str(path)!r} is there already: overwrite it, or name another file.")
 
 
 def _measured(found: Exported) -> float:

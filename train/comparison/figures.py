@@ -57,9 +57,15 @@ def tells_displacements(evaluation: Evaluation) -> bool:
     return evaluation.reference.tip_displacement.shape[-1] > 0
 
 
+def _of_model(evaluation: Evaluation) -> bool:
+    """Whether what moved is a model of one's own, whose displacements may be those of any points in any direction."""
+    conditions = evaluation.reference.conditions
+    return conditions is not None and isinstance(conditions.blades[0], str)
+
+
 def _tip_panel(evaluation: Evaluation, episode: int) -> Panel:
     points = evaluation.reference.tip_displacement.shape[-1]
-    names = ("lag", "flap") if points == 2 else [f"displacement {point}" for point in range(points)]
+    names = [f"displacement {point}" for point in range(points)] if _of_model(evaluation) else ("lag", "flap")
     curves = []
     for point, name in enumerate(names):
         line = LINES[(points - 1 - point) % len(LINES)]  # flap is solid

@@ -14,8 +14,10 @@ from baselines.design.instruments import checked_plant
 from beamenv.configuration import Choice, Refused, Text, checked
 from beamenv.configuration.files import of_file, parsed_arrays
 from beamenv.configuration.writing import write_whole
+from beamenv.plant.differences import differences
 from beamenv.plant.fingerprint import fingerprint
 from beamenv.plant.plant import Plant, normalised
+from beamenv.task import resolve_task
 from train.controllers.belief_policy import BeliefPolicy
 from train.controllers.lstm_policy import LSTMPolicy
 from train.controllers.models_policy import ModelsPolicy
@@ -104,6 +106,18 @@ def _check_plant(about: Mapping[str, Any], folder: Path, plant: Plant) -> None:
         raise ValueError(f"the agent in {str(folder)!r} does not say what plant it was trained on: train it again.")
     if own not in known.values():
         raise ValueError(
-            f"plant with the fingerprint {own[:12]}… is none of those the agent in {str(folder)!r} was trained on: "
-            f"{', '.join(f'{name} {value[:12]}…' for name, value in known.items())}."
+            f"plant is none of those the agent in {str(folder)!r} was trained on, in {', '.join(known)}: {_other(about, plant)}."
         )
+
+
+def _other(about: Mapping[str, Any], plant: Plant) -> str:
+    """In what a plant differs from the first that an agent was trained on, where its file tells how that is made."""
+    plants = about["plants"]
+    name = "nominal" if "nominal" in plants else next(iter(plants))
+    try:
+        trained = resolve_task(**{**about["environment"], "scenario": name}).design_plant
+    except (KeyError, TypeError, ValueError):  # a file or a model that is not here, or arguments of another version
+        trained = None
+    if trained is None or fingerprint(trained) != plants[name]:
+        return f"it has the fingerprint {fingerprint(plant)[:12]}…, and that of {name} {plants[name][:12]}…"
+    return f"beside that of {name} it has {differences(plant, trained)}"
