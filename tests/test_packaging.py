@@ -104,7 +104,12 @@ for words in {WITHOUT_TRAINING}:
 
 
 @pytest.mark.parametrize(
-    ("package", "extra", "words"), [("torch", "train", ["train", "ppo"]), ("minari", "record", ["record", "none"])]
+    ("package", "extra", "words"),
+    [
+        ("torch", "train", ["train", "ppo"]),
+        ("minari", "record", ["record", "none"]),
+        ("ray", "cluster", ["tune", "gradient", "--updates", "1", "--trials", "2"]),
+    ],
 )
 def test_a_command_without_its_extra_says_how_to_install_it(tmp_path, package, extra, words):
     code = f"import sys; sys.modules[{package!r}] = None; sys.path.insert(0, {str(ROOT)!r}); "
@@ -174,7 +179,7 @@ ROOMS_OF_TRAIN = (
     {"workers"},
     {"controllers", "figures", "tools"},
     {"datasets", "export", "identification", "learning", "page", "placement", "reproduce"},
-    {"benchmark", "comparison", "explore", "tuning"},
+    {"benchmark", "comparison", "explore", "rllib", "tuning"},
     {"cli"},
 )
 """Floor by floor: a room imports rooms below it."""

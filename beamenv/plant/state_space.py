@@ -112,28 +112,38 @@ def plant_of_model(
         model = _in_continuous_time(checked_matrices(A, B, C, D), given, dt, interval)
         m, p, k = model.B.shape[1], len(model.C), len(model.B[0] if model.loads is None else model.loads[0])
         assumed = list(model.assumed)
-        at_actuators = model.loads is None
-        if at_actuators:
-            assumed.append("disturbances act where the actuators do, in their volts")
-            disturbance_names = [f"at voltage {j}" for j in range(m)] if disturbance_names is None else disturbance_names
-            disturbance_units = ["V"] * m if disturbance_units is None else disturbance_units
+        disturbances = _disturbances(model, disturbance_names, disturbance_units, k, assumed)
         bare = replace(
             _without_rules(model, tip_displacement),
             voltage_limits=checked_limits(actuator_limits, m, assumed),
-            disturbances=(
-                *named_signals("disturbance", disturbance_names, disturbance_units, k),
-                *(Signal(f"noise of states {j}", "") for j in range(model.noise.shape[1])),
-            ),
+            disturbances=disturbances,
             sensors=named_signals("sensor", sensor_names, sensor_units, p),
         )
         costly = with_cost(bare, energy, output_weight, model.further, assumed)
-        scaled = with_scales(costly, reference_load, full_scale, at_actuators, k, assumed)
+        scaled = with_scales(costly, reference_load, full_scale, model.loads is None, k, assumed)
         priced = with_price(scaled, input_weight, assumed)
         plant = with_noise(priced, process_noise, sensor_noise, k, assumed)
-        parts = (getattr(plant, each.name) for each in fields(plant))
-        if not all(np.isfinite(part).all() for part in parts if isinstance(part, np.ndarray)):
-            raise np.linalg.LinAlgError
+        _check_finite(plant)
     return replace(plant, assumed=tuple(assumed))
+
+
+def _disturbances(
+    model: Model, names: Sequence[str] | None, units: Sequence[str] | None, count: int, assumed: list[str]
+) -> tuple[Signal, ...]:
+    """What they are called; at the actuators after these, where nobody says otherwise."""
+    if model.loads is None:
+        assumed.append("disturbances act where the actuators do, in their volts")
+        names = [f"at voltage {j}" for j in range(count)] if names is None else names
+        units = ["V"] * count if units is None else units
+    noises = (Signal(f"noise of states {j}", "") for j in range(model.noise.shape[1]))
+    return (*named_signals("disturbance", names, units, count), *noises)
+
+
+def _check_finite(plant: PlantMatrices) -> None:
+    """``LinAlgError`` for numbers that are none."""
+    parts = (getattr(plant, each.name) for each in fields(plant))
+    if not all(np.isfinite(part).all() for part in parts if isinstance(part, np.ndarray)):
+        raise np.linalg.LinAlgError
 
 
 FIELDS = tuple(inspect.signature(plant_of_model).parameters)

@@ -222,6 +222,10 @@ def test_the_drive_of_a_scenario_is_a_share_of_the_models_own(plant):
         ({"plant": "PLANT", "spread": {"width": 0.1}}, r"^spread has no field 'width': its fields are frequency, damping"),
         ({"plant": "PLANT", "spread": {"frequency": 1.5}}, r"^spread.frequency is 1.5, but must be"),
         ({"spread": {"frequency": 0.1}}, r"^spread is .*, but must be None without a plant"),
+        (
+            {"plant": "bench"},
+            r"^plant is 'bench', but must be the folder of an identification or a file .*, and there is none of this name",
+        ),
         ({"plant": "PLANT", "design": "thesis"}, r"^design is 'thesis', but must be a file that ends in .npz"),
         ({"plant": {"A": 1.0}}, r"^B is missing\.$"),
     ],

@@ -1,6 +1,5 @@
 """Entries of the leaderboard: what is run again, what is entered, and what is refused and leaves it as it was."""
 
-import csv
 import json
 import shutil
 import threading
@@ -11,23 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from stable_baselines3 import PPO
-from typer.testing import CliRunner
 
 import beamenv
-from beamenv.plant.fingerprint import fingerprint
-from beamenv.task import resolve_task
+from tests.train.entries import SHORT, SMALL, agent, refused, rows, run
 from train.benchmark import leaderboard, submission
 from train.benchmark.leaderboard import COLUMNS, NAME, PAGE, Entry, enter, page, read_leaderboard
 from train.benchmark.score import aggregates
 from train.benchmark.submission import entrant, submit
-from train.cli.app import app
-from train.controllers.policies import HistoryPolicy
-from train.controllers.policy_files import save_policy
 from train.shared.lock import held
-
-SHORT = {"duration": 0.02}
-SMALL = {"SCENARIOS": ("nominal",), "SEEDS": 2, "ENVIRONMENT": json.dumps(SHORT)}
-"""One scenario, two episodes of a moment."""
 
 
 @pytest.fixture(autouse=True)
@@ -36,32 +26,6 @@ def small(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     for name, value in SMALL.items():
         monkeypatch.setattr(submission, name, value)
-
-
-def agent(folder, gain=0.0, **about):
-    """A policy of one layer that says of itself what an agent's file says."""
-    weights = {"weight0": np.full((4, 8), gain, np.float32), "bias0": np.zeros(4, np.float32)}
-    policy = HistoryPolicy(
-        "mine", weights, {"input_gain": 1.0, "held": 1}, np.full(4, -0.5, np.float32), np.full(4, 0.5, np.float32)
-    )
-    folder.mkdir(parents=True, exist_ok=True)
-    save_policy(policy, folder, {"plants": {"nominal": fingerprint(resolve_task().design_plant)}, **about})
-    return folder
-
-
-def run(*arguments):
-    return CliRunner().invoke(app, ["benchmark", "--jobs", "1", *map(str, arguments)])
-
-
-def rows(path=None):
-    with (path or Path("results", NAME)).open(newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def refused(result, words):
-    assert result.exit_code == 2, result.output
-    assert result.stdout == "" and words in result.stderr.splitlines()[-1]
-    assert all("━" in line for line in result.stderr.splitlines()[:-1])  # the bar, where something was measured
 
 
 def test_an_agent_is_run_again_and_entered_with_all_its_runs():
@@ -278,30 +242,3 @@ def finished(tmp_path_factory):
 def board(finished, tmp_path):
     shutil.copytree(finished, tmp_path / "board")
     return tmp_path / "board" / NAME
-
-
-@pytest.mark.slow
-def test_the_how_to_of_the_page_runs(monkeypatch):
-    """As it is typed, with two updates in place of a training, and agents as small as can be."""
-    from train.learning import recipe
-
-    text = page([])
-    commands = text.split("```sh\n")[1].split("```")[0].splitlines()
-    assert len(commands) < 15
-    brief = recipe.parsed("agent = 'gradient'\ntitle = 'Brief'\nupdates = 1\n[settings]\nepisodes = 8\nwindow = 10\n", "brief")
-    monkeypatch.setattr(recipe, "named_recipe", lambda name: brief)
-    for line in commands:
-        program, *words = line.split()
-        assert program == "beamenv"
-        if words[0] == "train":
-            words = [word.replace("generalist", "nominal") for word in words]  # eleven banks of plants take a minute
-        else:
-            words += ["--jobs", "1"]
-        result = CliRunner().invoke(app, words)
-        assert result.exit_code == 0, result.output
-    assert [row["name"] for row in rows()] == ["mine"]
-
-
-def test_the_page_of_the_documentation_is_that_of_its_table():
-    docs = Path(__file__).parents[2] / "docs"
-    assert (docs / PAGE).read_text(encoding="utf-8") == page(read_leaderboard(docs / NAME))

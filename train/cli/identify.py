@@ -54,10 +54,9 @@ def identify(
 
         check_folder(folder)
         members, seed = checked("ensemble", ensemble, Count(0, 1000)), checked("seed", seed, Count(0, 2**63 - 1))
-        about: dict[str, Any] = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
+        limits = {} if drive_limit is None else {"actuator_limits": _limit(drive_limit)}
         measurement = read_measurement(data, voltages=voltage, readings=reading, time=time, interval=interval, before=before)
-        if full_scale:
-            about["full_scale"] = _ranges(full_scale, measurement.reading_names)
+        about = {**limits, **_ranges(full_scale, measurement.reading_names)}
         with bar() as report:
             found = run(measurement, _order(order), held_back=held_back, collocated=collocated, progress=report)
         from train.identification.files import write_all
@@ -65,6 +64,11 @@ def identify(
 
         trial = tried(found, about)
         written = write_all(found, folder, members, seed, about, trial)
+    _tell(found, trial, written, as_json)
+
+
+def _tell(found: Any, trial: Any, written: Sequence[Path], as_json: bool) -> None:
+    """What was found, whether its LQG is safe, and where it lies."""
     if not trial.safe:
         typer.echo(f"warning: {trial.sentence}", err=True)
     if as_json:
@@ -88,12 +92,15 @@ def _limit(limit: float) -> float:
     return checked("drive_limit", limit, Number(gt=0.0, le=STRONGEST_DRIVE, unit="V"))
 
 
-def _ranges(full_scale: list[float], names: Sequence[str]) -> list[float]:
+def _ranges(full_scale: list[float] | None, names: Sequence[str]) -> dict[str, Any]:
+    """The argument of a plant, one range for each reading; none where none is asked for."""
     from beamenv.configuration import Number, Refused, checked
 
+    if not full_scale:
+        return {}
     if len(full_scale) != len(names):
         raise Refused("full_scale", full_scale, f"{len(names)} numbers, one for each of {', '.join(names)}")
-    return [checked("full_scale", each, Number(gt=0.0)) for each in full_scale]
+    return {"full_scale": [checked("full_scale", each, Number(gt=0.0)) for each in full_scale]}
 
 
 @contextmanager

@@ -36,6 +36,15 @@ def as_tensors(content: Any) -> Any:
     return torch.as_tensor(content).cpu() if isinstance(content, np.ndarray | torch.Tensor) else content
 
 
+def as_arrays(content: Any) -> Any:
+    """The content with its tensors as NumPy's arrays, of which they share the numbers."""
+    if isinstance(content, Mapping):
+        return {name: as_arrays(value) for name, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [as_arrays(value) for value in content]
+    return content.numpy() if isinstance(content, torch.Tensor) else content
+
+
 def read_checkpoint(folder: Path, keys: Sequence[str] = ()) -> dict[str, Any]:
     """What ``write_checkpoint`` wrote, a dictionary with these keys; ``ValueError`` if nothing is there, or something else."""
     path = folder / NAME

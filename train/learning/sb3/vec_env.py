@@ -13,6 +13,7 @@ from beamenv import BladeVecEnv, VectorSensorHistory
 from beamenv.plant.plant import normalised
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
+from train.learning.checkpoint import as_arrays
 from train.learning.sb3.belief import Belief, VectorBelief
 from train.learning.sb3.fitted import Regression
 from train.learning.sb3.twins import Twins
@@ -125,7 +126,7 @@ class TrainingVecEnv(BladeVecEnv):
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Go back to the ``state_dict`` of an equally made batch."""
         self.reset()
-        self.blades.load_state_dict(state["blades"])
+        self.blades.load_state_dict(as_arrays(state["blades"]))
         self.envs.load_state_dict(state["history"])
         self._states, self._energy, self._voltages = (np.asarray(state[name]).copy() for name in ("states", "energy", "voltages"))
         self.last_cost = state["last_cost"]
