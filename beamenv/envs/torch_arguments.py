@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from beamenv.arrays import Arrays, on_host
-from beamenv.configuration import Refused
+from beamenv.configuration import Flag, Refused, checked
+from beamenv.scenarios.scenario import Scenario
 from beamenv.task import checked_action, checked_dtype
 
 try:
@@ -42,6 +43,22 @@ def checked_device(device: Any) -> torch.device:
 def checked_precision(dtype: Any) -> Any:
     """``"float32"`` or ``"float64"``, also of torch's types of these names."""
     return checked_dtype({torch.float32: "float32", torch.float64: "float64"}.get(dtype, dtype))
+
+
+def checked_graph(graph: Any, device: torch.device, differentiable: bool) -> bool:
+    """Whether steps are captured; ``ValueError`` where they cannot be."""
+    wanted = checked("graph", graph, Flag())
+    if wanted and device.type != "cuda":
+        raise Refused("graph", graph, f"False on {device}: only a GPU has graphs")
+    if wanted and differentiable:
+        raise Refused("graph", graph, "False with differentiable, for no gradient passes through a graph")
+    return bool(wanted)
+
+
+def check_drawn_there(graph: bool, scenario: Scenario) -> None:
+    """``ValueError`` for a graph of what the host has a part in."""
+    if graph and scenario.loads:
+        raise Refused("graph", graph, "False with loads of one's own, which are worked out on the host")
 
 
 def checked_actions(actions: Any, shape: tuple[int, ...], zeros: torch.Tensor, arrays: Arrays) -> torch.Tensor:

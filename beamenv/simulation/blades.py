@@ -12,7 +12,7 @@ from beamenv.arrays import REFERENCE, Arrays, Masked, Those, namespace, on_host
 from beamenv.plant.plant import Plant, drive_limit, normalised
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, Numbers, draw
-from beamenv.simulation.kernel import advance, row_dot, row_product, weighted
+from beamenv.simulation.kernel import row_dot, row_product
 from beamenv.simulation.memory import Arrangement, Fresh, InPlace
 from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment, Passage
@@ -269,12 +269,10 @@ class Blades:
             loads = self.own_loads.added(loads)
             self.own_loads.elapse()
         joined, voltages = memory.join(acting, loads)
-        operators, multiply = self.plants.operators, self._multiply
-        state, reading, tip, increment = advance(operators, joined, memory.product, multiply, memory.squares, memory.views)
-        effort = row_dot(self._multiply(voltages, self.plants.effort_weight, memory.weighted), voltages)
-        memory.become(state)
+        multiply, plants = self._multiply, self.plants
+        effort = row_dot(multiply(voltages, plants.effort_weight, memory.weighted), voltages)
+        reading, tip, increment, energy = memory.advance(plants.operators, joined, multiply, self._halves)
         noise = self._disturbances.next(generators, resting)
-        energy = weighted(memory.squares, self._halves)
         if self._changing and (passage := self._elapse()) is not None:
             self._carry(passage)
         if self._shape:

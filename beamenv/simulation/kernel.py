@@ -86,6 +86,10 @@ def _fused(plant: Plant, held: SampledPlant) -> NDArray[np.float64]:
     return np.ascontiguousarray(fused)
 
 
+Multiply = Callable[[Any, Any, Any], Any]
+"""A stand-in for ``row_product``."""
+
+
 class Views(NamedTuple):
     """Parts of what goes into a product and of what comes out of it."""
 
@@ -120,7 +124,7 @@ def advance(
     operators: Operators,
     joined: Any,
     out: Any = None,
-    multiply: Callable[[Any, Any, Any], Any] | None = None,
+    multiply: Multiply | None = None,
     squares: Any = None,
     views: Views | None = None,
 ) -> tuple[Any, Any, Any, Any]:

@@ -10,6 +10,7 @@ import pytest
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SLOW = {"04_train_an_agent", "07_rllib"}
 PACKAGES = {"03_placement": "matplotlib", "04_train_an_agent": "torch", "06_clone_from_data": "minari", "07_rllib": "ray.rllib"}
+PACKAGES |= {"08_ppo_on_a_gpu": "torch"}
 
 
 @pytest.mark.parametrize(

@@ -3,19 +3,20 @@
 import numpy as np
 import pytest
 
-from baselines.placement import PlacementProblem
 from train.reproduce.studies.chapter6_layouts import placed_blade
 from train.reproduce.studies.placement_study import (
     convergence,
-    dependence,
     depth,
+    descents,
     gathering_at_the_root,
     initial_and_optimal,
+    placed,
     poles,
     shift_with_speed,
     starts_that_fail,
     table_row,
     together_against_alone,
+    variants,
 )
 from train.reproduce.thesis import Model
 
@@ -50,7 +51,8 @@ def test_genetic_algorithm_then_sqp_is_never_dearer_than_either(rows):
 
 
 def test_sqp_depends_on_its_start():
-    assert starts_that_fail(PlacementProblem.of(UNTWISTED, "actuators", 2), starts=8) > 0.0
+    found = descents("actuators", 2, 200.0, UNTWISTED, starts=8)
+    assert starts_that_fail(found, placed("actuators", 2, UNTWISTED).cost) > 0.0
 
 
 def test_fitness_falls_from_generation_to_generation():
@@ -69,6 +71,5 @@ def test_placed_patches_push_the_slowest_poles_deeper(layouts):
 
 @pytest.mark.slow
 def test_optimal_locations_depend_on_speed_twist_presetting_and_number():
-    found = dependence(UNTWISTED)
-    asis = np.array(found.pop("as it is"))
-    assert all(np.abs(np.array(other[:2]) - asis).max() > 1e-3 for other in found.values())
+    as_it_is, *others = (np.array(placed("actuators", count, blade).positions) for blade, count in variants(UNTWISTED).values())
+    assert all(np.abs(other[:2] - as_it_is).max() > 1e-3 for other in others)

@@ -1,6 +1,7 @@
 import errno
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,11 +10,12 @@ from typer.testing import CliRunner
 from train.cli.app import app
 from train.figures.figure import Curve, Panel
 from train.reproduce.catalogue import chosen
-from train.reproduce.judging.study import Outcome, Statement, Study
+from train.reproduce.judging.study import Outcome, Part, Statement, Study
 from train.reproduce.judging.verdicts import Holds, Verdict
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import load, run, source_fingerprint
 from train.reproduce.thesis import Model
+from train.workers.workers import Workers
 
 
 def counted(name="figure-3.2", fails=False):
@@ -64,6 +66,39 @@ def test_a_failing_study_is_reported_and_does_not_stop_the_others(tmp_path):
     assert not (tmp_path / "figure-3.2.json").exists() and (tmp_path / "figure-3.3.png").exists()
     page = markdown_page([replace(records[0])])
     assert "This study failed: ZeroDivisionError: no such blade" in page and "Failed: figure-3.2." in page
+
+
+def doubled(number, log):
+    with open(log, "a") as file:
+        file.write(f"{number}\n")
+    return 2 * number
+
+
+def of_parts(name, numbers, log, function=doubled):
+    def outcome(model, results):
+        x = np.array(list(results.values()), dtype=float)
+        return Outcome({"fact": [True]}, [Panel("one", "x (m)", "y (m)", [Curve(x, x, "a")])])
+
+    statements = (Statement("fact", "It is so", Holds()),)
+    return Study(name, "a title", "", statements, outcome, lambda model: {n: Part(function, (n, log)) for n in numbers})
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_part_of_several_studies_is_found_once(jobs, tmp_path):
+    log = str(tmp_path / "log")
+    one, other = of_parts("figure-3.2", (1, 2), log), of_parts("figure-3.3", (2, 3), log)
+    records = run([one, counted("figure-3.4")[0], other], tmp_path, workers=Workers(jobs))
+    assert [record.name for record in records] == ["figure-3.2", "figure-3.4", "figure-3.3"]
+    assert not any(record.error for record in records)
+    assert sorted(Path(log).read_text().split()) == ["1", "2", "3"]
+    assert [row.split(",")[3] for row in (tmp_path / "figure-3.3.csv").read_text().splitlines()[1:]] == ["4", "6"]
+
+
+def test_a_part_that_fails_fails_the_studies_it_belongs_to_and_no_other(tmp_path):
+    log = str(tmp_path / "log")
+    broken = of_parts("figure-3.2", (1,), log, lambda number, log: 1 / 0)
+    records = run([broken, of_parts("figure-3.3", (1,), log)], tmp_path)
+    assert [record.error for record in records] == ["ZeroDivisionError: division by zero", ""]
 
 
 def test_an_interrupted_run_keeps_what_it_finished(tmp_path):
@@ -157,7 +192,7 @@ def test_ctrl_c_writes_the_page_of_what_is_finished_and_says_how_to_go_on(tmp_pa
         raise KeyboardInterrupt
 
     (first,), (second,) = chosen(["table-3.4"]), chosen(["figure-3.3"])
-    monkeypatch.setattr("train.cli.reproduce.chosen", lambda names: (first, replace(second, compute=interrupted)))
+    monkeypatch.setattr("train.cli.reproduce.chosen", lambda names: (first, replace(second, outcome=interrupted)))
     result = CliRunner().invoke(app, ["reproduce", "--output", str(tmp_path), "--jobs", "1"])
     assert result.exit_code == 130
     assert "beamenv: interrupted: what was finished is kept, and the same command resumes." in result.output

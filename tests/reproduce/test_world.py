@@ -4,7 +4,6 @@ import pytest
 
 from beamenv.structure import RotatingBeam
 from train.reproduce.catalogue import NAMES, chosen
-from train.reproduce.studies import placement_study
 from train.reproduce.thesis import Model
 
 QUICK = ("table-2.2", "table-3.2", "table-3.4", "figure-3.8", "figure-5.3", "figure-5.8", "figure-5.11")
@@ -20,8 +19,6 @@ def test_every_blade_of_a_study_is_of_the_thesis_model(name, monkeypatch):
         made.append(beam.model)
         check(beam)
 
-    for kept in (placement_study.table_row, placement_study.initial_and_optimal):
-        kept.cache_clear()
     monkeypatch.setattr(RotatingBeam, "__post_init__", noting)
     (study,) = chosen([name])
     study.compute(Model())

@@ -79,6 +79,37 @@ def test_an_interrupted_search_ends_as_one_that_was_not(alone, tmp_path):
     assert resumed.recipe == alone.recipe
 
 
+def own_workers():
+    """Processes of Ray's that run a trial for this one."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            name, above = (path / "cmdline").read_bytes(), path
+            while above.name not in ("0", "1", str(os.getpid())):
+                above = path.parent / (above / "stat").read_text().rpartition(")")[2].split()[1]
+        except OSError:
+            continue
+        if name.startswith(b"ray::Arm") and above.name == str(os.getpid()):
+            found.append(int(path.name))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are looked up in /proc")
+def test_a_worker_that_is_killed_costs_no_trial_and_no_word(alone, tmp_path, capfd):
+    killed = []
+
+    def report(records):
+        if sum(len(each.looks) for each in records) == 2 and not killed:
+            killed.extend(own_workers())
+            for worker in killed:
+                os.kill(worker, signal.SIGKILL)
+
+    tuned = tune(tuning(), tmp_path, report, side_by_side=1)
+    assert killed
+    assert capfd.readouterr() == ("", "")
+    assert without_seconds(tuned.records) == without_seconds(alone.records)
+
+
 def command(folder, *options):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     words = ["tune", "mine.toml", "--trials", str(TRIALS), "--folder", "made", *options]

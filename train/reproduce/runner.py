@@ -6,14 +6,14 @@ import csv
 import io
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 from beamenv.configuration.writing import write_whole
 from train.reproduce.drawing import curve_rows, draw
-from train.reproduce.judging.study import Outcome, Study
+from train.reproduce.judging.study import Outcome, Part, Parts, Study
 from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
 from train.shared.digests import digest, source_digest
@@ -30,6 +30,7 @@ class Record:
 
     name: str
     seconds: float
+    """Its parts' not included."""
     judgements: dict[str, Judgement]
     notes: tuple[str, ...] = ()
     header: tuple[str, ...] = ()
@@ -62,18 +63,64 @@ def run(
         records[record.name] = record
         finished(record)
 
-    def written(study: Study, made: Made) -> None:
-        write(folder, made)
-        done(made.record)
-
-    waiting = []
+    missing = []
     for study in studies:
         if not fresh and (kept := load(folder, study.name, fingerprint)):
             done(kept)
         else:
-            waiting.append(study)
-    workers.at_most(len(waiting)).do(partial(made_of, model=model, fingerprint=fingerprint), waiting, written)
+            missing.append(study)
+    waiting = Waiting(missing, model, fingerprint)
+
+    def came(part: Part, result: Any) -> Part | None:
+        if isinstance(result, Made):
+            write(folder, result)
+            done(result.record)
+        else:
+            waiting.found[part] = result
+        return waiting.ready()
+
+    pieces = waiting.pieces()
+    workers.at_most(len(pieces)).do(attempted, pieces, came)
     return [records[study.name] for study in studies]
+
+
+class Waiting:
+    """Studies that are to be made, each when all its parts are found."""
+
+    def __init__(self, studies: Sequence[Study], model: Model, fingerprint: str) -> None:
+        self.found: dict[Part, Any] = {}
+        """What parts came to, exceptions included."""
+        self._studies = [(study, study.parts(model)) for study in studies]
+        self._given = model, fingerprint
+
+    def pieces(self) -> list[Part]:
+        """What can begin at once, study by study: every part once, and the studies that have none."""
+        shared: set[Part] = set()
+        begun = []
+        for study, parts in self._studies:
+            begun += [] if parts else [self._made(study, parts)]
+            begun += [part for part in parts.values() if part not in shared]
+            shared.update(parts.values())
+        return begun
+
+    def ready(self) -> Part | None:
+        """The next study that has parts, all of which are found."""
+        for at, (study, parts) in enumerate(self._studies):
+            if parts and all(part in self.found for part in parts.values()):
+                del self._studies[at]
+                return self._made(study, parts)
+        return None
+
+    def _made(self, study: Study, parts: Parts) -> Part:
+        return Part(made_of, (study, *self._given, {key: self.found[part] for key, part in parts.items()}))
+
+
+def attempted(part: Part) -> Any:
+    """Its result, or the exception that it raised: whatever fails in one study must not stop the others."""
+    try:
+        return part.result()
+    except Exception as error:  # noqa: BLE001
+        return error
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,14 +132,16 @@ class Made:
     picture: bytes = b""
 
 
-def made_of(study: Study, model: Model, fingerprint: str) -> Made:
-    """Compute, judge and draw one study."""
+def made_of(study: Study, model: Model, fingerprint: str, results: Mapping[Any, Any]) -> Made:
+    """Compute, judge and draw one study from what its parts came to."""
     start = time.perf_counter()
     try:
-        outcome = study.compute(model)
+        for failure in (each for each in results.values() if isinstance(each, Exception)):
+            raise failure
+        outcome = study.compute(model, results)
         judgements = study.judge(outcome)
         picture = draw(outcome, f"{study.name.capitalize().replace('-', ' ')}: {study.title}")
-    except Exception as error:  # noqa: BLE001 - whatever fails in one study must not stop the others
+    except Exception as error:  # noqa: BLE001 - as above
         seconds, told = time.perf_counter() - start, f"{type(error).__name__}: {error}"
         return Made(Record(study.name, seconds, {}, error=told, fingerprint=fingerprint))
     tabulated = study.name.startswith("table")

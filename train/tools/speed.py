@@ -20,9 +20,9 @@ BATCHES = (256, 4096, 16384)
 ROUNDS = 7
 
 TARGETS = {
-    "single_over_cartpole": 0.5,
-    "batch_4096": 5e6,
-    "plants_1024": 1e6,
+    "single_over_cartpole": 0.7,
+    "batch_over_cartpole": 0.4,
+    "batch_of_32_bits_over_cartpole": 0.6,
     "pictures": 30.0,
     "assembly_ms": 15.0,
     "further_speed_ms": 5.0,
@@ -37,7 +37,11 @@ ROWS = (
     ("single_over_cartpole", "the second over the first", ""),
     ("cartpole_4096", "CartPole-v1, native batch of 4096", "steps/s"),
     *((f"batch_{size}", f"RotatingBeam-v0, native batch of {size}", "steps/s") for size in BATCHES),
+    ("batch_of_32_bits", 'the same of 4096 with dtype="float32"', "steps/s"),
+    ("batch_over_cartpole", "a batch of 4096 over CartPole's", ""),
+    ("batch_of_32_bits_over_cartpole", "that of 32 bits over CartPole's", ""),
     ("plants_1024", "a batch of 1024, each blade with a plant of its own speed", "steps/s"),
+    ("plants_1024_of_32_bits", 'the same with dtype="float32"', "steps/s"),
     ("history_4096", "the same of 4096 with 12 instants of sensor history", "steps/s"),
     ("pictures", "RotatingBeam-v0, a picture of 960 × 540 for each step", "pictures/s"),
     ("import_s", "import beamenv", "s"),
@@ -78,7 +82,9 @@ def measure() -> dict[str, float]:
     batches = {"cartpole_4096": gymnasium.make_vec("CartPole-v1", num_envs=4096)}
     batches.update({f"batch_{size}": gymnasium.make_vec(beamenv.ENV_ID, num_envs=size) for size in BATCHES})
     different = {"preset": "off-speed", "plants": {"bank": 1024}}
+    batches["batch_of_32_bits"] = gymnasium.make_vec(beamenv.ENV_ID, num_envs=4096, dtype="float32")
     batches["plants_1024"] = gymnasium.make_vec(beamenv.ENV_ID, num_envs=1024, scenario=different)
+    batches["plants_1024_of_32_bits"] = gymnasium.make_vec(beamenv.ENV_ID, num_envs=1024, scenario=different, dtype="float32")
     batches["history_4096"] = beamenv.VectorSensorHistory(gymnasium.make_vec(beamenv.ENV_ID, num_envs=4096), length=12)
     runs = {name: single_run(env) for name, env in singles.items()}
     runs.update({name: batch_run(envs) for name, envs in batches.items()})
@@ -90,6 +96,8 @@ def measure() -> dict[str, float]:
     return {
         **best,
         "single_over_cartpole": best["single"] / best["cartpole"],
+        "batch_over_cartpole": best["batch_4096"] / best["cartpole_4096"],
+        "batch_of_32_bits_over_cartpole": best["batch_of_32_bits"] / best["cartpole_4096"],
         "pictures": max(picture_run(pictures)() for _ in range(ROUNDS)),
         **structure_times(),
     }

@@ -9,7 +9,9 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import redirect_stdout
 from dataclasses import asdict, dataclass, fields, replace
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -135,7 +137,11 @@ def search(plan: Search, found: Found, cluster: str, side_by_side: int | None) -
     """
     notes = Notes(plan.records, plan.rungs[-1], found)
     os.environ |= QUIET
-    with connected(cluster, side_by_side), tempfile.TemporaryDirectory(prefix="beamenv-tune-") as place:
+    with (
+        connected(cluster, side_by_side),
+        tempfile.TemporaryDirectory(prefix="beamenv-tune-") as place,
+        redirect_stdout(StringIO()),  # where Ray says what has become of a worker
+    ):
         tune.Tuner(
             tune.with_resources(tune.with_parameters(Arm, search=plan), resources(plan.jobs[0].recipe)),
             param_space={"trial": tune.grid_search(list(range(len(plan.jobs))))},

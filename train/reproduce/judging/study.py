@@ -59,6 +59,27 @@ class Outcome:
 
 
 @dataclass(frozen=True, slots=True)
+class Part:
+    """What a study is put together from, that takes long or that several share: found once, by whoever has time."""
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+
+    def result(self) -> Any:
+        """What it comes to, which depends on nothing else."""
+        return self.function(*self.arguments)
+
+
+Parts = Mapping[Any, Part]
+"""By what a study calls them."""
+
+
+def no_parts(model: Model) -> Parts:
+    """Of studies that are quick."""
+    return {}
+
+
+@dataclass(frozen=True, slots=True)
 class Study:
     """One table or figure."""
 
@@ -68,7 +89,15 @@ class Study:
     configuration: str
     """What was computed, where the thesis leaves it open or misprints it."""
     statements: tuple[Statement, ...]
-    compute: Callable[[Model], Outcome]
+    outcome: Callable[..., Outcome]
+    """From the model and, where it has parts, from what they came to."""
+    parts: Callable[[Model], Parts] = no_parts
+
+    def compute(self, model: Model, results: Mapping[Any, Any] | None = None) -> Outcome:
+        """The outcome, from its parts' results if these are there already."""
+        if results is None:
+            results = {key: part.result() for key, part in self.parts(model).items()}
+        return self.outcome(model, results) if results else self.outcome(model)
 
     def verdict(self, judgements: Mapping[str, Judgement]) -> Verdict:
         """The weakest verdict of the thesis' statements."""

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines.placement import PlacementProblem, place
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, positions_of
 from beamenv.patches import PatchLayout
 from train.figures.figure import Curve, Panel
-from train.reproduce.judging.study import Outcome, Statement, Study
+from train.reproduce.judging.study import Outcome, Part, Parts, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Marginal, Small, Substantial
 from train.reproduce.studies.closed_loop import (
     SHOWN,
@@ -24,7 +27,7 @@ from train.reproduce.studies.closed_loop import (
     settling_times,
     voltage_energy,
 )
-from train.reproduce.studies.placement_study import Layouts, convergence, depth, initial_and_optimal, poles
+from train.reproduce.studies.placement_study import Layouts, convergence, depth, initial_and_optimal, placed, poles
 from train.reproduce.thesis import Model
 
 Array = NDArray[np.float64]
@@ -36,7 +39,7 @@ PULSES = (0.02, 0.05)
 """s: lengths of the rectangular pulse, which the thesis does not name; the first is drawn."""
 LATER = 0.1
 """s after which voltages count as later ones."""
-LAST_GENERATIONS = 10
+GENERATIONS, LAST_GENERATIONS = 50, 10
 
 
 def placed_blade(model: Model, pretwist_deg: float = 0.0) -> BladeConfig:
@@ -44,12 +47,17 @@ def placed_blade(model: Model, pretwist_deg: float = 0.0) -> BladeConfig:
     return blade(model, model.blade(30.0, pretwist_deg=pretwist_deg), PatchLayout())
 
 
-def fitness(model: Model) -> Outcome:
-    """Figure 6.4."""
+def fitness_parts(model: Model) -> Parts:
+    """A run of every population by the seed, and the best layout known."""
     config = placed_blade(model)
-    runs = [convergence(config, POPULATIONS, seed=seed) for seed in SEEDS]
+    runs = {seed: Part(convergence, (config, POPULATIONS, GENERATIONS, seed)) for seed in SEEDS}
+    return {**runs, "best": Part(placed, ("actuators", 4, config))}
+
+
+def fitness(model: Model, found: Mapping[Any, Any]) -> Outcome:
+    """Figure 6.4."""
+    runs, best = [found[seed] for seed in SEEDS], found["best"].cost
     mean = {size: np.mean([run[size] for run in runs], axis=0) for size in POPULATIONS}
-    best = place(PlacementProblem.of(config, "actuators")).cost
     largest = np.array([run[POPULATIONS[-1]] for run in runs])
     evidence = {
         "falls": [[mean[size][0], mean[size][-1]] for size in POPULATIONS],
@@ -65,9 +73,14 @@ def fitness(model: Model) -> Outcome:
     return Outcome(evidence, [panel], notes=[f"After 50 generations GA stays above the best layout known by {gaps} individuals."])
 
 
-def untwisted_response(model: Model) -> Outcome:
+def layout_parts(twists: Sequence[float], model: Model) -> Parts:
+    """Initial and optimal layouts by pretwist in degrees."""
+    return {twist: Part(initial_and_optimal, (placed_blade(model, twist),)) for twist in twists}
+
+
+def untwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:
     """Figure 6.5."""
-    layouts = initial_and_optimal(placed_blade(model))
+    layouts = by_twist[0.0]
     found = [struck(model, layouts, pulse) for pulse in PULSES]
     voltage = np.array([peak_voltages(each) for each in found])
     evidence = {
@@ -79,9 +92,9 @@ def untwisted_response(model: Model) -> Outcome:
     return Outcome(evidence, response_panels(found[0]), notes=[positions_in_words(layouts), voltages_in_words(found[0])])
 
 
-def pretwisted_response(model: Model) -> Outcome:
+def pretwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:
     """Figure 6.6."""
-    layouts = initial_and_optimal(placed_blade(model, 30.0))
+    layouts = by_twist[30.0]
     found = struck(model, layouts, None)
     voltage = peak_voltages(found)
     evidence = {
@@ -128,11 +141,11 @@ def voltages_in_words(found: dict[str, Response]) -> str:
     return f"Peak voltages asked for, were there no limit: {initial} V with the initial, {optimal} V with the optimal layout."
 
 
-def all_poles(model: Model) -> Outcome:
+def all_poles(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:
     """Figure 6.7."""
     panels, depths = [], []
     for name, twist in (("untwisted", 0.0), ("pretwisted", 30.0)):
-        shown = poles(initial_and_optimal(placed_blade(model, twist)))
+        shown = poles(by_twist[twist])
         for side, loop in (("actuators", "regulator"), ("sensors", "observer")):
             pairs = [shown[side, which] for which in ("initial", "optimal")]  # type: ignore[index]
             depths.append([depth(pair) for pair in pairs])
@@ -179,6 +192,7 @@ STUDIES = (
             Statement("neighbourhood", "30 individuals come to the neighbourhood of the optimum", Small(0.02, 0.05)),
         ),
         fitness,
+        fitness_parts,
     ),
     Study(
         "figure-6.5",
@@ -191,6 +205,7 @@ STUDIES = (
             Statement("later", "Later on its voltage is considerably lower (root mean square after 0.1 s)", Substantial(-1)),
         ),
         untwisted_response,
+        partial(layout_parts, (0.0,)),
     ),
     Study(
         "figure-6.6",
@@ -202,6 +217,7 @@ STUDIES = (
             Statement("second", "Actuator 2 needs a slightly higher one", Marginal(+1), WHY_VOLTS),
         ),
         pretwisted_response,
+        partial(layout_parts, (30.0,)),
     ),
     Study(
         "figure-6.7",
@@ -212,5 +228,6 @@ STUDIES = (
             Statement("mean", "Optimal poles lie deeper in the left half plane: their mean decay rate in each loop", Holds()),
         ),
         all_poles,
+        partial(layout_parts, (0.0, 30.0)),
     ),
 )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,8 @@ from numpy.typing import NDArray
 from baselines.placement import PlacementProblem
 from baselines.placement.cost.riccati import solve_riccati
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.layouts import Side
-from train.reproduce.judging.study import Outcome, Statement, Study
+from beamenv.blade.layouts import SIDES, Side
+from train.reproduce.judging.study import Outcome, Part, Parts, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Substantial, WhateverIsOpen
 from train.reproduce.studies.chapter5_individual import OPEN_WEIGHTS
 from train.reproduce.studies.chapter6_columns import (
@@ -31,13 +32,14 @@ from train.reproduce.studies.placement_study import (
     COUNTS,
     SPEEDS,
     TableRow,
-    dependence,
+    descents,
     gathering_at_the_root,
-    placement_table,
+    placed,
     shift_with_speed,
     starts_that_fail,
     table_row,
     together_against_alone,
+    variants,
 )
 from train.reproduce.thesis import Model, printed_table
 
@@ -55,11 +57,20 @@ def problem_of(config: BladeConfig, side: Side, count: int, speed: float) -> Pla
     return PlacementProblem.of(replace(config, speed=speed), side, count)
 
 
-def four_patches(side: Side, model: Model) -> Outcome:
+def four_parts(side: Side, model: Model) -> Parts:
+    """Rows of two and of four patches, and where SQP ends from random starts, by number and speed."""
+    config, cases = placed_blade(model), [(count, speed) for count in (2, 4) for speed in SPEEDS]
+    rows = {("row", *case): Part(table_row, (side, *case, config)) for case in cases}
+    return rows | {("descents", *case): Part(descents, (side, *case, config, STARTS)) for case in cases}
+
+
+def four_patches(side: Side, model: Model, found: Mapping[Any, Any]) -> Outcome:
     """Table 6.1 or 6.2: four patches by GA and by SQP."""
     config = placed_blade(model)
-    rows = [table_row(side, 4, speed, config) for speed in SPEEDS]
-    two, four = ([failing_starts(side, config, n, speed) for speed in SPEEDS] for n in (2, 4))
+    rows = [found["row", 4, speed] for speed in SPEEDS]
+    two, four = (
+        [starts_that_fail(found["descents", n, speed], found["row", n, speed].both.cost) for speed in SPEEDS] for n in (2, 4)
+    )
     evidence = {
         "ga-below-sqp": [[row.sqp.cost, row.ga.cost] for row in rows],
         "start": np.array(four) > 0.0,
@@ -73,12 +84,6 @@ def four_patches(side: Side, model: Model) -> Outcome:
         f"200 rad/s, then four). {TRACE[side]} of equally spaced patches, by GA, by SQP and by GA then SQP: {costs_of(rows, side)}."
     ]
     return Outcome(evidence, four_panels(side, rows), header=four_header(side), rows=four_rows(side, rows), notes=notes)
-
-
-def failing_starts(side: Side, config: BladeConfig, count: int, speed: float) -> float:
-    """Share of random starts from which SQP misses the best layout."""
-    known = table_row(side, count, speed, config).both.cost
-    return starts_that_fail(problem_of(config, side, count, speed), STARTS, known=known)
 
 
 def speed_orders(side: Side, rows: Sequence[TableRow], config: BladeConfig) -> list[bool]:
@@ -115,10 +120,26 @@ def costs_of(rows: Sequence[TableRow], side: Side) -> str:
     )
 
 
-def one_to_four_patches(side: Side, model: Model) -> Outcome:
+def all_parts(side: Side, model: Model) -> Parts:
+    """Rows of every number at every speed, of actuators for sensors too; for actuators where two belong on other blades."""
+    config = placed_blade(model)
+    sides: tuple[Side, ...] = ("actuators",) if side == "actuators" else SIDES
+    rows = {
+        (each, count, speed): Part(table_row, (each, count, speed, config))
+        for each in sides
+        for count in COUNTS
+        for speed in SPEEDS
+    }
+    if side == "sensors":
+        return rows
+    others = variants(config).items()
+    return rows | {(each, name): Part(placed, (each, count, blade)) for each in SIDES for name, (blade, count) in others}
+
+
+def one_to_four_patches(side: Side, model: Model, found: Mapping[Any, Any]) -> Outcome:
     """Table 6.3 or 6.4: one to four patches by GA, and by SQP from there."""
     config = placed_blade(model)
-    rows = placement_table(side, config)
+    rows = rows_of(side, found)
     saved = 1.0 - 1.0 / (1.0 + np.array(together_against_alone(rows)))
     evidence: dict[str, object] = {
         "then": saved[:, 0] > 0.0,
@@ -131,9 +152,9 @@ def one_to_four_patches(side: Side, model: Model) -> Outcome:
         gain_over_uniform(side, rows),
     ]
     if side == "actuators":
-        evidence["depends"] = depends_on(config)
+        evidence["depends"] = depends_on(config, found)
     else:
-        others = placement_table("actuators", config)
+        others = rows_of("actuators", found)
         edges = np.concatenate([row.both.positions for row in rows])
         evidence["near"] = edges < NEAR * model.box.length
         evidence["nearer"] = [sensor < actuator for _, _, sensor, actuator in gathering_at_the_root(rows, others)]
@@ -148,13 +169,17 @@ def gain_over_uniform(side: Side, rows: Sequence[TableRow]) -> str:
     return f"Against equally spaced {side} the best ones lower {TRACE[side]} by {' and '.join(spans)}."
 
 
-def depends_on(config: BladeConfig) -> list[bool]:
+def rows_of(side: Side, found: Mapping[Any, Any]) -> list[TableRow]:
+    """One side's rows: each number at rest and at 200 rad/s."""
+    return [found[side, count, speed] for count in COUNTS for speed in SPEEDS]
+
+
+def depends_on(config: BladeConfig, found: Mapping[Any, Any]) -> list[bool]:
     """Whether an actuator or a sensor moves by more than 1 % of the span with speed, pretwist, presetting and number."""
     shifts = []
-    for side in ("actuators", "sensors"):
-        found = dependence(config, side)
-        before = np.array(found.pop("as it is"))
-        shifts.append([float(np.abs(np.array(after[: len(before)]) - before).max()) for after in found.values()])
+    for side in SIDES:
+        before, *others = (np.array(found[side, name].positions) for name in variants(config))
+        shifts.append([float(np.abs(after[: len(before)] - before).max()) for after in others])
     return [bool(shift > MOVED * config.beam.length) for shift in np.max(shifts, axis=0)]
 
 
@@ -209,9 +234,15 @@ def both_statements(side: Side) -> tuple[Statement, ...]:
     )
 
 
+def four_study(name: str, side: Side) -> Study:
+    """Table 6.1 or 6.2."""
+    compute, parts = partial(four_patches, side), partial(four_parts, side)
+    return Study(name, f"Four {side} by GA and by SQP", ALONE, four_statements(side), compute, parts)
+
+
 STUDIES = (
-    Study("table-6.1", "Four actuators by GA and by SQP", ALONE, four_statements("actuators"), partial(four_patches, "actuators")),
-    Study("table-6.2", "Four sensors by GA and by SQP", ALONE, four_statements("sensors"), partial(four_patches, "sensors")),
+    four_study("table-6.1", "actuators"),
+    four_study("table-6.2", "sensors"),
     Study(
         "table-6.3",
         "Optimal locations of actuators",
@@ -226,6 +257,7 @@ STUDIES = (
             ),
         ),
         partial(one_to_four_patches, "actuators"),
+        partial(all_parts, "actuators"),
     ),
     Study(
         "table-6.4",
@@ -239,5 +271,6 @@ STUDIES = (
             ),
         ),
         partial(one_to_four_patches, "sensors"),
+        partial(all_parts, "sensors"),
     ),
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +38,6 @@ class TableRow:
     uniform_cost: float
 
 
-@lru_cache(maxsize=64)
 def table_row(side: Side, count: int, speed: float, blade: BladeConfig, seed: int = 0) -> TableRow:
     """A row of Table 6.1 or 6.3 (actuators), 6.2 or 6.4 (sensors); 6.1 and 6.2 are those of four patches."""
     problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
@@ -47,11 +45,6 @@ def table_row(side: Side, count: int, speed: float, blade: BladeConfig, seed: in
     sqp = place(problem, SequentialQuadratic(), seed)
     both = place(problem, SequentialQuadratic(), seed, start=ga.positions)
     return TableRow(side, count, speed, ga, sqp, both, sqp.start_cost)
-
-
-def placement_table(side: Side, blade: BladeConfig, counts: Sequence[int] = COUNTS, seed: int = 0) -> list[TableRow]:
-    """Table 6.3 (actuators) or 6.4 (sensors) with the columns of 6.1 and 6.2 too: each count at rest and at 200 rad/s."""
-    return [table_row(side, count, speed, blade, seed) for count in counts for speed in SPEEDS]
 
 
 def shift_with_speed(rows: Sequence[TableRow]) -> dict[int, tuple[float, float]]:
@@ -71,17 +64,16 @@ def together_against_alone(rows: Sequence[TableRow]) -> list[tuple[float, float]
     return [(row.ga.cost / row.both.cost - 1.0, row.sqp.cost / row.both.cost - 1.0) for row in rows]
 
 
-def starts_that_fail(
-    problem: PlacementProblem, starts: int = 20, seed: int = 0, tolerance: float = 1e-4, known: float | None = None
-) -> float:
-    """Share of random starts from which SQP ends dearer than the best by more than ``tolerance``: it depends on the start.
-
-    The best is the least found, or ``known`` where that is less: by SQP from many starts unless given.
-    """
+def descents(side: Side, count: int, speed: float, blade: BladeConfig, starts: int, seed: int = 0) -> Array:
+    """(starts,): where SQP ends from random layouts."""
+    problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
     layouts = problem.bounds.random(np.random.default_rng(seed), starts)
-    found = np.array([place(problem, SequentialQuadratic(), start=layout).cost for layout in layouts])
-    best = min(float(found.min()), place(problem, "multistart", seed).cost if known is None else known)
-    return float(np.mean(found > best * (1.0 + tolerance)))
+    return np.array([place(problem, SequentialQuadratic(), start=layout).cost for layout in layouts])
+
+
+def starts_that_fail(found: Array, known: float, tolerance: float = 1e-4) -> float:
+    """Share of ``descents`` that end dearer than the best, found by them or ``known``, by more than ``tolerance``."""
+    return float(np.mean(found > min(float(found.min()), known) * (1.0 + tolerance)))
 
 
 def convergence(
@@ -109,7 +101,6 @@ class Layouts:
     sensors: PlacementProblem
 
 
-@lru_cache(maxsize=8)
 def initial_and_optimal(blade: BladeConfig, seed: int = 0) -> Layouts:
     """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare."""
     actuators = PlacementProblem.of(blade, "actuators")
@@ -136,14 +127,17 @@ def depth(shown: NDArray[np.complex128]) -> tuple[float, float]:
     return float(-shown.real.max()), float(-shown.real.mean())
 
 
-def dependence(blade: BladeConfig, side: Side = "actuators", count: int = 2, seed: int = 0) -> dict[str, tuple[float, ...]]:
-    """Placed positions (m) on the untwisted blade at 200 rad/s, and as one thing after another is changed (§6.6)."""
-    configs = {
-        "as it is": blade,
-        "at rest": replace(blade, speed=0.0),
-        "pretwist 30°": replace(blade, beam=replace(blade.beam, pretwist_deg=30.0)),
-        "presetting 30°": replace(blade, beam=replace(blade.beam, presetting_deg=30.0)),
+def variants(blade: BladeConfig, count: int = 2) -> dict[str, tuple[BladeConfig, int]]:
+    """The untwisted blade at 200 rad/s with some patches to be placed, and one thing after another changed (§6.6)."""
+    return {
+        "as it is": (blade, count),
+        "at rest": (replace(blade, speed=0.0), count),
+        "pretwist 30°": (replace(blade, beam=replace(blade.beam, pretwist_deg=30.0)), count),
+        "presetting 30°": (replace(blade, beam=replace(blade.beam, presetting_deg=30.0)), count),
+        "one more": (blade, count + 1),
     }
-    found = {name: place(PlacementProblem.of(each, side, count), "multistart", seed).positions for name, each in configs.items()}
-    more = PlacementProblem.of(blade, side, count + 1)
-    return {**found, f"{count + 1} {side}": place(more, "multistart", seed).positions}
+
+
+def placed(side: Side, count: int, blade: BladeConfig, seed: int = 0) -> Placement:
+    """By SQP from many starts."""
+    return place(PlacementProblem.of(blade, side, count), "multistart", seed)

@@ -1,0 +1,93 @@
+"""What a CUDA graph would do, on the processor: a step recorded once, and replayed on the same memory without a look at it."""
+
+import copy
+
+import numpy as np
+import pytest
+
+import beamenv
+from beamenv.arrays import Arrays
+
+torch = pytest.importorskip("torch")
+
+from torch.utils._python_dispatch import TorchDispatchMode  # noqa: E402
+from torch.utils._pytree import tree_flatten, tree_map  # noqa: E402
+
+from beamenv.envs.torch_graph import StaticStep, leaves  # noqa: E402
+
+COUNT = 5
+SMALL = {"modes": 4, "truth_modes": 4, "beam": {"terms": 8}}
+SCENARIOS = {
+    "default": "default",
+    "brittle": {"magnitude": [100.0, 8000.0], "onset": [0.0, 0.005]},
+    "failure on the way": {"preset": "mid-failure", "failures": {"onset": [0.0, 0.01]}},
+    "hysteresis": "hysteresis",
+    "dropout and turbulence": {"acquisition": {"dropout": 0.2}, "rotor": {"turbulence": 5.0, "harmonics": [3.0, 1.0]}},
+    "delay": {"drive": {"delay": [0, 3]}},
+    "drawn plants": {"plants": {"speed_ratio": [0.8, 1.2], "bank": 3}},
+    "wandering speed": {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 4}},
+    "run-up": {"plants": {"spin_up": [100.0, 110.0]}},
+}
+WAITS = {"aten::_local_scalar_dense", "aten::nonzero", "aten::equal"}
+"""What a device must be waited for."""
+
+
+class Tape(TorchDispatchMode):
+    """Operations in their order, on the memory that they were done on; to play it is to do them again."""
+
+    def __init__(self):
+        super().__init__()
+        self.done = []
+
+    def __torch_dispatch__(self, function, types, args=(), kwargs=None):
+        assert function._schema.name not in WAITS, function
+        result = function(*args, **(kwargs or {}))
+        self.done.append((function, args, kwargs or {}, result))
+        return result
+
+    def play(self):
+        """A tensor that was made then stands for what is made now."""
+        now = {}
+        for function, args, kwargs, then in self.done:
+            args, kwargs = tree_map(lambda each: now.get(id(each), each), (args, kwargs))
+            made = function(*args, **kwargs)
+            for old, new in zip(tree_flatten(then)[0], tree_flatten(made)[0], strict=True):
+                if isinstance(old, torch.Tensor):
+                    now[id(old)] = new
+        return now
+
+
+@pytest.fixture(autouse=True)
+def not_looking(monkeypatch):
+    """Batches that look at no value, as on a GPU."""
+    monkeypatch.setattr(Arrays, "on_host", property(lambda arrays: arrays.of_numpy))
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_recorded_step_played_again_is_the_next_step(name, mode):
+    made = {"scenario": SCENARIOS[name], "duration": 0.01, "blade": SMALL, "autoreset_mode": mode}
+    envs = beamenv.torch_vec(COUNT, device="cpu", **made)
+    envs.reset(seed=4, options={"elapsed": np.arange(COUNT)})
+    plain = copy.deepcopy(envs)
+    step = StaticStep(envs._episodes, torch.zeros(COUNT, 4), envs.generator)
+    tape, random = None, torch.Generator().manual_seed(0)
+    for _ in range(50):
+        actions = 0.1 * torch.randn(COUNT, 4, generator=random)
+        step.actions.copy_(actions)
+        if tape is None:
+            with Tape() as tape:
+                recorded = step.run()
+            told = list(leaves(recorded))
+        else:
+            now = tape.play()
+            told = [now[id(leaf)] for leaf in leaves(recorded)]
+        expected = list(leaves(plain._episodes.step(actions, plain.generator)))
+        assert all(torch.equal(one, other) for one, other in zip(told, expected, strict=True))
+        assert torch.equal(envs.state, plain.state)
+        assert torch.equal(envs.episode_truth, plain.episode_truth)
+
+
+def test_a_graph_is_refused_where_there_is_none():
+    with pytest.raises(ValueError, match=r"^graph is True, but must be False on cpu: only a GPU has graphs\.$"):
+        beamenv.torch_vec(2, device="cpu", graph=True)
