@@ -26,7 +26,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, Enum):
         return plain(value.value)
     if isinstance(value, (np.generic, np.ndarray)):
-        return value.tolist()
+        return (value.astype(np.float64) if value.dtype == np.longdouble else value).tolist()
     if isinstance(value, np.dtype) or (isinstance(value, type) and issubclass(value, np.generic)):
         return np.dtype(value).name
     if isinstance(value, Path):

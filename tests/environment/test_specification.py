@@ -23,6 +23,7 @@ SHORT = {"duration": 0.01}  # 20 control intervals
         {"render_index": range(3)},
         {"render_index": np.array([0, 2]), "dtype": np.float64},
         {"speed": np.float64(150.0), "duration": np.array(0.02)},
+        {"speed": np.longdouble(150.0), "blade": {"beam": {"ply_angles_deg": np.array([30, 20], dtype=np.longdouble)}}},
         {"blade": {"patches": {"actuators": np.array([0.3, 0.9])}}, "autoreset_mode": AutoresetMode.DISABLED},
         {"scenario": Path(beamenv.__file__).parent / "scenarios" / "named" / "delay.toml"},
         {"scenario": {"magnitude": np.array([1.0, 2.0]), "plants": {"bank": np.int64(2)}}},

@@ -175,7 +175,7 @@ DOORS = [
             "seed": COUNT,
             "name": maybe(TEXT),
             "folder": PATH,
-            "environment": maybe(table({k: v for k, v in SINGLE.items() if k != "scenario"})),
+            "environment": maybe(table({k: v for k, v in SINGLE.items() if k not in ("scenario", "plant")})),
             "trained_seed": maybe(COUNT),
             "overwrite": FLAG,
         },
@@ -190,7 +190,7 @@ DOORS = [
             "trained_seed": None,
             "overwrite": False,
         },
-        told=("controller", *SINGLE_WORDS),
+        told=("controller", "dtype", *SINGLE_WORDS),
         plain=False,
     ),
     Door(

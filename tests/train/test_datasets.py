@@ -171,6 +171,14 @@ def test_controllers_may_be_objects_and_functions(tmp_path):
     np.testing.assert_allclose(each["actions"], -0.5 * each["observations"][:-1], atol=1e-7)
 
 
+def test_other_units_and_numbers_are_those_asked_for(tmp_path):
+    asked = {**SHORT, "physical_units": True, "dtype": "float64"}
+    (each,) = arrays(record("lqg", "default", 1, folder=tmp_path, environment=asked))
+    (usual,) = arrays(record("lqg", "default", 1, folder=tmp_path, name="usual-v0", environment=SHORT))
+    assert each["observations"].dtype == each["actions"].dtype == np.float64
+    np.testing.assert_allclose(each["actions"], 1500.0 * usual["actions"], atol=0.01)
+
+
 def test_actions_are_kept_within_their_space(tmp_path):
     (each,) = arrays(record(lambda readings: 1e3 * readings, "default", 1, folder=tmp_path, environment=SHORT))
     assert np.abs(each["actions"]).max() == 1.0
@@ -193,6 +201,8 @@ def test_actions_are_kept_within_their_space(tmp_path):
         ({"name": "../mine-v0"}, "name is '../mine-v0', but must be as beamenv/lqg-nominal-v0"),
         ({"name": "mine"}, "name is 'mine'"),
         ({"environment": {"preset": "none"}}, "preset"),
+        ({"environment": {"colour": 1}}, "environment has no field 'colour': its fields are preset, speed"),
+        ({"environment": {**SHORT, "dtype": "float16"}}, "dtype"),
         ({"trained_seed": 1}, "trained_seed is 1, but must be left out"),
     ],
 )

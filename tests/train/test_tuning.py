@@ -6,9 +6,12 @@ from dataclasses import replace
 from types import ModuleType, SimpleNamespace
 
 import pytest
+from typer.testing import CliRunner
 
 from tests.train import brief
+from train.cli.app import app
 from train.learning.recipe import load_recipe
+from train.learning.recipe_file import as_toml
 from train.tuning.records import FAILED, FINISHED, STOPPED, Record, finished, keep, known, rows
 from train.tuning.space import space_of
 from train.tuning.trial import Look
@@ -152,3 +155,50 @@ def test_one_trial_is_no_tuning(tmp_path):
     with pytest.raises(ValueError, match="trials is 1, but must be a whole number from 2 to 10000"):
         tune(tuning(1), tmp_path / "made", ignore)
     assert not (tmp_path / "made").exists()
+
+
+def command(*words):
+    return CliRunner().invoke(app, ["tune", *words])
+
+
+def test_the_command_says_what_was_chosen_of_how_many_and_beside_what(ran, tmp_path):
+    (tmp_path / "mine.toml").write_text(as_toml(brief.GRADIENT))
+    asked = [str(tmp_path / "mine.toml"), "--trials", "4", "--folder", str(tmp_path / "made")]
+    told = command(*asked)
+    assert told.exit_code == 0
+    said = " ".join(told.stdout.split())
+    assert "Trial 2 is chosen, of 4, 3 of which had all their updates." in said
+    assert "0.700, of the recipe as it is 0.900, on the 32 validation episodes that chose; 0.750 and 0.750 on 32 others" in said
+    assert f"beamenv train mine --recipe {tmp_path / 'made' / 'recipe.toml'}" in said
+    content = json.loads(command(*asked, "--json").stdout)
+    assert content["chosen"] == 2
+    assert [each["ended"] for each in content["trials"]] == ["finished", "stopped", "finished", "finished"]
+    other = command(*asked, "--updates", "5")
+    assert (other.exit_code, other.stdout) == (2, "")
+    assert "holds another tuning" in other.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("dreamer",), "recipe is 'dreamer', but must be one of belief, gradient"),
+        (("absent.toml",), "file 'absent.toml' cannot be read"),
+        (("gradient", "--updates", "0"), "updates is 0, but must be a whole number"),
+        (("gradient", "--cluster", "here"), "cluster is 'here', but must be local, or the address HOST:PORT"),
+        (("gradient", "--space", "none.toml"), "file 'none.toml' cannot be read"),
+        (("gradient", "--scenario", "gusty"), "scenario"),
+    ],
+)
+def test_what_cannot_be_tuned_is_told_in_a_sentence_and_nothing_is_written(ran, tmp_path, monkeypatch, words, sentence):
+    monkeypatch.chdir(tmp_path)
+    told = command(*words)
+    assert (told.exit_code, told.stdout) == (2, "")
+    assert sentence in told.stderr
+    assert told.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_cluster_is_not_tuned_on_from_outside(ran, tmp_path, monkeypatch):
+    monkeypatch.setattr("train.tuning.tuning.check_address", lambda address: None)
+    with pytest.raises(ValueError, match="cluster is 'ray://here:1', but must be local, or HOST:PORT"):
+        tune(tuning(), tmp_path, ignore, cluster="ray://here:1")

@@ -15,7 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from beamenv.configuration import Count, FileName, checked
+from beamenv.configuration import Count, FileName, Refused, checked
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -70,6 +70,8 @@ def tune(
         from train.tuning.tuning import Tuning
         from train.tuning.tuning import tune as run
 
+        if recipe not in NAMES and not recipe.endswith((".toml", ".json")):
+            raise Refused("recipe", recipe, f"one of {', '.join(NAMES)}, or a file that ends in .toml or .json")
         chosen = named_recipe(recipe) if recipe in NAMES else load_recipe(Path(recipe))
         chosen = chosen if updates is None else replace(chosen, updates=checked("updates", updates, Count()))
         environment = environment_arguments(preset, speed, blade, plant)

@@ -17,10 +17,10 @@ from baselines import Controller
 from baselines.design.controller import ControllerArgument, as_controller, name_of
 from baselines.evaluation.episodes import MOST_SEEDS, Progress, checked_progress
 from baselines.evaluation.fit import check_fit
-from beamenv.configuration import Count, Flag, Refused, checked
+from beamenv.configuration import Count, Flag, Refused, checked, checked_table
 from beamenv.knowledge import on_recording_bank
 from beamenv.scenarios.scenario import scenario as as_scenario
-from beamenv.task import Task, resolve_task
+from beamenv.task import Task, checked_dtype, resolve_task
 from train.controllers.choice import chosen
 from train.datasets.about import metadata, tier_of
 from train.datasets.storage import DATA, add, begun, checked_place, put_in_place, root_of
@@ -34,6 +34,9 @@ WIDTH = 64
 """Blades side by side, however many episodes there are: sums over more or fewer blades differ in their last bits."""
 
 EPISODES = Count(1, MOST_SEEDS)
+
+ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units", "dtype", "plant", "spread")
+"""Of the environment, besides the scenario."""
 
 
 def record(
@@ -117,8 +120,11 @@ class Stage:
         cls, controller: str | ControllerArgument, scenario: Any, environment: Mapping[str, Any], trained_seed: int | None
     ) -> Stage:
         """The environment of the arguments on plants of its own, and the controller as it is told of them."""
-        known, arguments = as_scenario(scenario), held_models(environment)
-        resolve_task(**arguments, scenario=known)  # which names what is wrong in the arguments' own words
+        given = checked_table("environment", environment, ARGUMENTS)
+        checked_dtype(given.get("dtype", "float32"))
+        known, arguments = as_scenario(scenario), held_models(given)
+        blades = {name: value for name, value in arguments.items() if name != "dtype"}
+        resolve_task(**blades, scenario=known)  # which says what is wrong in the arguments' own words
         played = {**arguments, "scenario": on_recording_bank(known)}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=WIDTH, **played)
         task = replace(envs.unwrapped.task, told_scenario=known)
