@@ -28,6 +28,7 @@ parser = argparse.ArgumentParser(description="PPO from readings alone.", allow_a
 parser.add_argument("--device", help="cpu or cuda; the GPU if there is one")
 parser.add_argument("--minutes", type=float, default=0.03)
 parser.add_argument("--blades", type=int, default=256)
+parser.add_argument("--graph", action="store_true", help="capture steps as a CUDA graph")
 parser.add_argument("--seed", type=int, default=0)
 options, _ = parser.parse_known_args()
 
@@ -37,7 +38,7 @@ DISCOUNT, TRACE, CLIP, RATE, RIDGE = 0.99, 0.95, 0.2, 6e-3, 1e-4
 VALIDATION = range(3_000_000, 3_000_032)
 
 torch.manual_seed(options.seed)
-envs = beamenv.torch_vec(options.blades, options.device, scenario="nominal", autoreset_mode="SameStep")
+envs = beamenv.torch_vec(options.blades, options.device, scenario="nominal", autoreset_mode="SameStep", graph=options.graph)
 modes = len(envs.design_plant.natural_frequencies)
 SLOW = [0, 1, modes, modes + 1]
 """Columns of the design state: displacements, then velocities, of the two slowest modes."""

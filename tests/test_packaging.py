@@ -177,7 +177,7 @@ def test_baselines_never_know_environments():
 ROOMS_OF_TRAIN = (
     {"shared"},
     {"workers"},
-    {"controllers", "figures", "tools"},
+    {"controllers", "figures", "speed", "tools"},
     {"datasets", "export", "identification", "learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore", "rllib", "tuning"},
     {"cli"},

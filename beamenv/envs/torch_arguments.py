@@ -42,7 +42,8 @@ def checked_device(device: Any) -> torch.device:
 
 def checked_precision(dtype: Any) -> Any:
     """``"float32"`` or ``"float64"``, also of torch's types of these names."""
-    return checked_dtype({torch.float32: "float32", torch.float64: "float64"}.get(dtype, dtype))
+    named = str(dtype).removeprefix("torch.") if isinstance(dtype, torch.dtype) else dtype
+    return checked_dtype(named)
 
 
 def checked_graph(graph: Any, device: torch.device, differentiable: bool) -> bool:

@@ -1,6 +1,7 @@
 """Doors that make environments."""
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import PurePath
 
 import gymnasium as gym
@@ -56,6 +57,11 @@ SINGLE = {
     "plant": maybe(PLANT),
     "spread": maybe(SPREAD),
 }
+DEVICE = Kind(
+    "device",
+    lambda value: str(value) if isinstance(value, str) else NOTHING,
+    st.sampled_from(["cpu", "cpu:0", "cuda", "cuda:99", "mps", "gpu", "", "cuda:-1"]),
+)
 MODE = Kind(
     "mode",
     lambda value: value if isinstance(value, AutoresetMode) else str(value) if isinstance(value, str) else NOTHING,
@@ -130,6 +136,25 @@ def made(make):
         return {**found, "num_envs": getattr(env, "num_envs", None)}
 
     return call
+
+
+def of_tensors(name, **given):
+    """What a batch of tensors is and does."""
+    envs = getattr(beamenv, name)(**given)
+    observation, _ = envs.reset(seed=3)
+    for _ in range(2):
+        observation, *_ = envs.step(np.zeros(envs.action_space.shape))
+        assert bool(observation.isfinite().all()), "observation is not finite"
+    assert str(observation.dtype) == f"torch.{envs.observation_space.dtype}", "other numbers than the space's"
+    task = envs.task
+    return {
+        "blade": task.config,
+        "scenario": task.scenario,
+        "physical_units": task.physical_units,
+        "num_envs": envs.num_envs,
+        "steps": envs.steps,
+        "differentiable": envs.differentiable,
+    }
 
 
 def read(found):
@@ -217,4 +242,24 @@ DOORS = [
         COPIABLE,
         public="BladeVecEnv",
     ),
+]
+DOORS += [
+    Door(
+        name,
+        partial(of_tensors, name),
+        {**BATCH, "device": maybe(DEVICE), "differentiable": FLAG, "graph": FLAG},
+        lambda: {
+            "num_envs": 2,
+            **arguments(),
+            "autoreset_mode": "SameStep",
+            "max_episode_steps": 3,
+            "device": "cpu",
+            "differentiable": False,
+            "graph": False,
+        },
+        lambda found: {**read(found), "differentiable": found["differentiable"]},
+        (*SINGLE_WORDS, "graphs"),
+        public=name,
+    )
+    for name in ("torch_vec", "TorchRotatingBeamVectorEnv")
 ]

@@ -132,7 +132,7 @@ def test_every_public_name_has_a_door():
 
 @pytest.mark.parametrize(
     ("name", "made"),
-    [("RotatingBeamEnv", beamenv.RotatingBeamEnv), ("RotatingBeamVectorEnv", beamenv.RotatingBeamVectorEnv)],
+    [(name, getattr(beamenv, name)) for name in ("RotatingBeamEnv", "RotatingBeamVectorEnv", "TorchRotatingBeamVectorEnv")],
 )
 def test_every_argument_of_an_environment_is_among_those_tried(name, made):
     door = next(door for door in DOORS if door.name == name)

@@ -9,12 +9,17 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from beamenv import scenario
 from tests.train.benchmarked import SMALL
 from tests.train.brief import GRADIENT, assert_same, ignore, job, weights
 from tests.train.pieces import Mortal, halved, kill, killed_once
 from train.benchmark import benchmark
+from train.benchmark.bench import Setting
+from train.benchmark.cells import Job
+from train.benchmark.runner import _files
 from train.benchmark.showing.report import as_json
 from train.cli.app import app
+from train.controllers.sources import Trained
 from train.learning.job import run
 from train.learning.several import train_all
 from train.shared.cluster import connected
@@ -172,3 +177,19 @@ def test_trainings_on_a_cluster_are_those_made_one_by_one_though_a_worker_is_kil
     for home, training in trainings.items():
         run(training, tmp_path / "alone" / home.name, ignore)
         assert_same(weights(home), weights(tmp_path / "alone" / home.name))
+
+
+def test_the_files_of_a_scenario_and_an_agent_go_with_their_cells(tmp_path):
+    (tmp_path / "gust.csv").write_text("1.0\n2.0\n3.0\n")
+    agent = tmp_path / "agent"
+    agent.mkdir()
+    for name in ("agent.json", "weights.npz"):
+        (agent / name).write_bytes(name.encode())
+    gust = {"position": 1.0, "course": "series", "series": str(tmp_path / "gust.csv"), "rate": 100.0}
+    cell = Job(Setting("gust", scenario({"loads": [gust]}), 2), "mine", "", Trained(agent))
+    parcel, before = packed([cell], _files([cell])), cell.source.fingerprint()
+    for path in (tmp_path / "gust.csv", agent / "agent.json", agent / "weights.npz"):
+        path.unlink()
+    (there,) = unpacked(parcel)
+    assert Path(there.setting.scenario.loads[0].series).read_text() == "1.0\n2.0\n3.0\n"
+    assert there.source.fingerprint() == before

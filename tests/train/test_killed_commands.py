@@ -147,6 +147,19 @@ def commands(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_benchmark_on_a_cluster_that_is_ended_goes_on_here_to_the_same_result(number, tmp_path):
+    pytest.importorskip("ray", reason="Ray is not installed")
+    arguments, result = commands(tmp_path)["benchmark"]
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    finished(*arguments(whole))
+    ended(number, 0.1, *arguments(broken), "--cluster", "local", ready=lambda: any(broken.glob("cells/*/*.json")))
+    assert_whole(broken)
+    finished(*arguments(broken))
+    assert result(broken) == result(whole)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["train-gradient", "train-ppo", "compare", "benchmark", "reproduce", "place"])
 def test_a_command_ended_at_any_instant_goes_on_to_the_same_result(name, tmp_path):
     arguments, result = commands(tmp_path)[name]

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
+from typing import Any
 
 from beamenv.configuration import Refused, clause
 
@@ -65,12 +66,14 @@ def _handlers_kept() -> Iterator[None]:
             signal.signal(signal.SIGTERM, before)
 
 
-def check_address(address: str) -> None:
+def check_address(address: Any) -> None:
     """``ValueError`` of one sentence for what is no address, or one where nobody answers: Ray itself would wait for minutes."""
+    if not isinstance(address, str):
+        raise Refused("cluster", address, ALLOWED)
     if address == LOCAL:
         return
-    host, _, port = str(address).removeprefix(CLIENT).rpartition(":")
-    if not (isinstance(address, str) and host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
+    host, _, port = address.removeprefix(CLIENT).rpartition(":")
+    if not (host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
         raise Refused("cluster", address, ALLOWED)
     try:
         socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()

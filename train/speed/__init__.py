@@ -1,0 +1,1 @@
+"""How fast batches of tensors step on a device: ``python -m train.speed --device cuda``."""
