@@ -45,7 +45,7 @@ class Starts:
         bank, index = self.stepped, those.take(self.plants.index)
         state = row_product(deflection, self.of(bank.release, index))
         if bank.start is not None:
-            state = state + bank.start[self.plants.group[on_host(those.rows)]]
+            state = state + (bank.start[self.plants.group[those.rows]] if self.arrays.of_numpy else bank.start[0])
         if initial_state is None:
             return state
         given = namespace(state).broadcast_to(self.arrays.floats(initial_state), state.shape)

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 import beamenv
-from beamenv.arrays import Arrays
+from beamenv.arrays import Arrays, on_host
+from beamenv.simulation import blades, starts
 
 torch = pytest.importorskip("torch")
 
 from torch.utils._python_dispatch import TorchDispatchMode  # noqa: E402
 from torch.utils._pytree import tree_flatten, tree_map  # noqa: E402
 
+from beamenv.envs import torch_batch  # noqa: E402
 from beamenv.envs.torch_graph import StaticStep, leaves  # noqa: E402
 
 COUNT = 5
@@ -86,6 +88,41 @@ def test_a_recorded_step_played_again_is_the_next_step(name, mode):
         assert all(torch.equal(one, other) for one, other in zip(told, expected, strict=True))
         assert torch.equal(envs.state, plain.state)
         assert torch.equal(envs.episode_truth, plain.episode_truth)
+
+
+@pytest.fixture
+def no_memory(monkeypatch):
+    """A device of torch's that has shapes and no numbers, in the place of a GPU; what is drawn is made there."""
+
+    class Generator(torch.Generator):
+        def __new__(cls, device):
+            return super().__new__(cls, "cpu")
+
+    for name in ("rand", "randn"):
+        drawn = getattr(torch, name)
+        monkeypatch.setattr(
+            torch, name, lambda shape, dtype, device, generator, drawn=drawn: drawn(shape, dtype=dtype, device="meta")
+        )
+    monkeypatch.setattr(torch, "Generator", Generator)
+    monkeypatch.setattr(torch_batch, "checked_device", lambda device: torch.device("meta"))
+
+
+@pytest.mark.usefixtures("no_memory")
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_step_looks_at_no_number_of_a_device(name, mode, monkeypatch):
+    envs = beamenv.torch_vec(COUNT, scenario=SCENARIOS[name], duration=0.01, blade=SMALL, autoreset_mode=mode)
+    for room in (blades, starts):  # a whole reset asks which rows are all
+        monkeypatch.setattr(room, "on_host", lambda rows: np.arange(COUNT) if isinstance(rows, torch.Tensor) else rows)
+    envs.reset(seed=0)
+    for room in (blades, starts):
+        monkeypatch.setattr(room, "on_host", on_host)
+    for _ in range(2):
+        *told, info = envs.step(torch.zeros(COUNT, 4, device="meta"))
+    told += [each for value in info.values() for each in (value.values() if isinstance(value, dict) else [value])]
+    assert {each.device.type for each in told} == {"meta"}
+    with pytest.raises((RuntimeError, NotImplementedError)):
+        bool(told[2].any())
 
 
 def test_a_graph_is_refused_where_there_is_none():
