@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,9 @@ assert beamenv.baselines.evaluate(law, env, seeds=range(2)).relative_cost.value 
 assert isinstance(law, beamenv.baselines.Law)
 """
 
+NEEDS = {"beamenv.train.rllib": "tree"}
+"""Rooms that import a library of others which is installed apart, and what tells that it is here."""
+
 IN_PROCESSES = """
 from beamenv.train.benchmark import benchmark
 if __name__ == "__main__":
@@ -46,8 +50,9 @@ def shown_imports():
 
 
 def script_of_a_user(name, folder, further=""):
-    """A script that imports all that is shown, and itself is called ``name``."""
-    text = "\n".join([*shown_imports(), USES_EVERYTHING.format(public=PUBLIC), further])
+    """A script that imports all that is shown and can be had here, and itself is called ``name``."""
+    own = [line for line in shown_imports() if all(find_spec(needed) for room, needed in NEEDS.items() if f" {room} " in line)]
+    text = "\n".join([*own, USES_EVERYTHING.format(public=PUBLIC), further])
     (folder / name).write_text(text, encoding="utf-8")
     return folder / name
 
