@@ -14,6 +14,7 @@ from train.learning.job import Job
 from train.learning.recipe import Recipe
 from train.learning.recipe_file import as_toml
 from train.learning.session import Budget
+from train.learning.several import held
 from train.learning.validation import EPISODES
 from train.shared.cluster import CLIENT, LOCAL, check_address
 from train.shared.files import on_one_line, read_json, write_csv, write_json
@@ -103,7 +104,7 @@ def tune(
         raise Refused(
             "cluster", cluster, f"{LOCAL}, or HOST:PORT: from outside a cluster Ray Tune would keep what it finds to itself"
         )
-    jobs = [tuning.job(trial) for trial in range(tuning.trials)]
+    jobs = [held(tuning.job(trial)) for trial in range(tuning.trials)]
     jobs[0].tasks()
     with alone_in(folder), ending_as_interrupted():
         _begin(folder, tuning, overwrite)
