@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -106,6 +107,7 @@ def tune(
         )
     jobs = [held(tuning.job(trial)) for trial in range(tuning.trials)]
     jobs[0].tasks()
+    import_module("train.tuning.search")  # Ray Tune: where it is missing, that is said before anything is written
     with alone_in(folder), ending_as_interrupted():
         _begin(folder, tuning, overwrite)
         records = [known(folder, Record(trial, _settings(job, tuning.space))) for trial, job in enumerate(jobs)]
