@@ -23,7 +23,7 @@ from train.cli.app import app
 from train.controllers.sources import Trained
 from train.learning.job import run
 from train.learning.several import train_all
-from train.shared.cluster import connected
+from train.shared.cluster import check_address, connected
 from train.workers import arrival
 from train.workers.node import carried_out, opened, terms
 from train.workers.parcel import packed, unpacked
@@ -46,6 +46,10 @@ def ray():
 
 def files(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_a_cluster_that_runs_answers(ray):
+    check_address(ray.get_runtime_context().gcs_address)
 
 
 def test_cells_measured_on_a_cluster_are_those_of_one_process_to_the_last_bit(ray, tmp_path):

@@ -23,8 +23,14 @@ CLIENT = "ray://"
 
 ALLOWED = f"{LOCAL}, or the address HOST:PORT of a Ray cluster that runs, or {CLIENT}HOST:PORT from outside it"
 
-PATIENCE = 5.0
-"""s, for a cluster to answer."""
+PATIENCE = 1.5
+"""s, for a machine to answer, and again for Ray there."""
+
+SETTINGS = bytes((0, 0, 0, 4, 0, 0, 0, 0, 0))
+"""A frame of HTTP/2 (RFC 9113, 6.5), of no settings; the fourth byte says what it is."""
+
+PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + SETTINGS
+"""How a client begins where a server of gRPC is, as Ray's are (RFC 9113, 3.4); the server begins with settings too."""
 
 QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_NUM_REDIS_GET_RETRIES": "1", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
 """Ray's environment: it reports to nobody, tries an address once, and leaves what is asked of no GPU its environment."""
@@ -68,7 +74,7 @@ def _handlers_kept() -> Iterator[None]:
 
 
 def check_address(address: Any) -> None:
-    """``ValueError`` of one sentence for what is no address, or one where nobody answers: Ray itself would wait for minutes."""
+    """``ValueError`` of one sentence for what is no address, or one where no Ray answers: Ray itself would wait for half a minute."""
     if not isinstance(address, str):
         raise Refused("cluster", address, ALLOWED)
     host, _, port = address.removeprefix(CLIENT).rpartition(":")
@@ -79,6 +85,18 @@ def check_address(address: Any) -> None:
     if address == LOCAL:
         return
     try:
-        socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()
+        answered = _answered(host.strip("[]"), int(port))
     except (OSError, ValueError) as error:  # ValueError: a host's name that no name can be
         raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but there is no answer: {clause(error)}.") from None
+    if not answered:
+        raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but what is there is no Ray.")
+
+
+def _answered(host: str, port: int) -> bool:
+    """Whether a server of gRPC is there; with TLS, whose keys only Ray knows, whether any is."""
+    with socket.create_connection((host, port), PATIENCE) as connection:
+        if os.environ.get("RAY_USE_TLS", "0").lower() in ("1", "true"):
+            return True
+        connection.sendall(PREFACE)
+        with connection.makefile("rb") as answer:
+            return answer.read(4)[3:] == SETTINGS[3:4]
