@@ -40,7 +40,7 @@ QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_NUM_REDIS_GET_RETRIES": "1", "RAY_
 def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
     """Within it Ray works at an address, or with so many cores of this machine, all if None; it prints nothing.
 
-    A connection that this process has already is used, whatever the address, and stays. Raises ``ValueError`` of one sentence if no
+    A connection that this process has already is used, whatever the address, and stays, and says what it said. Raises ``ValueError`` of one sentence if no
     cluster answers at the address.
     """
     check_address(address)
@@ -56,10 +56,22 @@ def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
             ray.init(**where, log_to_driver=False, logging_level=logging.CRITICAL)
     except (OSError, ValueError, RuntimeError, ImportError) as error:  # whatever else answers there
         raise ValueError(f"cluster = {address!r} must be {ALLOWED}, but {clause(error)}.") from None
+    with _unheard(ray._private.worker):
+        try:
+            yield
+        finally:
+            ray.shutdown()
+
+
+@contextmanager
+def _unheard(worker: Any) -> Iterator[None]:
+    """Ray prints of every worker that dies, whatever is asked of it, but for this switch, its debugger's."""
+    before = getattr(worker, "_worker_logs_enabled", True)
+    worker._worker_logs_enabled = False
     try:
         yield
     finally:
-        ray.shutdown()
+        worker._worker_logs_enabled = before
 
 
 @contextmanager
