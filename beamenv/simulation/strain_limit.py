@@ -53,7 +53,7 @@ class StrainLimit:
         number has failed, be it in the ``increment`` of J alone.
         """
         energy = energy if self.strain.shape[-2] else energy + increment
-        if not self.arrays.on_host:
+        if not self.arrays.looks:
             own = 0 if len(self.limit) == 1 else index
             return strained_too_much(self.strain[own], self.standing[own], self.limit[own], moving())
         if not energy.ndim:
