@@ -18,10 +18,11 @@ from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment, Passage
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.reward import reward_scale as reward_scale
-from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
+from beamenv.simulation.signals.disturbances import SharedDisturbances, Turbulence, noise_factor
 from beamenv.simulation.signals.electronics import Electronics
 from beamenv.simulation.signals.faults import fault_draws
 from beamenv.simulation.signals.own_loads import OwnLoads
+from beamenv.simulation.signals.seeded_disturbances import SeededDisturbances
 from beamenv.simulation.starts import Starts
 from beamenv.simulation.strain_limit import StrainLimit, safe_energy
 

@@ -13,7 +13,8 @@ from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
 from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.simulation.memory import Arrangement
-from beamenv.simulation.signals.disturbances import BLOCK, SeededDisturbances, SharedDisturbances, noise_factor
+from beamenv.simulation.signals.disturbances import SharedDisturbances, noise_factor
+from beamenv.simulation.signals.seeded_disturbances import BLOCK, SeededDisturbances
 
 PLANT = build_plant(blade_config())
 SENSORS = len(PLANT.C)

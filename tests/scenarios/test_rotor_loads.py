@@ -9,7 +9,8 @@ from beamenv.blade.presets import blade_config
 from beamenv.scenarios.drawing import draw_load_cases
 from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.memory import Arrangement
-from beamenv.simulation.signals.disturbances import SeededDisturbances, SharedDisturbances, Turbulence, noise_factor
+from beamenv.simulation.signals.disturbances import SharedDisturbances, Turbulence, noise_factor
+from beamenv.simulation.signals.seeded_disturbances import SeededDisturbances
 
 PLANT = build_plant(blade_config())
 ROTOR = SCENARIOS["rotor"].rotor
