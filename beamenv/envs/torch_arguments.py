@@ -46,7 +46,9 @@ def checked_precision(dtype: Any) -> Any:
     return checked_dtype(named)
 
 
-def checked_recording(graph: Any, compiled: Any, device: torch.device, differentiable: bool, scenario: Scenario) -> tuple[bool, bool]:
+def checked_recording(
+    graph: Any, compiled: Any, device: torch.device, differentiable: bool, scenario: Scenario
+) -> tuple[bool, bool]:
     """Whether steps are captured, and whether they are compiled; ``ValueError`` where they cannot be."""
     wanted = {name: bool(checked(name, value, Flag())) for name, value in (("graph", graph), ("compiled", compiled))}
     if wanted["graph"] and device.type != "cuda":

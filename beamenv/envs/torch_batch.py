@@ -125,9 +125,7 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         self.single_observation_space = self.task.observation_space(precision)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self._captures, self._compiles = checked_recording(
-            graph, compiled, self.device, self.differentiable, self.task.scenario
-        )
+        self._captures, self._compiles = checked_recording(graph, compiled, self.device, self.differentiable, self.task.scenario)
         self._arrays = Arrays(precision, str(self.device), recorded=self._captures or self._compiles)
         blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units, self._arrays)
         self._episodes = TorchEpisodes(blades, min(self.task.steps, limit), self.autoreset_mode)
