@@ -40,8 +40,8 @@ QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_NUM_REDIS_GET_RETRIES": "1", "RAY_
 def connected(address: str = LOCAL, cores: int | None = None) -> Iterator[None]:
     """Within it Ray works at an address, or with so many cores of this machine, all if None; it prints nothing.
 
-    A connection that this process has already is used, whatever the address, and stays, and says what it said. Raises ``ValueError`` of one sentence if no
-    cluster answers at the address.
+    A connection that this process has already is used, whatever the address, and stays, and says what it said. Raises
+    ``ValueError`` of one sentence if no cluster answers at the address.
     """
     check_address(address)
     os.environ |= {name: value for name, value in QUIET.items() if name not in os.environ}
@@ -86,7 +86,7 @@ def _handlers_kept() -> Iterator[None]:
 
 
 def check_address(address: Any) -> None:
-    """``ValueError`` of one sentence for what is no address, or one where no Ray answers: Ray itself would wait for half a minute."""
+    """``ValueError`` of one sentence for what is no address, or one where no Ray answers: Ray itself would wait half a minute."""
     if not isinstance(address, str):
         raise Refused("cluster", address, ALLOWED)
     host, _, port = address.removeprefix(CLIENT).rpartition(":")
