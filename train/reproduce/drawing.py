@@ -60,7 +60,7 @@ def compact(pixels: Any) -> bytes:
     from PIL import Image
 
     picture = io.BytesIO()
-    Image.fromarray(np.asarray(pixels)).convert("RGB").quantize(64).save(picture, format="png", optimize=True)
+    Image.fromarray(np.asarray(pixels)).convert("RGB").quantize(64).save(picture, format="png")  # optimize=True takes as long as the drawing, for 9 % less
     return picture.getvalue()
 
 

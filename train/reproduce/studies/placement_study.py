@@ -76,18 +76,12 @@ def starts_that_fail(found: Array, known: float, tolerance: float = 1e-4) -> flo
     return float(np.mean(found > min(float(found.min()), known) * (1.0 + tolerance)))
 
 
-def convergence(
-    blade: BladeConfig, populations: Sequence[int] = (10, 20, 30), generations: int = 50, seed: int = 0
-) -> dict[int, Array]:
-    """Figure 6.4: least tr(P) (generations,) of four actuators at 200 rad/s after each generation, by the population's size."""
-    problem = PlacementProblem.of(blade, "actuators")
-    curves = {}
-    for size in populations:
-        recorder = Recorder(problem)
-        genetic = Genetic(population=size, generations=generations)
-        genetic.run(recorder, problem.bounds.uniform(), np.random.default_rng(seed))
-        curves[size] = np.array([cost for _, cost in recorder.history])
-    return curves
+def convergence(blade: BladeConfig, population: int, generations: int = 50, seed: int = 0) -> Array:
+    """Figure 6.4: least tr(P) (generations,) of four actuators at 200 rad/s after each generation of a population."""
+    recorder = Recorder(PlacementProblem.of(blade, "actuators"))
+    genetic = Genetic(population=population, generations=generations)
+    genetic.run(recorder, recorder.problem.bounds.uniform(), np.random.default_rng(seed))
+    return np.array([cost for _, cost in recorder.history])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,10 +95,10 @@ class Layouts:
     sensors: PlacementProblem
 
 
-def initial_and_optimal(blade: BladeConfig, seed: int = 0) -> Layouts:
-    """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare."""
+def initial_and_optimal(blade: BladeConfig, row: TableRow, seed: int = 0) -> Layouts:
+    """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare, with the actuators of a ``table_row`` of it."""
     actuators = PlacementProblem.of(blade, "actuators")
-    placed = with_positions(blade, {"actuators": place(actuators, "ga+sqp", seed).positions})
+    placed = with_positions(blade, {"actuators": row.both.positions})
     sensors = PlacementProblem.of(placed, "sensors")
     optimal = replace(
         sensors.configuration(place(sensors, "ga+sqp", seed).positions), sensor_full_scale=actuators.config.sensor_full_scale
