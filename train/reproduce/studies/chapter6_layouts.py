@@ -76,7 +76,8 @@ def fitness(model: Model, found: Mapping[Any, Any]) -> Outcome:
 def layout_parts(twists: Sequence[float], model: Model) -> Parts:
     """Initial and optimal layouts by pretwist in degrees."""
     blades = {twist: placed_blade(model, twist) for twist in twists}
-    return {twist: Part(initial_and_optimal, (each, Part(table_row, ("actuators", 4, each.speed, each)))) for twist, each in blades.items()}
+    rows = {twist: Part(table_row, ("actuators", 4, each.speed, each)) for twist, each in blades.items()}
+    return {twist: Part(initial_and_optimal, (each, rows[twist])) for twist, each in blades.items()}
 
 
 def untwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:

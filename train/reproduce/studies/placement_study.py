@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,9 +39,15 @@ class TableRow:
     uniform_cost: float
 
 
+@lru_cache(maxsize=64)
+def problem_of(config: BladeConfig, side: Side, count: int, speed: float) -> PlacementProblem:
+    """The placement problem of a table's row."""
+    return PlacementProblem.of(replace(config, speed=speed), side, count)
+
+
 def table_row(side: Side, count: int, speed: float, blade: BladeConfig, seed: int = 0) -> TableRow:
     """A row of Table 6.1 or 6.3 (actuators), 6.2 or 6.4 (sensors); 6.1 and 6.2 are those of four patches."""
-    problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
+    problem = problem_of(blade, side, count, speed)
     ga = place(problem, Genetic(), seed)
     sqp = place(problem, SequentialQuadratic(), seed)
     both = place(problem, SequentialQuadratic(), seed, start=ga.positions)
@@ -66,7 +73,7 @@ def together_against_alone(rows: Sequence[TableRow]) -> list[tuple[float, float]
 
 def descents(side: Side, count: int, speed: float, blade: BladeConfig, starts: int, seed: int = 0) -> Array:
     """(starts,): where SQP ends from random layouts."""
-    problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
+    problem = problem_of(blade, side, count, speed)
     layouts = problem.bounds.random(np.random.default_rng(seed), starts)
     return np.array([place(problem, SequentialQuadratic(), start=layout).cost for layout in layouts])
 
@@ -134,4 +141,4 @@ def variants(blade: BladeConfig, count: int = 2) -> dict[str, tuple[BladeConfig,
 
 def placed(side: Side, count: int, blade: BladeConfig, seed: int = 0) -> Placement:
     """By SQP from many starts."""
-    return place(PlacementProblem.of(blade, side, count), "multistart", seed)
+    return place(problem_of(blade, side, count, blade.speed), "multistart", seed)
