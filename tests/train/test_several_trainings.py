@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from tests.train.brief import GRADIENT, PPO, assert_same, ignore, interrupted_after, job, weights
+from tests.train.brief import GRADIENT, PPO, SHORT, assert_same, ignore, interrupted_after, job, weights
 from train.cli.app import app
 from train.cli.train import homes_of
 from train.learning.checkpoint import NAME
@@ -49,13 +49,14 @@ def test_a_training_in_stretches_of_one_update_is_the_whole_one(recipe, tmp_path
 def test_what_a_training_reads_goes_with_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "lost.toml").write_text("[plants]\nbank = 2\ndamping_ratio = [0.003, 0.02]\n")
+    (tmp_path / "fast.toml").write_text("speed = 150.0\n")
     teacher = tmp_path / "teacher"
-    scenario = "lost.toml"
-    run(job(GRADIENT, scenario, updates=1), teacher, ignore)
-    training = replace(job(PPO, scenario), teacher=teacher)
+    scenario, environment = "lost.toml", {**SHORT, "blade": "fast.toml"}
+    run(replace(job(GRADIENT, scenario, updates=1), environment=environment), teacher, ignore)
+    training = replace(job(PPO, scenario), teacher=teacher, environment=environment)
     told, taught = training.told(), weights(teacher)
     parcel = packed(held(training), files(held(training)))
-    for name in ("lost.toml", "teacher/weights.npz", "teacher/agent.json"):
+    for name in ("lost.toml", "fast.toml", "teacher/weights.npz", "teacher/agent.json"):
         (tmp_path / name).unlink()
     there = unpacked(parcel)
     assert there.told() == told

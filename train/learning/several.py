@@ -10,15 +10,14 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from beamenv.configuration.files import ENDINGS
 from beamenv.configuration.writing import write_whole
-from beamenv.scenarios.scenario import Scenario, scenario
+from beamenv.scenarios.scenario import Scenario
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT, best_run, runs_in
 from train.learning.checkpoint import NAME
 from train.learning.job import Job, begun, held_in, run
 from train.learning.training import Progress
-from train.shared.held_models import files_of, held_models
+from train.shared.held_models import files_of, held_models, scenario_of_file
 from train.shared.interruption import Interrupted, ending_as_interrupted
 from train.shared.lock import alone_in
 from train.workers.workers import Workers
@@ -116,10 +115,8 @@ def is_finished(home: Path) -> bool:
 
 def held(job: Job) -> Job:
     """The same training where none of the files here may be: with what they say, and the best run of its teacher."""
-    from_file = isinstance(job.scenario, str) and job.scenario.lower().endswith(ENDINGS)
-    content = scenario(job.scenario) if from_file else None
     teacher = None if job.teacher is None else best_run(job.teacher)
-    return replace(job, content=content, teacher=teacher, environment=held_models(job.environment))
+    return replace(job, content=scenario_of_file(job.scenario), teacher=teacher, environment=held_models(job.environment))
 
 
 def files(job: Job) -> list[Path]:

@@ -9,6 +9,7 @@ import socket
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from importlib.util import find_spec
 from io import StringIO
 from typing import Any
 
@@ -70,11 +71,13 @@ def check_address(address: Any) -> None:
     """``ValueError`` of one sentence for what is no address, or one where nobody answers: Ray itself would wait for minutes."""
     if not isinstance(address, str):
         raise Refused("cluster", address, ALLOWED)
+    host, _, port = address.removeprefix(CLIENT).rpartition(":")
+    if address != LOCAL and not (host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
+        raise Refused("cluster", address, ALLOWED)
+    if find_spec("ray") is None:
+        raise ModuleNotFoundError("No module named 'ray'", name="ray")
     if address == LOCAL:
         return
-    host, _, port = address.removeprefix(CLIENT).rpartition(":")
-    if not (host and port.isdecimal() and port.isascii() and 0 < int(port[:6]) < 65536):
-        raise Refused("cluster", address, ALLOWED)
     try:
         socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()
     except (OSError, ValueError) as error:  # ValueError: a host's name that no name can be
