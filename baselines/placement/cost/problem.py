@@ -157,8 +157,8 @@ class PlacementProblem:
     def _cut(self, positions: Array) -> Intervals:
         """Layouts (N, count), m, with the patches of the other side where those are."""
         still = np.tile(_still(self.config.patches, self.side, self.config.beam.length), (len(positions), 1))
-        both = (positions, still) if self.side == "actuators" else (still, positions)
-        return Intervals.of(PatchEdges.of(*both, self.bounds.length, self.parts.span))
+        actuators, sensors = (positions, still) if self.side == "actuators" else (still, positions)
+        return Intervals.of(PatchEdges.of(actuators, sensors, self.bounds.length, self.parts.span))
 
     def _moved(self, cut: Intervals) -> slice:
         """Which of all patches, actuators first, are to be placed."""
