@@ -21,7 +21,6 @@ from train.cli.options import (
     SpeedOption,
     environment_arguments,
     one_sentence,
-    results_alone,
     same_command,
     working,
 )
@@ -90,7 +89,7 @@ def train(
         trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
         totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
-        with Progressbar(totals, "updates" if minutes is None else "s") as bar, results_alone(cluster):
+        with Progressbar(totals, "updates" if minutes is None else "s") as bar:
             places = train_all(
                 trainings,
                 working(jobs, cluster),

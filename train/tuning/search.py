@@ -9,9 +9,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import redirect_stdout
 from dataclasses import asdict, dataclass, fields, replace
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -139,11 +137,7 @@ def search(plan: Search, found: Found, cluster: str, side_by_side: int | None) -
     """
     notes = Notes(plan.records, plan.rungs[-1], found)
     os.environ |= QUIET
-    with (
-        connected(cluster, side_by_side),
-        tempfile.TemporaryDirectory(prefix="beamenv-tune-") as place,
-        redirect_stdout(StringIO()),  # where Ray says what has become of a worker
-    ):
+    with connected(cluster, side_by_side), tempfile.TemporaryDirectory(prefix="beamenv-tune-") as place:
         tune.Tuner(
             tune.with_resources(
                 tune.with_parameters(Arm, parcel=packed(plan, files(plan.jobs[0]))), resources(plan.jobs[0].recipe)
