@@ -180,7 +180,7 @@ def row_product(rows: Any, matrix: Any, out: Any = None) -> Any:
 
 
 def joined_product(rows: Any, matrix: Any, out: Any = None) -> Any:
-    """As ``row_product``, for a compiler: what sums up few numbers it joins with what is before and after, a product it does not."""
+    """As ``row_product``, for a compiler: sums of few numbers it joins with what is before and after, a product it does not."""
     if matrix.ndim > 2 or matrix.shape[0] > FEW:
         return row_product(rows, matrix, out)
     return (rows[..., None] * matrix).sum(-2)
