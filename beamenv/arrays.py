@@ -48,6 +48,8 @@ class Arrays:
     """Torch's name of where they are, as ``"cuda"``; None: they are NumPy's."""
     recorded: bool = False
     """Whether every step must do the same whatever the numbers are, for it is recorded once and run again."""
+    compiled: bool = False
+    """Whether what is recorded is compiled."""
 
     @property
     def of_numpy(self) -> bool:

@@ -126,7 +126,7 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self._captures, self._compiles = checked_recording(graph, compiled, self.device, self.differentiable, self.task.scenario)
-        self._arrays = Arrays(precision, str(self.device), recorded=self._captures or self._compiles)
+        self._arrays = Arrays(precision, str(self.device), recorded=self._captures or self._compiles, compiled=self._compiles)
         blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units, self._arrays)
         self._episodes = TorchEpisodes(blades, min(self.task.steps, limit), self.autoreset_mode)
         self._zeros, self._all = self._arrays.zeros(0), torch.ones(self.num_envs, dtype=torch.bool, device=self.device)

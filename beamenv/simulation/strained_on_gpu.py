@@ -15,10 +15,10 @@ _BLADES, _POINTS = 64, 64
 
 
 @triton.jit  # type: ignore[untyped-decorator]
-def _kernel(
-    energy: Any, states: Any, strain: Any, standing: Any, limit: Any, index: Any, failed: Any, safe: Any, count: Any,
-    own_states: Any, points: Any, BLADES: tl.constexpr, STATES: tl.constexpr, POINTS: tl.constexpr,
-) -> None:  # fmt: skip
+def _kernel(  # type: ignore[no-untyped-def]
+    energy, states, strain, standing, limit, index, failed, safe, count, own_states, points,
+    BLADES: tl.constexpr, STATES: tl.constexpr, POINTS: tl.constexpr,
+):  # fmt: skip
     first = tl.program_id(0) * BLADES
     rows = first + tl.arange(0, BLADES)
     columns = tl.arange(0, STATES)
