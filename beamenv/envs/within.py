@@ -17,7 +17,8 @@ from beamenv.wrapping import alike, layers
 def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observation",)) -> Task:
     """The task of the blade, or batch of blades, whose observations are their readings, whose actions their voltages if so asked.
 
-    Raises ``ValueError`` for an environment without blades, for a batch of tensors, and for one with a wrapper that shows something else or acts otherwise.
+    Raises ``ValueError`` for an environment without blades, for a batch of tensors, and for one with a wrapper that shows something
+    else or acts otherwise.
     """
     kind: type[Any] = VectorEnv if of_batch else gymnasium.Env
     task = getattr(env.unwrapped, "task", None) if isinstance(env, kind) else None
