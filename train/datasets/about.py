@@ -50,7 +50,8 @@ def metadata(
 ) -> dict[str, Any]:
     """Minari's own keys, and under "beamenv" what it has no keys for.
 
-    ``judges`` is whether the scenario is kept for judging. ``costs`` are J of each episode in J s, NaN where it ended by failure; the mean is of the others, None if there are none.
+    ``judges`` is whether the scenario is kept for judging. ``costs`` are J of each episode in J s, NaN where it ended by failure;
+    the mean is of the others, None if there are none.
     """
     observes = getattr(law, "observes", "observation")
     whole = [each for each in costs if each == each]

@@ -65,9 +65,9 @@ def record(
     - ``overwrite``: whether to replace a data set of this name.
     - ``progress``: called with the number of episodes done and their total.
 
-    A data set of a scenario that is kept for judging says so. Nothing is written unless all is: an interruption leaves no data set, and one that was to be replaced as it was.
-    Raises ``ValueError`` for what is wrong with an argument, for seeds on which controllers are compared, tuned or chosen, and for
-    a controller that does not fit the environment.
+    A data set of a scenario that is kept for judging says so. Nothing is written unless all is: an interruption leaves no data set,
+    and one that was to be replaced as it was. Raises ``ValueError`` for what is wrong with an argument, for seeds on which
+    controllers are compared, tuned or chosen, and for a controller that does not fit the environment.
     """
     count, overwrite = checked("episodes", episodes, EPISODES), checked("overwrite", overwrite, Flag())
     seeds, progress = recorded(seed, count), checked_progress(progress)
