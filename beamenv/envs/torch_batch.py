@@ -209,7 +209,7 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
         with torch.set_grad_enabled(self.differentiable and torch.is_grad_enabled()):
             outcome = self._step(checked_actions(actions, self._actions_shape, self._zeros, self._arrays))
             self._last = outcome.shown
-            observation = outcome.shown.observation.clone()  # the electronics may remember it
+            observation = self._to_keep(outcome.shown.observation)
             return observation, outcome.reward, outcome.terminated, outcome.truncated, self._information(outcome)
 
     def _step(self, actions: torch.Tensor) -> Outcome:
@@ -237,9 +237,13 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
             return info
         info.update(self._steady(outcome.begun))
         if outcome.final is not None:
-            info.update(final_obs=outcome.final.observation.clone(), _final_obs=outcome.begun)
+            info.update(final_obs=self._to_keep(outcome.final.observation), _final_obs=outcome.begun)
             info.update(final_info=_masked(information(outcome.final), outcome.begun), _final_info=outcome.begun)
         return info
+
+    def _to_keep(self, observation: torch.Tensor) -> torch.Tensor:
+        """The observation for the caller to keep: the electronics may remember theirs, unless the step is a recorded one."""
+        return observation if self._recorded is not None else observation.clone()
 
     def _steady(self, mask: torch.Tensor) -> dict[str, Any]:
         """What info tells besides of blades whose episode begins."""
