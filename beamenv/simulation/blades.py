@@ -29,10 +29,6 @@ from beamenv.simulation.strain_limit import StrainLimit, safe_energy
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_FULL, _MINUS_FULL = np.array(1.0), np.array(-1.0)
-"""NumPy is quicker with these than with Python numbers, which tells with a blade alone."""
-
-
 def _alike(values: Array) -> Array:
     """One number () in place of equal ones (k,): it broadcasts faster."""
     return np.array(values[0]) if np.all(values == values[0]) else values
@@ -71,6 +67,8 @@ class Blades:
         self._normalised = normalised(self.plant)
         limits = drive_limit(self.plant), self.plant.sensor_full_scale, *self._normalised.voltage_limits
         self._drive, self._full_scale, self._lowest, self._highest = (arrays.floats(_alike(limit)) for limit in limits)
+        self._most, self._least = arrays.floats(np.array(1.0)), arrays.floats(np.array(-1.0))
+        """Of readings, as arrays: NumPy is quicker with these than with Python's numbers."""
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         n = self.count or 1
         self.electronics = Electronics(self.plant, scenario, n, arrays) if scenario.imperfect else None
@@ -361,8 +359,8 @@ class Blades:
         reading = output + noise
         if not self._of_numpy:
             return self._in_units(namespace(output).clip(reading, -1.0, 1.0))
-        np.minimum(reading, _FULL, out=reading)
-        np.maximum(reading, _MINUS_FULL, out=reading)
+        np.minimum(reading, self._most, out=reading)
+        np.maximum(reading, self._least, out=reading)
         return self._in_units(self._by_blade(reading) if self._shape else reading)
 
     def _in_units(self, reading: Any) -> Any:
