@@ -33,10 +33,8 @@ class Operators:
     """(b,), or (..., b), J s per J: cost of the squares of the first b states; b = 0 where all of it is in ``fused``."""
     states: int
     """n"""
-    outputs: int
-    """p"""
-    reads: int
-    """Column of the product in which the outputs begin: among the next states where filters show them."""
+    reads: slice
+    """Columns of the product that are the outputs: among the next states where filters show them."""
     tips: int
     """Column in which the tip displacement begins."""
     displaced: int
@@ -64,8 +62,8 @@ class Operators:
     @classmethod
     def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
         n, p, q = len(plant.A), len(plant.C), len(plant.tip_displacement)
-        places = {"reads": n, "tips": n + p, "displaced": q, "costs": n + p + q}
-        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, crossing=0, **places)
+        places = {"reads": slice(n, n + p), "tips": n + p, "displaced": q, "costs": n + p + q}
+        return cls(fused, np.zeros((*axes, 0)), states=n, crossing=0, **places)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
@@ -107,14 +105,14 @@ class Views(NamedTuple):
 
 def views_of(operators: Operators, joined: Any, product: Any) -> Views:
     """The parts of rows (…, s) that go in and of rows (…, w) that come out."""
-    n, lag, read, tip, cost = operators.states, operators.lagging, operators.reads, operators.tips, operators.costs
+    n, lag, tip, cost = operators.states, operators.lagging, operators.tips, operators.costs
     crossing = joined[..., operators.crossing :]
     return Views(
         crossing,
         (joined[..., n - lag : n], joined[..., n : n + lag]) if lag else None,
         product[..., : n - lag],
         product[..., :n],
-        product[..., read : read + operators.outputs],
+        product[..., operators.reads],
         product[..., tip : tip + operators.displaced],
         product[..., cost : cost + crossing.shape[-1]],
     )
