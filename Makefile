@@ -14,7 +14,7 @@ QUICK_CLIENTS := torchrl
 REQUIRES_cleanrl := tensorboard setuptools
 ALONE_cleanrl := cleanrl==1.2.0
 REQUIRES_minari := minari[create,hdf5]>=0.5.3
-REQUIRES_rllib := ray[rllib] stable-baselines3
+REQUIRES_rllib := ray[rllib]>=2.54 stable-baselines3
 REQUIRES_sbx := sbx-rl
 REQUIRES_skrl := skrl
 REQUIRES_tianshou := tianshou

@@ -46,6 +46,10 @@ class Arrays:
     precision: Precision = "float64"
     device: str | None = None
     """Torch's name of where they are, as ``"cuda"``; None: they are NumPy's."""
+    recorded: bool = False
+    """Whether every step must do the same whatever the numbers are, for it is recorded once and run again."""
+    compiled: bool = False
+    """Whether what is recorded is compiled."""
 
     @property
     def of_numpy(self) -> bool:
@@ -54,8 +58,13 @@ class Arrays:
 
     @property
     def on_host(self) -> bool:
-        """Whether to look at a value costs nothing; a device would have to be waited for."""
+        """Whether they are on the processor."""
         return self.device is None or self.device.startswith("cpu")
+
+    @property
+    def looks(self) -> bool:
+        """Whether a step may look at a number: on the processor that costs nothing, a device would have to be waited for."""
+        return self.on_host and not self.recorded
 
     def floats(self, values: Any) -> Any:
         """The numbers in this precision: NumPy's own array where it has it already, but a copy in torch."""

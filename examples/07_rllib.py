@@ -9,7 +9,7 @@
 # $$
 #
 # RLlib finds such a gain by proximal policy optimisation on 256 blades in one batch, beginning without voltages. It needs
-# `pip install 'ray[rllib]'` besides, and takes about a minute.
+# `pip install 'ray[rllib]>=2.54'` besides, and takes about a minute.
 
 # %%
 import gymnasium as gym

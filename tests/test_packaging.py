@@ -109,6 +109,9 @@ for words in {WITHOUT_TRAINING}:
         ("torch", "train", ["train", "ppo"]),
         ("minari", "record", ["record", "none"]),
         ("ray", "cluster", ["tune", "gradient", "--updates", "1", "--trials", "2"]),
+        ("ray.tune", "cluster", ["tune", "gradient", "--updates", "1", "--trials", "2"]),
+        ("ray", "cluster", ["train", "gradient", "--updates", "1", "--cluster", "local"]),
+        ("ray", "cluster", ["benchmark", "--folder", "made", "--cluster", "local"]),
     ],
 )
 def test_a_command_without_its_extra_says_how_to_install_it(tmp_path, package, extra, words):
@@ -116,7 +119,8 @@ def test_a_command_without_its_extra_says_how_to_install_it(tmp_path, package, e
     code += "from beamenv.train.cli.command import main; main()"
     run = subprocess.run([sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True)
     assert (run.returncode, run.stderr.count("\n")) == (1, 1)
-    assert f"'{package}' is missing; install it with pip install 'beamenv[{extra}]'" in run.stderr
+    assert f"'{package.partition('.')[0]}' is missing; install it with pip install 'beamenv[{extra}]'" in run.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 # Imports run one way: configuration → structure → patches → plant → environment; baselines know plants, never environments;

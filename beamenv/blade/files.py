@@ -12,7 +12,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Refused, read
 from beamenv.configuration.cache import departing
-from beamenv.configuration.files import of_file, read_table
+from beamenv.configuration.files import ENDINGS, of_file, read_table
 
 
 def to_dict(config: Any) -> dict[str, Any]:
@@ -43,6 +43,13 @@ def load_config(path: str | Path) -> BladeConfig:
     content = read_table(path)
     with of_file(path):
         return from_dict(content)
+
+
+def of_path(blade: Any) -> Any:
+    """What the file says that a path, or text that ends as one, names; anything else as it is."""
+    if isinstance(blade, Path) or (isinstance(blade, str) and blade.lower().endswith(ENDINGS)):
+        return load_config(blade)
+    return blade
 
 
 def blade_schema() -> dict[str, Any]:

@@ -46,20 +46,19 @@ def checked_precision(dtype: Any) -> Any:
     return checked_dtype(named)
 
 
-def checked_graph(graph: Any, device: torch.device, differentiable: bool) -> bool:
-    """Whether steps are captured; ``ValueError`` where they cannot be."""
-    wanted = checked("graph", graph, Flag())
-    if wanted and device.type != "cuda":
+def checked_recording(
+    graph: Any, compiled: Any, device: torch.device, differentiable: bool, scenario: Scenario
+) -> tuple[bool, bool]:
+    """Whether steps are captured, and whether they are compiled; ``ValueError`` where they cannot be."""
+    wanted = {name: bool(checked(name, value, Flag())) for name, value in (("graph", graph), ("compiled", compiled))}
+    if wanted["graph"] and device.type != "cuda":
         raise Refused("graph", graph, f"False on {device}: only a GPU has graphs")
-    if wanted and differentiable:
-        raise Refused("graph", graph, "False with differentiable, for no gradient passes through a graph")
-    return bool(wanted)
-
-
-def check_drawn_there(graph: bool, scenario: Scenario) -> None:
-    """``ValueError`` for a graph of what the host has a part in."""
-    if graph and scenario.loads:
-        raise Refused("graph", graph, "False with loads of one's own, which are worked out on the host")
+    for name, value in wanted.items():
+        if value and differentiable:
+            raise Refused(name, value, "False with differentiable, for no gradient passes through a recorded step")
+        if value and scenario.loads:
+            raise Refused(name, value, "False with loads of one's own, which are worked out on the host")
+    return wanted["graph"], wanted["compiled"]
 
 
 def checked_actions(actions: Any, shape: tuple[int, ...], zeros: torch.Tensor, arrays: Arrays) -> torch.Tensor:

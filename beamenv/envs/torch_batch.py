@@ -17,20 +17,19 @@ from beamenv.blade.design import Design
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.configuration import Count, Flag, checked
 from beamenv.configuration.memory import check_room
-from beamenv.envs.batch_arguments import batch_reset, chosen_mode
+from beamenv.envs.batch_arguments import BatchReset, batch_reset, chosen_mode
 from beamenv.envs.seeds import SeededVectorEnv
 from beamenv.envs.torch_arguments import (
-    check_drawn_there,
     checked_actions,
     checked_device,
-    checked_graph,
     checked_precision,
+    checked_recording,
     host_options,
     torch,
     torch_seed,
 )
 from beamenv.envs.torch_episodes import Outcome, TorchEpisodes
-from beamenv.envs.torch_graph import CapturedStep
+from beamenv.envs.torch_graph import RecordedStep
 from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
@@ -67,8 +66,10 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
     - `dtype`: `"float32"` (the default) or `"float64"`: the numbers of the spaces and of what is stepped.
     - `differentiable`: keep the graph from actions to all that follows of them, across steps, until `detach()`. Otherwise steps
       run without gradients. Where an episode begins, nothing passes from the one before.
-    - `graph`: on a GPU capture the step as a CUDA graph after each reset, and replay it: to start the kernels of a small batch one
-      by one takes longer than they do. Not measured on a GPU, nor run on one: in tests the processor replays what is recorded.
+    - `graph`: on a GPU capture the step as a CUDA graph, and replay it: to start the kernels of a small batch one by one takes
+      longer than they do.
+    - `compiled`: trace the step and compile it (TorchInductor; on the processor that takes a C++ compiler): fewer passes over the
+      memory, for half a minute at the first step. With either, steps are the same operations whatever the numbers are.
 
     **Actions** are a tensor (N, m) on the device; an array of NumPy, such as the action space samples, is taken too, and copied.
     On the processor numbers that are not finite are refused; on a GPU nobody looks, which would be to wait for it: such a
@@ -110,13 +111,13 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         device: str | torch.device | None = None,
         differentiable: bool = False,
         graph: bool = False,
+        compiled: bool = False,
     ) -> None:
         self.num_envs = checked("num_envs", num_envs, Count())
         check_room("num_envs", self.num_envs, BLADE, "blades")
         limit = sys.maxsize if max_episode_steps is None else checked("max_episode_steps", max_episode_steps, Count())
         self.device, precision = checked_device(device), checked_precision(dtype)
         self.differentiable = checked("differentiable", differentiable, Flag())
-        self._graph = checked_graph(graph, self.device, self.differentiable)
         self.autoreset_mode = chosen_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.task: Task = resolve_task(preset, speed, blade, design, scenario, duration, physical_units, plant, spread)
@@ -124,14 +125,16 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         self.single_observation_space = self.task.observation_space(precision)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        check_drawn_there(self._graph, self.task.scenario)
-        self._arrays = Arrays(precision, str(self.device))
+        self._captures, self._compiles = checked_recording(graph, compiled, self.device, self.differentiable, self.task.scenario)
+        self._arrays = Arrays(precision, str(self.device), recorded=self._captures or self._compiles, compiled=self._compiles)
         blades = Blades(self.task.bank, self.task.scenario, self.num_envs, self.task.physical_units, self._arrays)
         self._episodes = TorchEpisodes(blades, min(self.task.steps, limit), self.autoreset_mode)
         self._zeros, self._all = self._arrays.zeros(0), torch.ones(self.num_envs, dtype=torch.bool, device=self.device)
         self._actions_shape = (self.num_envs, *self.single_action_space.shape)
+        self._torch_generator = torch.Generator(self.device)
         self._draws_from: Any = None
-        self._captured: CapturedStep | None = None
+        self._recorded: RecordedStep | None = None
+        self._begun_in = self.task.scenario
         self._last: Any = None
 
     @property
@@ -190,7 +193,7 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         if not isinstance(generators, np.random.Generator):
             self._draws_from = generators
         elif seed is not None or self.generator is None:
-            self._draws_from = torch.Generator(self.device)
+            self._draws_from = self._torch_generator  # always the same: a graph draws from it
             self._draws_from.manual_seed(torch_seed(self.np_random_seed))
         return self._draws_from
 
@@ -205,8 +208,8 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         asked = batch_reset(self.task, host_options(options), self.steps, self.num_envs)
         with torch.set_grad_enabled(self.differentiable and torch.is_grad_enabled()):
             generators = self._seed(seed) if asked.rows is None else self._seed_some(seed, asked.rows)
-            self._captured = None
             motion, mask = self._episodes.begin(generators, asked)
+            self._go_on(asked)
             if asked.rows is not None:
                 motion = self._last = _with(self._last, self._arrays.exact(asked.rows), motion)
         self._last = motion
@@ -220,22 +223,29 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
             over = self._episodes.over.nonzero()[:, 0].tolist()
             raise gymnasium.error.ResetNeeded(f"Episodes of blades {over} have ended: reset these before step.")
         with torch.set_grad_enabled(self.differentiable and torch.is_grad_enabled()):
-            outcome = self._episodes.step(
-                checked_actions(actions, self._actions_shape, self._zeros, self._arrays), self._draws_from
-            )
+            outcome = self._step(checked_actions(actions, self._actions_shape, self._zeros, self._arrays))
             self._last = outcome.shown
             observation = outcome.shown.observation.clone()  # the electronics may remember it
             return observation, outcome.reward, outcome.terminated, outcome.truncated, self._information(outcome)
 
     def _step(self, actions: torch.Tensor) -> Outcome:
-        if not self._graph or self.generator is None:
+        if not self._arrays.recorded or self.generator is None:
             return self._episodes.step(actions, self._draws_from)
-        if self._captured is None:
-            self._captured = CapturedStep(self._episodes, actions, self.generator)
-        return self._captured(actions)
+        if self._recorded is None:
+            self._recorded = RecordedStep(self._episodes, actions, self.generator, self._compiles, self._captures)
+        return self._recorded(actions)
+
+    def _go_on(self, asked: BatchReset | None = None) -> None:
+        """Let the recorded step go on from where the episodes are now; one of another scenario is recorded anew."""
+        if asked is not None and asked.rows is None and asked.scenario != self._begun_in:
+            self._recorded, self._begun_in = None, asked.scenario
+        if self.generator is None:
+            self._recorded = None
+        if self._recorded is not None:
+            self._recorded.renew()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_captured": None}  # a graph is of this memory
+        return {**self.__dict__, "_recorded": None}  # it is of this memory
 
     def _information(self, outcome: Outcome) -> dict[str, Any]:
         info = _masked(information(outcome.shown), self._all)
@@ -270,8 +280,8 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         """Go back to a ``state_dict`` of an equally made batch."""
         if self.generator is None:
             raise gymnasium.error.ResetNeeded("Call reset with one seed, or none, before load_state_dict.")
-        self._captured = None
         self._episodes.load_state_dict(state)
+        self._go_on()
         self.generator.set_state(state["generator"].cpu())
 
     def close_extras(self, **kwargs: Any) -> None:

@@ -75,7 +75,7 @@ class TorchEpisodes:
 
     def _begun(self, mask: Any, motion: Motion, generators: Any) -> Motion:
         """The motion with that of the mask's blades exchanged for the start of another episode."""
-        looks = self.arrays.on_host or not isinstance(generators, torch.Generator)
+        looks = self.arrays.looks or not isinstance(generators, torch.Generator)
         rows = mask.nonzero()[:, 0] if looks else mask
         if looks and not len(rows):
             return motion

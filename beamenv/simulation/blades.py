@@ -12,7 +12,7 @@ from beamenv.arrays import REFERENCE, Arrays, Masked, Those, namespace, on_host
 from beamenv.plant.plant import Plant, drive_limit, normalised
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Generators, Numbers, draw
-from beamenv.simulation.kernel import row_dot, row_product
+from beamenv.simulation.kernel import joined_product, row_dot, row_product
 from beamenv.simulation.memory import Arrangement, Fresh, InPlace
 from beamenv.simulation.motion import Motion
 from beamenv.simulation.plants.allotment import Allotment, Passage
@@ -80,7 +80,8 @@ class Blades:
         self.plants = Allotment(self._stepped, self._lie, self._sizes or (1,), arrays)
         self._starts = Starts(self.bank, self._stepped, self.plants, arrays, arrays.exact(self.bank.speeds))
         own = self.plants.product if self.plants.drawn and not self._lie.runs else self._lie.product
-        self._multiply = own if self._shape and self._of_numpy else row_product  # a blade alone has no time to ask
+        alone = joined_product if arrays.compiled else row_product
+        self._multiply = own if self._shape and self._of_numpy else alone  # a blade alone has no time to ask
         self._fault_draws = fault_draws(scenario.failures) if self.plants.drawn or self.electronics is not None else 0
         self._changing = (
             self.bank.runs or self.bank.walk is not None or (self.electronics is not None and self.electronics.changing)
@@ -178,6 +179,9 @@ class Blades:
         """(…, 4): stretch, untwist, largest strain and its place of the blades, or of ``rows``, as their episodes begin and nothing
         vibrates.
         """
+        if len(self.bank) == 1 and not self._of_numpy and rows is None:
+            whole: Any = self._stepped.steady
+            return whole.expand(self.count or 1, -1)
         steady = self._stepped.steady[self.plants.index if rows is None else self.plants.index[rows]]
         return steady if self._shape else steady[0]
 
@@ -201,9 +205,13 @@ class Blades:
         cases = self._starts.cases(scenario, those, numbers, seeded)
         chance: Any = self._disturbances
         noise = chance.begin(those, cases, generators if seeded else self.arrays.floats(numbers.noise))
-        state = self._starts.state(those, self.arrays.floats(cases.deflection), initial_state)
+        deflection, given = self.arrays.floats(cases.deflection), initial_state is not None
+        state = self._starts.state(those, deflection, initial_state)
         self._memory.put(those, state)
-        motion = self._undriven(state, noise, those)
+        output, tip = (
+            self._starts.shown(those, deflection, state, table, given) for table in (self._stepped.readout, self._stepped.tip)
+        )
+        motion = self._undriven(state, output, tip, noise, those)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
     def _chance(self, generators: Generators, scenario: Scenario) -> SharedDisturbances | SeededDisturbances:
@@ -234,11 +242,10 @@ class Blades:
             own = numbers.own[rows] if isinstance(those, Masked) else numbers.own
             self.own_loads.begin(on_host(rows), on_host(own))
 
-    def _undriven(self, state: Any, noise: Any, those: Those) -> Motion:
+    def _undriven(self, state: Any, output: Any, tip: Any, noise: Any, those: Those) -> Motion:
         """Motion at the start of an episode, one row for each state (k, n)."""
-        bank, index, array = self._stepped, those.take(self.plants.index), namespace(state)
-        energetic, noise = state[:, : self.plant.blade_states], noise[:, : len(self.plant.C)]
-        output, none = row_product(state, self._starts.of(bank.readout, index)), array.zeros_like(state[:, 0])
+        array, noise = namespace(state), noise[:, : len(self.plant.C)]
+        energetic, none = state[:, : self.plant.blade_states], array.zeros_like(state[:, 0])
         if self.electronics is None:
             reading = array.clip(output + noise, -1.0, 1.0)
         else:
@@ -248,7 +255,7 @@ class Blades:
             reward=none,
             failed=none > 0.0,
             volts=array.zeros_like(state[:, :1]) + array.zeros_like(self._stepped.effort_weight[0, 0]),
-            tip_displacement=row_product(state, self._starts.of(bank.tip, index)),
+            tip_displacement=tip,
             energy=0.5 * row_dot(energetic, energetic),
             effort=none + 0.0,
             cost_increment=none + 0.0,

@@ -191,7 +191,7 @@ class Fresh:
     loads = weighted = None
 
     def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
-        self._own = sizes[-1]
+        self._own, self._splits = sizes[-1], arrays.compiled
         self.state = arrays.zeros(count, operators.states)
 
     def join(self, acting: Any, loads: Any) -> tuple[Any, Any]:
@@ -200,7 +200,12 @@ class Fresh:
 
     def advance(self, operators: Operators, joined: Any, multiply: Multiply, halves: Any) -> tuple[Any, Any, Any, Any]:
         """As ``InPlace.advance``."""
-        self.state, output, tip, increment = advance(operators, joined, multiply=multiply)
+        fused, n = operators.fused, operators.states
+        if self._splits and fused.ndim == 2:  # what is joined need then not lie together, which would have to be written
+            product = multiply(self.state, fused[:n], None) + multiply(joined[:, n:], fused[n:], None)
+            self.state, output, tip, increment = advance(operators, joined, multiply=lambda *_: product)
+        else:
+            self.state, output, tip, increment = advance(operators, joined, multiply=multiply)
         return output, tip, increment, weighted(self.state[:, : self._own] ** 2, halves)
 
     def put(self, those: Any, state: Any) -> None:

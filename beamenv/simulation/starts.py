@@ -12,7 +12,7 @@ from beamenv.scenarios.drawing import load_cases
 from beamenv.scenarios.load_cases import LoadCases
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.chance import Numbers
-from beamenv.simulation.kernel import row_product
+from beamenv.simulation.kernel import joined_product, row_product
 from beamenv.simulation.plants.allotment import Allotment
 from beamenv.simulation.plants.bank import Bank
 
@@ -43,7 +43,7 @@ class Starts:
     def state(self, those: Those, deflection: Any, initial_state: Any) -> Any:
         """(k, n) in the axes of the bank: of static deflections under (k, loads) N/m, or those given ((n,) or (k, n))."""
         bank, index = self.stepped, those.take(self.plants.index)
-        state = row_product(deflection, self.of(bank.release, index))
+        state = (joined_product if self.arrays.compiled else row_product)(deflection, self.of(bank.release, index))
         if bank.start is not None:
             state = state + (bank.start[self.plants.group[those.rows]] if self.arrays.of_numpy else bank.start[0])
         if initial_state is None:
@@ -52,6 +52,13 @@ class Starts:
         if bank.own is not None:
             given = row_product(given, bank.own[0][index].swapaxes(-1, -2))
         return row_product(given, bank.axes[index].swapaxes(-1, -2))
+
+    def shown(self, those: Those, deflection: Any, state: Any, table: Any, given: bool) -> Any:
+        """(k, p): what a table of the plants (K, n, p) shows of states (k, n) that were not ``given`` but came of deflections."""
+        index = those.take(self.plants.index)
+        if given or not self.arrays.compiled or len(self.bank) > 1 or self.stepped.start is not None:
+            return row_product(state, self.of(table, index))
+        return joined_product(deflection, self.stepped.release[0] @ table[0])
 
     def of(self, tables: Any, index: Any) -> Any:
         """Arrays of the plants at ``index`` (k,); of tensors where there is one plant, that alone."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ from numpy.typing import NDArray
 from beamenv.arrays import Arrays, namespace, on_host
 
 Array = NDArray[np.float64]
+
+_BELOW = 1.0 - 1e-6
+"""A kernel takes numbers with 32 bits, which must not be more than they were."""
 
 
 def safe_energy(strain: Array, standing: Array, limit: Array) -> float:
@@ -53,7 +57,10 @@ class StrainLimit:
         number has failed, be it in the ``increment`` of J alone.
         """
         energy = energy if self.strain.shape[-2] else energy + increment
-        if not self.arrays.on_host:
+        if not self.arrays.looks:
+            kernel = None if self.arrays.on_host or not self.strain.shape[-2] else on_gpu()
+            if kernel is not None:
+                return kernel(energy.detach(), moving().detach(), self.strain, self.standing, self.limit, index, _BELOW * self.safe)
             own = 0 if len(self.limit) == 1 else index
             return strained_too_much(self.strain[own], self.standing[own], self.limit[own], moving())
         if not energy.ndim:
@@ -67,6 +74,16 @@ class StrainLimit:
     def _strained(self, rows: Any, states: Any, index: Any) -> Any:
         own = index[rows]
         return strained_too_much(self.strain[own], self.standing[own], self.limit[own], states[rows])
+
+
+@cache
+def on_gpu() -> Any:
+    """The kernel that looks at the blades on a GPU; None without Triton."""
+    try:
+        from beamenv.simulation.strained_on_gpu import strained_too_much as kernel
+    except ImportError:
+        return None
+    return kernel
 
 
 def strained_too_much(strain: Any, standing: Any, limit: Any, state: Any) -> Any:

@@ -37,23 +37,41 @@ def newmark(
     steps: int,
     scheme: NewmarkScheme = NewmarkScheme(),
 ) -> Array:
-    """Displacements (steps + 1, N) of M q̈ + C q̇ + K q = load(t), from rest at zero, every ``interval`` s.
+    """Displacements (steps + 1, …, N) of M q̈ + C q̇ + K q = load(t), from rest at zero, every ``interval`` s.
 
-    ``damping`` holds the gyroscopic matrix too; ``load(t)`` gives (N,).
+    Matrices (…, N, N), for one blade or for many at once; ``damping`` holds the gyroscopic matrix too; ``load(t)`` gives (…, N).
     """
     alpha, delta = scheme.alpha, scheme.delta
     a0, a1, a2 = 1.0 / (alpha * interval**2), delta / (alpha * interval), 1.0 / (alpha * interval)
     a3, a4, a5 = 0.5 / alpha - 1.0, delta / alpha - 1.0, 0.5 * interval * (delta / alpha - 2.0)
-    factors, pivots = lu_factor(stiffness + a0 * mass + a1 * damping)
-    history = np.zeros((steps + 1, len(mass)))
-    displacement, velocity = history[0], np.zeros(len(mass))
-    acceleration = np.linalg.solve(mass, load(0.0))
+    solved = _solver(stiffness + a0 * mass + a1 * damping)
+    history = np.zeros((steps + 1, *mass.shape[:-1]))
+    displacement, velocity = history[0], np.zeros(mass.shape[:-1])
+    acceleration = np.linalg.solve(mass, load(0.0)[..., None])[..., 0]
     for step in range(1, steps + 1):
-        inertia = mass @ (a0 * displacement + a2 * velocity + a3 * acceleration)
-        drag = damping @ (a1 * displacement + a4 * velocity + a5 * acceleration)
-        following, _ = dgetrs(factors, pivots, load(step * interval) + inertia + drag)  # lu_solve checks its arguments for longer
+        inertia = _product(mass, a0 * displacement + a2 * velocity + a3 * acceleration)
+        drag = _product(damping, a1 * displacement + a4 * velocity + a5 * acceleration)
+        following = solved(load(step * interval) + inertia + drag)
         later = a0 * (following - displacement) - a2 * velocity - a3 * acceleration
         velocity = velocity + interval * ((1.0 - delta) * acceleration + delta * later)
         displacement, acceleration = following, later
         history[step] = following
     return history
+
+
+def _product(matrices: Array, vectors: Array) -> Array:
+    """(…, N)."""
+    return np.asarray((matrices @ vectors[..., None])[..., 0])
+
+
+def _solver(matrices: Array) -> Callable[[Array], Array]:
+    """What solves for right-hand sides (…, N), with each matrix factored once."""
+    size = matrices.shape[-1]
+    factored = [lu_factor(each) for each in matrices.reshape(-1, size, size)]
+
+    def solved(right: Array) -> Array:
+        columns = zip(factored, right.reshape(-1, size), strict=True)
+        found = [dgetrs(*factors, column)[0] for factors, column in columns]  # lu_solve checks its arguments for longer
+        return np.array(found).reshape(right.shape)
+
+    return solved

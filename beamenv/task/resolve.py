@@ -8,12 +8,11 @@ from typing import Any
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.files import load_config
+from beamenv.blade.files import of_path
 from beamenv.blade.given import given_blade
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.blade.presets import blade_config
 from beamenv.configuration import Flag, Refused, checked
-from beamenv.configuration.files import ENDINGS
 from beamenv.plant.files import load_plant
 from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
@@ -54,7 +53,7 @@ def resolve_task(
         return _of_model(plant, preset, speed, blade, design, scenario, duration, physical_units, spread)
     if spread is not None:
         raise Refused("spread", spread, "None without a plant: what varies of a blade is in the scenario's plants")
-    config = blade_config(preset, _of_file(blade), speed)
+    config = blade_config(preset, of_path(blade), speed)
     steps = episode_steps(duration, DURATION, config.control_interval, "blade.control_interval")
     physical_units = checked("physical_units", physical_units, Flag())
     chosen = as_scenario(scenario)
@@ -108,10 +107,3 @@ def _of_model(
         physical_units=checked("physical_units", physical_units, Flag()),
     )
     return shared(task)
-
-
-def _of_file(blade: BladeArgument) -> BladeConfig | Mapping[str, Any] | None:
-    """What a path stands for; anything else as it is."""
-    if isinstance(blade, Path) or (isinstance(blade, str) and blade.lower().endswith(ENDINGS)):
-        return load_config(blade)
-    return blade  # type: ignore[return-value] # other strings are refused where it is read

@@ -9,6 +9,7 @@ pytest.importorskip("stable_baselines3")
 
 import beamenv
 from beamenv.baselines import evaluate
+from beamenv.task import resolve_task
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
 
@@ -64,6 +65,16 @@ def test_two_iterations_change_the_gain_and_give_a_controller(cluster, rooms, ru
     idle = evaluate(untrained, envs, seeds=range(4))
     assert idle.relative_cost.value == 1.0
     assert np.isfinite(evaluate(policy, envs, seeds=range(4), reference=idle.reference).relative_cost.value)
+
+
+def test_env_runners_elsewhere_need_none_of_the_files_here(rooms, tmp_path):
+    (tmp_path / "calm.toml").write_text("sensor_noise = false\n")
+    (tmp_path / "fast.json").write_text('{"speed": 150.0}')
+    config = rooms.ppo_config(scenario=str(tmp_path / "calm.toml"), blade=tmp_path / "fast.json", **SHORT)
+    for name in ("calm.toml", "fast.json"):
+        (tmp_path / name).unlink()
+    task = resolve_task(**{name: config.env_config[name] for name in ("scenario", "blade", "duration")})
+    assert task.config.speed == 150.0 and not task.scenario.sensor_noise
 
 
 def test_the_controller_does_what_the_network_asks_for(cluster, rooms):

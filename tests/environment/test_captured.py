@@ -62,7 +62,7 @@ class Tape(TorchDispatchMode):
 @pytest.fixture(autouse=True)
 def not_looking(monkeypatch):
     """Batches that look at no value, as on a GPU."""
-    monkeypatch.setattr(Arrays, "on_host", property(lambda arrays: arrays.of_numpy))
+    monkeypatch.setattr(Arrays, "looks", property(lambda arrays: arrays.of_numpy))
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
@@ -88,6 +88,32 @@ def test_a_recorded_step_played_again_is_the_next_step(name, mode):
         assert all(torch.equal(one, other) for one, other in zip(told, expected, strict=True))
         assert torch.equal(envs.state, plain.state)
         assert torch.equal(envs.episode_truth, plain.episode_truth)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::DeprecationWarning:torch.*")
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_compiled_step_is_the_plain_one(name):
+    mode = ("NextStep", "SameStep", "Disabled")[list(SCENARIOS).index(name) % 3]
+    made = {"scenario": SCENARIOS[name], "duration": 0.01, "blade": SMALL, "autoreset_mode": mode, "dtype": "float64"}
+    plain, compiled = (beamenv.torch_vec(COUNT, device="cpu", compiled=which, **made) for which in (False, True))
+    random = torch.Generator().manual_seed(0)
+    for seed in (4, 5):  # a reset goes on with what is compiled
+        for envs in (plain, compiled):
+            envs.reset(seed=seed, options={"elapsed": np.arange(COUNT)})
+        recorded = compiled._recorded
+        for _ in range(6 if mode == "Disabled" else 25):
+            actions = 0.1 * torch.randn(COUNT, 4, generator=random)
+            (*told, info), (*expected, expected_info) = compiled.step(actions), plain.step(actions)
+            assert info.keys() == expected_info.keys()
+            for one, other in zip(told, expected, strict=True):
+                torch.testing.assert_close(one, other, rtol=1e-11, atol=1e-11)
+            torch.testing.assert_close(compiled.state, plain.state, rtol=1e-11, atol=1e-11)
+        assert compiled._recorded is (recorded or compiled._recorded)
+    kept = compiled.state_dict()
+    first = compiled.step(actions)[0]
+    compiled.load_state_dict(kept)
+    assert torch.equal(compiled.step(actions)[0], first)
 
 
 @pytest.fixture
@@ -128,3 +154,10 @@ def test_a_step_looks_at_no_number_of_a_device(name, mode, monkeypatch):
 def test_a_graph_is_refused_where_there_is_none():
     with pytest.raises(ValueError, match=r"^graph is True, but must be False on cpu: only a GPU has graphs\.$"):
         beamenv.torch_vec(2, device="cpu", graph=True)
+
+
+@pytest.mark.parametrize("name", ["graph", "compiled"])
+def test_a_recorded_step_has_no_gradients(name, monkeypatch):
+    monkeypatch.setattr(torch_batch, "checked_device", lambda device: torch.device("meta" if name == "graph" else "cpu"))
+    with pytest.raises(ValueError, match=f"^{name} is True, but must be False"):
+        beamenv.torch_vec(2, differentiable=True, **{name: True})

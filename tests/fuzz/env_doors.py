@@ -1,5 +1,6 @@
 """Doors that make environments."""
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from pathlib import PurePath
@@ -243,11 +244,13 @@ DOORS = [
         public="BladeVecEnv",
     ),
 ]
+NEVER_TRUE = Kind("flag", FLAG.means, st.sampled_from([False, np.False_, 1, 0, "no", math.nan]))
+"""To compile a step takes seconds, and is tested for itself."""
 DOORS += [
     Door(
         name,
         partial(of_tensors, name),
-        {**BATCH, "device": maybe(DEVICE), "differentiable": FLAG, "graph": FLAG},
+        {**BATCH, "device": maybe(DEVICE), "differentiable": FLAG, "graph": FLAG, "compiled": NEVER_TRUE},
         lambda: {
             "num_envs": 2,
             **arguments(),
@@ -256,6 +259,7 @@ DOORS += [
             "device": "cpu",
             "differentiable": False,
             "graph": False,
+            "compiled": False,
         },
         lambda found: {**read(found), "differentiable": found["differentiable"]},
         (*SINGLE_WORDS, "graphs"),

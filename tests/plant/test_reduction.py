@@ -83,6 +83,17 @@ def test_newmark_of_the_thesis_lengthens_the_period_more_than_average_accelerati
     assert periods == pytest.approx([1.0073, 1.0296], abs=2e-4)
 
 
+def test_newmark_of_many_blades_is_that_of_each_to_the_last_bit():
+    _, mass, damping, stiffness = undamped_full_model(CONFIG)
+    scales, force = (1.0, 2.0, 3.0), np.linspace(-1.0, 1.0, len(mass))
+    several = [[scale * each for scale in scales] for each in (mass, damping, stiffness)]
+    loads = np.array([scale**2 * force for scale in scales])
+    together = newmark(*map(np.array, several), lambda t: t * loads, 1e-4, 50)
+    for k, matrices in enumerate(zip(*several, strict=True)):
+        assert np.array_equal(together[:, k], newmark(*matrices, lambda t, k=k: t * loads[k], 1e-4, 50))
+    assert np.ptp(together[-1]) > 0.0
+
+
 def test_half_the_squared_state_is_the_vibration_energy():
     """½ xᵀx of the plant equals ½ q̇ᵀMq̇ + ½ qᵀKq of the blade whose modal coordinates it stands for."""
     rng = np.random.default_rng(0)

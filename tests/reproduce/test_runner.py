@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 from typer.testing import CliRunner
 
 from train.cli.app import app
@@ -99,6 +100,46 @@ def test_a_part_that_fails_fails_the_studies_it_belongs_to_and_no_other(tmp_path
     broken = of_parts("figure-3.2", (1,), log, lambda number, log: 1 / 0)
     records = run([broken, of_parts("figure-3.3", (1,), log)], tmp_path)
     assert [record.error for record in records] == ["ZeroDivisionError: division by zero", ""]
+
+
+def added(first, second, log):
+    with open(log, "a") as file:
+        file.write(f"{first} + {second}\n")
+    return first + second
+
+
+def on_parts(name, log, function=doubled):
+    """A study of one part that rests on two others."""
+    study = of_parts(name, (), log)
+    return replace(study, parts=lambda model: {"sum": Part(added, (Part(function, (1, log)), Part(function, (2, log)), log))})
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_part_that_rests_on_others_is_given_what_they_came_to(jobs, tmp_path):
+    log = str(tmp_path / "log")
+    run([on_parts("figure-3.2", log), of_parts("figure-3.3", (2,), log)], tmp_path, workers=Workers(jobs))
+    assert sorted(Path(log).read_text().splitlines()) == ["1", "2", "2 + 4"]
+    assert [row.split(",")[3] for row in (tmp_path / "figure-3.2.csv").read_text().splitlines()[1:]] == ["6"]
+    assert on_parts("figure-3.2", log).parts(Model())["sum"].result() == 6
+
+
+def test_what_rests_on_a_part_that_fails_fails_as_that_did(tmp_path):
+    log = str(tmp_path / "log")
+    records = run([on_parts("figure-3.2", log, lambda number, log: 1 / 0), of_parts("figure-3.3", (1,), log)], tmp_path)
+    assert [record.error for record in records] == ["ZeroDivisionError: division by zero", ""]
+
+
+def threads(number, log):
+    return max(pool["num_threads"] for pool in threadpool_info())
+
+
+@pytest.mark.parametrize("jobs", [None, 1, 2])
+def test_linear_algebra_has_one_thread_whoever_works(jobs, tmp_path):
+    studies = [of_parts(name, (number,), "", threads) for number, name in enumerate(("figure-3.2", "figure-3.3"))]
+    with threadpool_limits(2):
+        run(studies, tmp_path, workers=Workers(jobs))
+    for study in studies:
+        assert [row.split(",")[3] for row in (tmp_path / f"{study.name}.csv").read_text().splitlines()[1:]] == ["1"]
 
 
 def test_an_interrupted_run_keeps_what_it_finished(tmp_path):

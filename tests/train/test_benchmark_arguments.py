@@ -1,6 +1,7 @@
 """What a benchmark is given, and what it refuses before it measures anything."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -47,6 +48,13 @@ def test_names_that_no_file_can_have_are_refused(name, tmp_path):
 def test_an_environment_that_fails_in_every_cell_is_refused_at_once(environment, words):
     with pytest.raises(ValueError, match=f"^{words}"):
         benchmark(scenarios=["nominal"], controllers=[], seeds=2, environment=environment)
+
+
+@pytest.mark.parametrize("kind", [str, Path])
+def test_a_blade_in_a_file_goes_to_workers_as_what_the_file_says(kind, tmp_path):
+    (tmp_path / "fast.toml").write_text("speed = 150.0\n")
+    sent = environment_json({"blade": kind(tmp_path / "fast.toml")})
+    assert sent == environment_json({"blade": beamenv.blade_config(overrides={"speed": 150.0})})
 
 
 def test_numbers_of_numpy_and_whole_blades_are_the_same_environment():

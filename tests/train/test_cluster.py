@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -23,7 +24,7 @@ from train.cli.app import app
 from train.controllers.sources import Trained
 from train.learning.job import run
 from train.learning.several import train_all
-from train.shared.cluster import connected
+from train.shared.cluster import check_address, connected
 from train.workers import arrival
 from train.workers.node import carried_out, opened, terms
 from train.workers.parcel import packed, unpacked
@@ -46,6 +47,10 @@ def ray():
 
 def files(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_a_cluster_that_runs_answers(ray):
+    check_address(ray.get_runtime_context().gcs_address)
 
 
 def test_cells_measured_on_a_cluster_are_those_of_one_process_to_the_last_bit(ray, tmp_path):
@@ -75,9 +80,12 @@ def test_a_worker_that_is_killed_costs_its_own_piece(cluster, ray, tmp_path):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
-def test_a_piece_that_kills_whoever_takes_it_is_given_up(ray):
+def test_a_piece_that_kills_whoever_takes_it_is_given_up_and_ray_says_nothing(ray, capfd, caplog):
     with pytest.raises(ChildProcessError, match="a worker process died: what was finished is kept, and the same command resumes"):
         Workers(2, "local").do(kill, [1], lambda piece, result: None)
+    assert caplog.messages == 2 * ["beamenv: a worker process died: what it was at is done again."]
+    time.sleep(1.0)  # so long Ray may take to say something
+    assert capfd.readouterr() == ("", "")
 
 
 def test_what_a_piece_raises_is_raised_as_it_was(ray):

@@ -28,10 +28,10 @@ def tuning(trials=4, **changed):
 @pytest.fixture
 def ran(monkeypatch):
     """Trials that were run; trial 1 is stopped at its first rung, and whatever ``ran.fails`` says fails."""
-    made = SimpleNamespace(trials=[], interrupted=None, fails=())
+    made = SimpleNamespace(trials=[], interrupted=None, fails=(), plan=None)
 
     def search(plan, found, cluster, side_by_side):
-        records = list(plan.records)
+        made.plan, records = plan, list(plan.records)
         for record in plan.records:
             if record.ended:
                 continue
@@ -82,6 +82,18 @@ def test_an_interruption_loses_no_trial_and_the_same_call_resumes(ran, tmp_path)
     tuned = tune(tuning(), tmp_path, ignore)
     assert ran.trials == [0, 1, 2, 3]
     assert tuned.chosen.trial == 2
+
+
+def test_what_trials_read_goes_with_them(ran, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "calm.toml").write_text("sensor_noise = false\n")
+    (tmp_path / "fast.toml").write_text("speed = 150.0\n")
+    given = tuning(scenario="calm.toml", environment={**brief.SHORT, "blade": "fast.toml"})
+    here = given.job(1).told()
+    tune(given, tmp_path / "made", ignore)
+    for name in ("calm.toml", "fast.toml"):
+        (tmp_path / name).unlink()
+    assert ran.plan.jobs[1].told() == here
 
 
 def test_what_is_finished_is_not_run_again_but_more_trials_are(ran, tmp_path):

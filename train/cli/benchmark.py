@@ -22,7 +22,6 @@ from train.cli.options import (
     PlantOption,
     one_sentence,
     print_json,
-    results_alone,
     working,
 )
 from train.cli.quick import QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
@@ -148,7 +147,7 @@ def entered(
         raise ValueError(f"submit = {submit!r} runs what every entry is put through, so leave out {' and '.join(others)}.")
     board = Path("results") if docs is None else docs
     home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
-    with _Bar() as bar, results_alone(arguments["cluster"]):
+    with _Bar() as bar:
         entry, table = run(submit, board, folder=home, progress=bar.show, **arguments)
     if as_json:
         print_json(finite_row(entry))
@@ -160,7 +159,7 @@ def _measured(**arguments: Any) -> BenchmarkTable:
     """The benchmark, with its bar."""
     from train.benchmark.campaign import benchmark as run
 
-    with _Bar() as bar, results_alone(arguments["cluster"]):
+    with _Bar() as bar:
         return run(**arguments, progress=bar.show)
 
 

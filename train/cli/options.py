@@ -6,7 +6,7 @@ import json
 import shlex
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, redirect_stdout
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
@@ -64,13 +64,6 @@ def working(jobs: int | None, cluster: str | None) -> Workers:
     if jobs is None and cluster is None and find_spec("joblib") is not None:
         return Workers(JOBS)
     return Workers(jobs, cluster)
-
-
-@contextmanager
-def results_alone(cluster: str | None) -> Iterator[None]:
-    """Within it standard output is kept for results: what Ray has to say of workers that die goes where errors go."""
-    with nullcontext() if cluster is None else redirect_stdout(sys.stderr):
-        yield
 
 
 @contextmanager

@@ -9,7 +9,6 @@ from typing import Any
 
 from dash import ClientsideFunction, Dash, Input, Output, html, no_update
 from dash.exceptions import DashException
-from threadpoolctl import threadpool_limits
 from werkzeug.exceptions import HTTPException, NotFound
 from werkzeug.wrappers import Response
 
@@ -19,6 +18,7 @@ from train.explore.figures import campbell_diagram, mode_shape, step_response
 from train.explore.layout import THESIS_PAGE, Page, layout
 from train.explore.requests import ANSWERED, OnlyThePage, told
 from train.figures.themes import THEMES
+from train.shared.threads import one_thread
 
 SIDES = ("actuators", "sensors")
 SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
@@ -103,7 +103,7 @@ def redraw(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:
     On one BLAS thread, for matrices are so small that a second one makes it five times slower; one redraw at a time, for that
     limit is the whole process'.
     """
-    with ONE_AT_A_TIME, threadpool_limits(limits=1):
+    with ONE_AT_A_TIME, one_thread():
         return drawn(values, page)
 
 

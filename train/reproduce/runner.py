@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -71,17 +71,26 @@ def run(
             missing.append(study)
     waiting = Waiting(missing, model, fingerprint)
 
-    def came(part: Part, result: Any) -> Part | None:
+    def came(piece: Piece, result: Any) -> Piece | None:
         if isinstance(result, Made):
             write(folder, result)
             done(result.record)
         else:
-            waiting.found[part] = result
+            waiting.found[piece.part] = result
         return waiting.ready()
 
     pieces = waiting.pieces()
     workers.at_most(len(pieces)).do(attempted, pieces, came)
     return [records[study.name] for study in studies]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """A part that can be found, or a study that can be made, by one worker."""
+
+    part: Part
+    arguments: tuple[Any, ...]
+    """The part's, with what parts among them came to."""
 
 
 class Waiting:
@@ -92,35 +101,59 @@ class Waiting:
         """What parts came to, exceptions included."""
         self._studies = [(study, study.parts(model)) for study in studies]
         self._given = model, fingerprint
+        self._parts = list(with_theirs(part for _, parts in self._studies for part in parts.values()))
 
-    def pieces(self) -> list[Part]:
-        """What can begin at once, study by study: every part once, and the studies that have none."""
-        shared: set[Part] = set()
-        begun = []
-        for study, parts in self._studies:
-            begun += [] if parts else [self._made(study, parts)]
-            begun += [part for part in parts.values() if part not in shared]
-            shared.update(parts.values())
-        return begun
+    def pieces(self) -> list[Piece]:
+        """What can begin at once: parts, every one once, then studies that have none.
 
-    def ready(self) -> Part | None:
-        """The next study that has parts, all of which are found."""
+        Parts take longer and studies wait for them; what takes a moment comes last, so that all workers end together.
+        """
+        begun = [part for part in self._parts if not part.parts]
+        self._parts = [part for part in self._parts if part.parts]
+        whole = [study for study, parts in self._studies if not parts]
+        return [*(Piece(part, part.arguments) for part in begun), *(self._made(study, {}) for study in whole)]
+
+    def ready(self) -> Piece | None:
+        """The next study, or part, that has parts all of which are found."""
         for at, (study, parts) in enumerate(self._studies):
-            if parts and all(part in self.found for part in parts.values()):
+            if parts and self._are_found(parts.values()):
                 del self._studies[at]
                 return self._made(study, parts)
+        for at, part in enumerate(self._parts):
+            if self._are_found(part.parts):
+                del self._parts[at]
+                return Piece(part, tuple(self.found[each] if isinstance(each, Part) else each for each in part.arguments))
         return None
 
-    def _made(self, study: Study, parts: Parts) -> Part:
-        return Part(made_of, (study, *self._given, {key: self.found[part] for key, part in parts.items()}))
+    def _are_found(self, parts: Iterable[Part]) -> bool:
+        return all(part in self.found for part in parts)
+
+    def _made(self, study: Study, parts: Parts) -> Piece:
+        made = Part(made_of, (study, *self._given, {key: self.found[part] for key, part in parts.items()}))
+        return Piece(made, made.arguments)
 
 
-def attempted(part: Part) -> Any:
-    """Its result, or the exception that it raised: whatever fails in one study must not stop the others."""
+def with_theirs(parts: Iterable[Part]) -> dict[Part, None]:
+    """Parts and the parts of these, each once, those that others need before them."""
+    needed: dict[Part, None] = {}
+    for part in parts:
+        needed |= with_theirs(part.parts) | {part: None}
+    return needed
+
+
+def attempted(piece: Piece) -> Any:
+    """Its result, or the exception that it or a part of it raised: whatever fails in one study must not stop the others."""
     try:
-        return part.result()
+        check(piece.arguments)
+        return piece.part.function(*piece.arguments)
     except Exception as error:  # noqa: BLE001
         return error
+
+
+def check(found: Iterable[Any]) -> None:
+    """Raise what has failed."""
+    for failure in (each for each in found if isinstance(each, Exception)):
+        raise failure
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +169,7 @@ def made_of(study: Study, model: Model, fingerprint: str, results: Mapping[Any, 
     """Compute, judge and draw one study from what its parts came to."""
     start = time.perf_counter()
     try:
-        for failure in (each for each in results.values() if isinstance(each, Exception)):
-            raise failure
+        check(results.values())
         outcome = study.compute(model, results)
         judgements = study.judge(outcome)
         picture = draw(outcome, f"{study.name.capitalize().replace('-', ' ')}: {study.title}")

@@ -1,6 +1,6 @@
 """The door for users of Ray RLlib: blades for its env runners, a network, and PPO's settings as they were found to learn.
 
-RLlib is not among the extras: ``pip install 'ray[rllib]'`` beside ``beamenv[train]``.
+RLlib is not among the extras: ``pip install 'ray[rllib]>=2.54'`` beside ``beamenv[train]``.
 """
 
 from train.rllib.blades import ENVIRONMENT, Blade, Blades, register

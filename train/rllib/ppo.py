@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from train.controllers.belief_policy import BeliefPolicy
 from train.learning.sb3.belief_vec_env import BeliefVecEnv
 from train.rllib.blades import register
 from train.rllib.network import LinearOnBelief
+from train.shared.held_models import held_models, scenario_of_file
 
 SEEN = {"held": 2, "modes": 2, "approach": 0.3, "discount": 0.995}
 """What an agent sees and how it acts, as ``BeliefVecEnv`` takes it: as the recipe `ppo-belief-idle` has it."""
@@ -27,8 +29,9 @@ def ppo_config(blades: int = 256, rollout: int = 64, batched: bool = True, **env
 
     The ``environment`` is as ``Blade`` has it, ``SEEN`` where it says nothing. One env runner, in the process of the algorithm:
     ``env_runners(num_env_runners=…)`` has others, each with as many blades, and ``training`` whatever else is to be otherwise.
+    Files of blades, models and scenarios are read here; measured loads that a scenario names must be on every machine.
     """
-    seen = {**SEEN, **environment}
+    seen = {**SEEN, **held(environment)}
     network = RLModuleSpec(module_class=LinearOnBelief, model_config={"exploration": -0.5, "input_gain": 4.0})
     config: Any = PPOConfig
     made: PPOConfig = (
@@ -56,6 +59,12 @@ def ppo_config(blades: int = 256, rollout: int = 64, batched: bool = True, **env
         .rl_module(rl_module_spec=network)
     )
     return made
+
+
+def held(environment: Mapping[str, Any]) -> dict[str, Any]:
+    """The same environment where none of the files may be."""
+    content = scenario_of_file(environment.get("scenario"))
+    return {**held_models(environment), **({} if content is None else {"scenario": content})}
 
 
 def policy_of(algorithm: Algorithm, name: str = "PPO by RLlib") -> BeliefPolicy:

@@ -10,6 +10,15 @@ ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "
 
 
 @contextmanager
+def one_thread() -> Iterator[None]:
+    """Within it the linear algebra that is imported already works on one thread, and so to the same last bit on any machine."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1):
+        yield
+
+
+@contextmanager
 def one_torch_thread() -> Iterator[None]:
     """Within it torch works on one thread: small networks lose by more, and on a busy machine a hundredfold."""
     import torch

@@ -9,9 +9,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import redirect_stdout
 from dataclasses import asdict, dataclass, fields, replace
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +20,12 @@ from ray.tune.schedulers import ASHAScheduler, TrialScheduler
 from beamenv.configuration import clause
 from train.learning.job import Job
 from train.learning.recipe import Recipe
+from train.learning.several import files
 from train.learning.validation import HIGHEST
 from train.shared.cluster import connected
 from train.tuning.records import FAILED, FINISHED, STOPPED, Record, checkpoints
 from train.tuning.trial import REDUCTION, Look, looks
+from train.workers.parcel import packed, unpacked
 
 QUIET = {
     "TUNE_DISABLE_AUTO_CALLBACK_LOGGERS": "1",
@@ -59,9 +59,9 @@ class Search:
 class Arm(tune.Trainable):
     """A trial in a worker: each step leads to its next rung."""
 
-    def setup(self, config: dict[str, Any], search: Search) -> None:  # type: ignore[override] # ``with_parameters`` gives it
+    def setup(self, config: dict[str, Any], parcel: bytes) -> None:  # type: ignore[override] # ``with_parameters`` gives it
         """A trial from its beginning, or from what is known of it."""
-        trial = config["trial"]
+        search, trial = unpacked(parcel), config["trial"]
         record, self._last = search.records[trial], search.rungs[-1]
         self._looks: Iterator[Look] = iter(record.looks)
         if record.ended not in (STOPPED, FAILED):
@@ -137,13 +137,11 @@ def search(plan: Search, found: Found, cluster: str, side_by_side: int | None) -
     """
     notes = Notes(plan.records, plan.rungs[-1], found)
     os.environ |= QUIET
-    with (
-        connected(cluster, side_by_side),
-        tempfile.TemporaryDirectory(prefix="beamenv-tune-") as place,
-        redirect_stdout(StringIO()),  # where Ray says what has become of a worker
-    ):
+    with connected(cluster, side_by_side), tempfile.TemporaryDirectory(prefix="beamenv-tune-") as place:
         tune.Tuner(
-            tune.with_resources(tune.with_parameters(Arm, search=plan), resources(plan.jobs[0].recipe)),
+            tune.with_resources(
+                tune.with_parameters(Arm, parcel=packed(plan, files(plan.jobs[0]))), resources(plan.jobs[0].recipe)
+            ),
             param_space={"trial": tune.grid_search(list(range(len(plan.jobs))))},
             tune_config=TuneConfig(
                 metric="cost",

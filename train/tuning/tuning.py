@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from train.learning.job import Job
 from train.learning.recipe import Recipe
 from train.learning.recipe_file import as_toml
 from train.learning.session import Budget
+from train.learning.several import held
 from train.learning.validation import EPISODES
 from train.shared.cluster import CLIENT, LOCAL, check_address
 from train.shared.files import on_one_line, read_json, write_csv, write_json
@@ -103,8 +105,9 @@ def tune(
         raise Refused(
             "cluster", cluster, f"{LOCAL}, or HOST:PORT: from outside a cluster Ray Tune would keep what it finds to itself"
         )
-    jobs = [tuning.job(trial) for trial in range(tuning.trials)]
+    jobs = [held(tuning.job(trial)) for trial in range(tuning.trials)]
     jobs[0].tasks()
+    import_module("train.tuning.search")  # Ray Tune: where it is missing, that is said before anything is written
     with alone_in(folder), ending_as_interrupted():
         _begin(folder, tuning, overwrite)
         records = [known(folder, Record(trial, _settings(job, tuning.space))) for trial, job in enumerate(jobs)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections import Counter, deque
 from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -15,6 +16,10 @@ TRIES = 3
 """How many workers may die at a piece before it is given up: whatever kills one may kill them all."""
 
 DIED = "a worker process died: what was finished is kept, and the same command resumes."
+
+
+AGAIN = "beamenv: a worker process died: what it was at is done again."
+"""What is logged then; of a program that sets up no logging it is a line on standard error."""
 
 
 class Lost(Exception):  # noqa: N818 - no error yet: the piece is handed out again
@@ -97,6 +102,7 @@ class _Queue:
         self._lost.update(map(id, pieces))
         if any(self._lost[id(piece)] == TRIES for piece in pieces):
             raise ChildProcessError(DIED)
+        logging.getLogger(__name__).warning(AGAIN)
         self.first(pieces)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from beamenv.configuration import Count, checked
 from train.shared.cluster import check_address
+from train.shared.threads import one_thread
 from train.workers.pool import Piece, Pool, Result, hand_out, no_files
 
 
@@ -44,12 +45,14 @@ class Workers:
         finished: Callable[[Piece, Result], Piece | None],
         files: Callable[[Piece], Iterable[Path]] = no_files,
     ) -> None:
-        """``hand_out`` the pieces, or do them here one after another."""
+        """``hand_out`` the pieces, or do them here one after another, on one thread as those are."""
         if self.alone:
             for each in pieces:
                 piece: Piece | None = each
                 while piece is not None:
-                    piece = finished(piece, work(piece))
+                    with one_thread():
+                        result = work(piece)
+                    piece = finished(piece, result)
             return
         waiting = iter(pieces)
         for first in waiting:  # nobody is called for nothing

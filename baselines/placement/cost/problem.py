@@ -33,6 +33,8 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side, with_positions
 from beamenv.configuration import Choice, Instance, Number, Refused, checked
 from beamenv.configuration.read_only import sealed
+from beamenv.patches.group import Positions
+from beamenv.patches.layout import PatchLayout
 from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
@@ -154,12 +156,9 @@ class PlacementProblem:
 
     def _cut(self, positions: Array) -> Intervals:
         """Layouts (N, count), m, with the patches of the other side where those are."""
-        patches, span = self.config.patches, self.config.beam.length
-        if self.side == "actuators":
-            both = positions, np.tile(patches.sensor_positions(span), (len(positions), 1))
-        else:
-            both = np.tile(patches.actuator_positions(span), (len(positions), 1)), positions
-        return Intervals.of(PatchEdges.of(*both, self.bounds.length, self.parts.span))
+        still = np.tile(_still(self.config.patches, self.side, self.config.beam.length), (len(positions), 1))
+        actuators, sensors = (positions, still) if self.side == "actuators" else (still, positions)
+        return Intervals.of(PatchEdges.of(actuators, sensors, self.bounds.length, self.parts.span))
 
     def _moved(self, cut: Intervals) -> slice:
         """Which of all patches, actuators first, are to be placed."""
@@ -173,6 +172,12 @@ class PlacementProblem:
         stored = matrices.stored_energy
         whole = None if stored is None else stored.sum(axis=(-2, -1), keepdims=True)
         return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True), stored_energy=whole)
+
+
+@lru_cache(maxsize=64)
+def _still(patches: PatchLayout, moved: Side, span: float) -> Positions:
+    """Where the other side's patches are, m."""
+    return patches.positions("sensors" if moved == "actuators" else "actuators", span)
 
 
 def check_noise(config: BladeConfig) -> None:

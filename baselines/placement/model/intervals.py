@@ -131,16 +131,15 @@ class Intervals:
 
     def share_slopes(self, slopes: Array) -> Array:
         """(N, patches, 3 k): derivatives of ``share`` by the patches' positions, 1/m, from the polynomials' slopes."""
-        change = self.covered - np.pad(self.covered[:, 1:], ((0, 0), (0, 1), (0, 0)))
+        change = self.covered - _beyond(self.covered)
         return self._by_patch(change[..., BARE + 1 :, None] * self._in_order(slopes)[..., None, :])
 
     def pulled_share_slopes(self, tension: Array, slopes: Array) -> Array:
         """(N, patches, 4 k): derivatives of ``pulled_share`` by the patches' positions, 1/m, likewise."""
         pull, covered, slope = self._pull(tension), self.covered, self._in_order(slopes)
         weighted = pull[..., None] * covered
-        change = weighted - np.pad(weighted[:, 1:], ((0, 0), (0, 1), (0, 0)))
-        following = np.pad(covered[:, 1:], ((0, 0), (0, 1), (0, 0)))
-        pull_slope = np.einsum("nek,nek->ne", covered - following, slope @ tension)  # of every c up to this edge
+        change = weighted - _beyond(weighted)
+        pull_slope = np.einsum("nek,nek->ne", covered - _beyond(covered), slope @ tension)  # of every c up to this edge
         steps = np.diff(self.values, axis=1)
         inboard = np.cumsum(covered[..., None] * steps[..., None, :], axis=1)
         return self._by_patch(change[..., None] * slope[..., None, :] + pull_slope[..., None, None] * inboard)
@@ -155,3 +154,10 @@ class Intervals:
         belongs = (self.order[..., None] % patches == np.arange(patches)).astype(float)
         flat = by_edge.reshape(*by_edge.shape[:2], -1)
         return np.asarray(belongs.transpose(0, 2, 1) @ flat)
+
+
+def _beyond(of_intervals: Array) -> Array:
+    """(N, E, kinds): of each interval's outboard neighbour, zero of the last one's."""
+    beyond = np.zeros_like(of_intervals)
+    beyond[:, :-1] = of_intervals[:, 1:]
+    return beyond

@@ -68,15 +68,18 @@ class Recorder:
         costs[~np.isfinite(costs)] = np.inf
         self.evaluations += len(positions)
         best = int(costs.argmin())
-        self._keep(positions[best], float(costs[best]))
+        if costs[best] < self.cost:
+            self._keep(self.problem.bounds.repaired(positions[best]), float(costs[best]))
         return costs
 
     def cost_and_slopes(self, positions: Array) -> tuple[float, Array]:
         """Cost and its slopes (count,) of one layout, which is remembered if it is feasible."""
         cost, slopes = self.problem.cost_and_slopes(positions)
         self.evaluations += 1
-        if np.abs(self.problem.bounds.repaired(positions) - positions).max() <= TOLERANCE:
-            self._keep(positions, cost)
+        if cost < self.cost:
+            feasible = self.problem.bounds.repaired(positions)
+            if np.abs(feasible - positions).max() <= TOLERANCE:
+                self._keep(feasible, cost)
         return cost, slopes
 
     def note(self, done: float) -> None:
@@ -85,6 +88,5 @@ class Recorder:
         if self.progress is not None:
             self.progress(self.begun + self.share * min(done, 1.0), self.cost)
 
-    def _keep(self, positions: Array, cost: float) -> None:
-        if cost < self.cost:
-            self.cost, self.positions = cost, np.round(self.problem.bounds.repaired(positions), 12)  # 1e-18 m is 0
+    def _keep(self, feasible: Array, cost: float) -> None:
+        self.cost, self.positions = cost, np.round(feasible, 12)  # 1e-18 m is 0

@@ -94,7 +94,7 @@ class Allotment:
 
     def _moved(self, moves: Any) -> Those | None:
         """The blades of a mask (N,); None where there are none and it costs nothing to ask."""
-        if not self._arrays.on_host:
+        if not self._arrays.looks:
             return Masked(moves)
         rows = moves.nonzero()[0] if self._arrays.of_numpy else moves.nonzero()[:, 0]
         return self._lie.those(rows) if len(rows) else None

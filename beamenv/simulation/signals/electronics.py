@@ -54,7 +54,7 @@ class Electronics:
     def elapse(self) -> None:
         """One control interval later: what breaks at this instant is broken."""
         self._elapsed = self._elapsed + 1
-        if self._onsets is not None and (not self._arrays.on_host or self._onsets.begins(self._elapsed)):
+        if self._onsets is not None and (not self._arrays.looks or self._onsets.begins(self._elapsed)):
             self._set_in()
 
     def first_reading(self, those: Those, output: Any, noise: Any) -> Any:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.arrays import REFERENCE, Arrays, SomeRows
+from beamenv.arrays import REFERENCE, Arrays, SomeRows, on_host
 from beamenv.scenarios.load_cases import LoadCases
 from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.signals.disturbances import Turbulence, merged
@@ -67,7 +67,7 @@ class SeededDisturbances:
 
     def begin(self, those: SomeRows, cases: LoadCases, generators: Sequence[Generator]) -> Any:
         """Start some blades at instant 0 of their load cases, NumPy's; their sensor noise there, [noise (p) | …] (k, c − loads)."""
-        rows = np.asarray(those.rows)
+        rows = on_host(those.rows)
         self._cases = merged(self._cases, SomeRows(rows, ()), cases)
         self._begun[rows] = self._at
         self._see_due()

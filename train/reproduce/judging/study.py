@@ -64,10 +64,16 @@ class Part:
 
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
+    """Of which some may be parts themselves: the function is given what these come to."""
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Those among its arguments."""
+        return tuple(each for each in self.arguments if isinstance(each, Part))
 
     def result(self) -> Any:
         """What it comes to, which depends on nothing else."""
-        return self.function(*self.arguments)
+        return self.function(*(each.result() if isinstance(each, Part) else each for each in self.arguments))
 
 
 Parts = Mapping[Any, Part]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky, expm, solve_continuous_lyapunov, svd
 
 from baselines import lqr
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import Blade, build_plant
 from beamenv.blade.config import BladeConfig
 from beamenv.plant.plant import Plant, drive_limit
 from train.figures.figure import Curve, Panel
@@ -37,9 +37,9 @@ CONTROL_INTERVAL = 1e-4
 def lqr_responses(model: Model, pretwist_deg: float, presetting_deg: float) -> dict[int, Response]:
     """LQR-controlled responses of models with each number of modes, and of the reference, to a step in flap."""
     config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
-    responses = {}
+    whole, responses = Blade(config), {}
     for modes in (*MODES, REFERENCE_MODES):
-        plant = build_plant(with_modes(config, modes))
+        plant = whole.changed(with_modes(config, modes)).plant
         responses[modes] = simulate(plant, lqr(plant), model.load, DURATION)
     return responses
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
 from train.figures.figure import Curve, Panel
-from train.reproduce.judging.study import Outcome, Statement, Study
+from train.reproduce.judging.study import Outcome, Part, Parts, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Large
 from train.reproduce.studies.closed_loop import patches
 from train.reproduce.studies.parameter_studies import ORDINALS, PLY_ANGLES_DEG, SPEEDS
@@ -32,10 +33,16 @@ TURN_DEG = 75.0
 TAPERS = (1.0, 2.0, 3.0, 4.0)
 
 
-def frequencies_over_ply_angle(model: Model, speed: float) -> Array:
-    """(sheets, angles, 4), rad/s."""
+def frequencies_over_ply_angle(model: Model) -> tuple[Array, Array]:
+    """(sheets, angles, 4), rad/s, at rest and at the model's speed."""
     beams = [[built(model.blade(angle), layout) for angle in PLY_ANGLES_DEG] for layout in SHEETS.values()]
-    return np.stack([frequency_sweep(row, [speed], 4)[:, 0] for row in beams])
+    found = np.stack([frequency_sweep(row, [0.0, model.speed], 4) for row in beams])
+    return found[:, :, 0], found[:, :, 1]
+
+
+def ply_angle_parts(model: Model) -> Parts:
+    """What Figures 5.3 and 5.4 share."""
+    return {"frequencies": Part(frequencies_over_ply_angle, (model,))}
 
 
 def change_panels(x: Array, x_label: str, found: Array) -> list[Panel]:
@@ -60,11 +67,12 @@ def frequency_rows(x: Array, found: Array) -> list[list[object]]:
 HEADER = ["blade", *(f"{name} frequency (rad/s)" for name in ORDINALS[:4])]
 
 
-def over_ply_angle(rotating: bool) -> Callable[[Model], Outcome]:
+def over_ply_angle(rotating: bool) -> Callable[[Model, Mapping[Any, Any]], Outcome]:
     """Figures 5.3 and 5.4."""
 
-    def compute(model: Model) -> Outcome:
-        found = frequencies_over_ply_angle(model, model.speed if rotating else 0.0)
+    def compute(model: Model, parts: Mapping[Any, Any]) -> Outcome:
+        at_rest, turning = parts["frequencies"]
+        found = turning if rotating else at_rest
         change = found[1:] / found[:1] - 1.0
         low, high = PLY_ANGLES_DEG <= TURN_DEG, PLY_ANGLES_DEG > TURN_DEG
         evidence = {
@@ -74,7 +82,6 @@ def over_ply_angle(rotating: bool) -> Callable[[Model], Outcome]:
             "significant": change[0],
         }
         if rotating:
-            at_rest = frequencies_over_ply_angle(model, 0.0)
             evidence["alike"] = (np.sign(change[:2]) == np.sign(at_rest[1:3] / at_rest[:1] - 1.0)).astype(float)
         panels = change_panels(PLY_ANGLES_DEG, "ply angle (°)", found)
         rows = frequency_rows(PLY_ANGLES_DEG, found)
@@ -158,6 +165,7 @@ def ply_angle_study(name: str, title: str, rotating: bool, extra: tuple[Statemen
             *extra,
         ),
         over_ply_angle(rotating),
+        ply_angle_parts,
     )
 
 

@@ -27,7 +27,7 @@ from train.reproduce.studies.closed_loop import (
     settling_times,
     voltage_energy,
 )
-from train.reproduce.studies.placement_study import Layouts, convergence, depth, initial_and_optimal, placed, poles
+from train.reproduce.studies.placement_study import Layouts, convergence, depth, initial_and_optimal, placed, poles, table_row
 from train.reproduce.thesis import Model
 
 Array = NDArray[np.float64]
@@ -50,15 +50,15 @@ def placed_blade(model: Model, pretwist_deg: float = 0.0) -> BladeConfig:
 def fitness_parts(model: Model) -> Parts:
     """A run of every population by the seed, and the best layout known."""
     config = placed_blade(model)
-    runs = {seed: Part(convergence, (config, POPULATIONS, GENERATIONS, seed)) for seed in SEEDS}
+    runs = {(size, seed): Part(convergence, (config, size, GENERATIONS, seed)) for size in POPULATIONS for seed in SEEDS}
     return {**runs, "best": Part(placed, ("actuators", 4, config))}
 
 
 def fitness(model: Model, found: Mapping[Any, Any]) -> Outcome:
     """Figure 6.4."""
-    runs, best = [found[seed] for seed in SEEDS], found["best"].cost
-    mean = {size: np.mean([run[size] for run in runs], axis=0) for size in POPULATIONS}
-    largest = np.array([run[POPULATIONS[-1]] for run in runs])
+    runs, best = {size: [found[size, seed] for seed in SEEDS] for size in POPULATIONS}, found["best"].cost
+    mean = {size: np.mean(of_size, axis=0) for size, of_size in runs.items()}
+    largest = np.array(runs[POPULATIONS[-1]])
     evidence = {
         "falls": [[mean[size][0], mean[size][-1]] for size in POPULATIONS],
         "settles": largest[:, -1] / largest[:, -1 - LAST_GENERATIONS] - 1.0,
@@ -75,7 +75,9 @@ def fitness(model: Model, found: Mapping[Any, Any]) -> Outcome:
 
 def layout_parts(twists: Sequence[float], model: Model) -> Parts:
     """Initial and optimal layouts by pretwist in degrees."""
-    return {twist: Part(initial_and_optimal, (placed_blade(model, twist),)) for twist in twists}
+    blades = {twist: placed_blade(model, twist) for twist in twists}
+    rows = {twist: Part(table_row, ("actuators", 4, each.speed, each)) for twist, each in blades.items()}
+    return {twist: Part(initial_and_optimal, (each, rows[twist])) for twist, each in blades.items()}
 
 
 def untwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines.placement import PlacementProblem
 from baselines.placement.cost.riccati import solve_riccati
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side
@@ -35,6 +34,7 @@ from train.reproduce.studies.placement_study import (
     descents,
     gathering_at_the_root,
     placed,
+    problem_of,
     shift_with_speed,
     starts_that_fail,
     table_row,
@@ -50,11 +50,6 @@ NEAR = 0.25
 STARTS = 10
 MOVED = 0.01
 """Share of the span by which a patch must move for its place to depend on something."""
-
-
-def problem_of(config: BladeConfig, side: Side, count: int, speed: float) -> PlacementProblem:
-    """The placement problem of a table's row."""
-    return PlacementProblem.of(replace(config, speed=speed), side, count)
 
 
 def four_parts(side: Side, model: Model) -> Parts:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from baselines import LinearController, lqg
+from baselines import Instruments, LinearController, lqg
 from baselines.analysis.response import linear_response
 from beamenv.blade.build import build_plant
 from beamenv.blade.config import BeamConfig, BladeConfig
@@ -55,6 +56,7 @@ def one_loop(plant: Plant) -> Plant:
     )
 
 
+@lru_cache(maxsize=64)
 def plant_of(config: BladeConfig) -> Plant:
     """The plant of a blade, with one loop where its actuators are ganged."""
     plant = build_plant(config)
@@ -114,11 +116,18 @@ def controlled(
     """LQG-controlled responses to the model's load, by label."""
     responses = {}
     for label, config in blades.items():
-        limited, free = (plant_of(c) for c in (config, replace(config, voltage_limits=(-UNLIMITED, UNLIMITED))))
-        found = simulate(limited, lqg(limited), model.load, pulse=pulse, direction=direction)
-        asked = simulate(free, lqg(free), model.load, SHOWN, pulse, direction).asked
+        plant = plant_of(config)
+        law = lqg(plant)
+        found = simulate(plant, law, model.load, pulse=pulse, direction=direction)
+        asked = simulate(*without_limits(plant, law), model.load, SHOWN, pulse, direction).asked
         responses[label] = replace(found, asked=asked)
     return responses
+
+
+def without_limits(plant: Plant, law: LinearController) -> tuple[Plant, LinearController]:
+    """Behind a drive whose limits no voltage reaches."""
+    free = replace(plant, voltage_limits=np.outer((-UNLIMITED, UNLIMITED), np.ones(len(plant.input_weight))))
+    return free, replace(law, instruments=Instruments.of(free))
 
 
 def response_panels(responses: Mapping[str, Response], direction: str = "flap") -> list[Panel]:

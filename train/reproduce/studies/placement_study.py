@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,9 +39,15 @@ class TableRow:
     uniform_cost: float
 
 
+@lru_cache(maxsize=64)
+def problem_of(config: BladeConfig, side: Side, count: int, speed: float) -> PlacementProblem:
+    """The placement problem of a table's row."""
+    return PlacementProblem.of(replace(config, speed=speed), side, count)
+
+
 def table_row(side: Side, count: int, speed: float, blade: BladeConfig, seed: int = 0) -> TableRow:
     """A row of Table 6.1 or 6.3 (actuators), 6.2 or 6.4 (sensors); 6.1 and 6.2 are those of four patches."""
-    problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
+    problem = problem_of(blade, side, count, speed)
     ga = place(problem, Genetic(), seed)
     sqp = place(problem, SequentialQuadratic(), seed)
     both = place(problem, SequentialQuadratic(), seed, start=ga.positions)
@@ -66,7 +73,7 @@ def together_against_alone(rows: Sequence[TableRow]) -> list[tuple[float, float]
 
 def descents(side: Side, count: int, speed: float, blade: BladeConfig, starts: int, seed: int = 0) -> Array:
     """(starts,): where SQP ends from random layouts."""
-    problem = PlacementProblem.of(replace(blade, speed=speed), side, count)
+    problem = problem_of(blade, side, count, speed)
     layouts = problem.bounds.random(np.random.default_rng(seed), starts)
     return np.array([place(problem, SequentialQuadratic(), start=layout).cost for layout in layouts])
 
@@ -76,18 +83,12 @@ def starts_that_fail(found: Array, known: float, tolerance: float = 1e-4) -> flo
     return float(np.mean(found > min(float(found.min()), known) * (1.0 + tolerance)))
 
 
-def convergence(
-    blade: BladeConfig, populations: Sequence[int] = (10, 20, 30), generations: int = 50, seed: int = 0
-) -> dict[int, Array]:
-    """Figure 6.4: least tr(P) (generations,) of four actuators at 200 rad/s after each generation, by the population's size."""
-    problem = PlacementProblem.of(blade, "actuators")
-    curves = {}
-    for size in populations:
-        recorder = Recorder(problem)
-        genetic = Genetic(population=size, generations=generations)
-        genetic.run(recorder, problem.bounds.uniform(), np.random.default_rng(seed))
-        curves[size] = np.array([cost for _, cost in recorder.history])
-    return curves
+def convergence(blade: BladeConfig, population: int, generations: int = 50, seed: int = 0) -> Array:
+    """Figure 6.4: least tr(P) (generations,) of four actuators at 200 rad/s after each generation of a population."""
+    recorder = Recorder(PlacementProblem.of(blade, "actuators"))
+    genetic = Genetic(population=population, generations=generations)
+    genetic.run(recorder, recorder.problem.bounds.uniform(), np.random.default_rng(seed))
+    return np.array([cost for _, cost in recorder.history])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,10 +102,10 @@ class Layouts:
     sensors: PlacementProblem
 
 
-def initial_and_optimal(blade: BladeConfig, seed: int = 0) -> Layouts:
-    """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare."""
+def initial_and_optimal(blade: BladeConfig, row: TableRow, seed: int = 0) -> Layouts:
+    """The blades that Figures 6.5 (untwisted), 6.6 (pretwisted) and 6.7 compare, with the actuators of a ``table_row`` of it."""
     actuators = PlacementProblem.of(blade, "actuators")
-    placed = with_positions(blade, {"actuators": place(actuators, "ga+sqp", seed).positions})
+    placed = with_positions(blade, {"actuators": row.both.positions})
     sensors = PlacementProblem.of(placed, "sensors")
     optimal = replace(
         sensors.configuration(place(sensors, "ga+sqp", seed).positions), sensor_full_scale=actuators.config.sensor_full_scale
@@ -140,4 +141,4 @@ def variants(blade: BladeConfig, count: int = 2) -> dict[str, tuple[BladeConfig,
 
 def placed(side: Side, count: int, blade: BladeConfig, seed: int = 0) -> Placement:
     """By SQP from many starts."""
-    return place(PlacementProblem.of(blade, side, count), "multistart", seed)
+    return place(problem_of(blade, side, count, blade.speed), "multistart", seed)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
-from train.reproduce.thesis.response import ForcedBlade, settling_time
+from train.reproduce.thesis.response import ForcedBlade, newmark_responses, settling_time
 
 Array = NDArray[np.float64]
 
@@ -39,9 +39,9 @@ def forced_responses(model: Model, blades: Mapping[str, ForcedBlade], drawn: flo
     All blades are loaded and observed in their own direction.
     """
     curves, numbers = [], []
-    for label, blade in blades.items():
+    shown, by_newmark = newmark_responses(list(blades.values()), model.load, SHOWN)
+    for (label, blade), integrated in zip(blades.items(), by_newmark, strict=True):
         times, tip = blade.step_response(model.load, DURATION)
-        shown, integrated = blade.newmark_response(model.load, SHOWN)
         peak = float(np.abs(tip).max())
         error = float(np.abs(integrated - tip[: len(shown)]).max()) / peak
         numbers.append((peak, settling_time(times, tip, blade.static_displacement(model.load)), error))

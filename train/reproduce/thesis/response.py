@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -44,7 +45,7 @@ class ForcedBlade:
     """Whether the line load falls with the chord of a tapered blade, as a pressure would; ``load`` is then that at the root."""
 
     @cached_property
-    def _force(self) -> Array:
+    def force(self) -> Array:
         """(N,): generalised force per N/m."""
         if not self.pressure:
             return self.beam.line_load()[:, DIRECTIONS[self.direction][1]]
@@ -64,7 +65,7 @@ class ForcedBlade:
         field = DIRECTIONS[self.direction][0]
         damping = self.modal.gyroscopic + np.diag(2.0 * self.damping_ratio * omega)
         dynamics = np.block([[np.zeros((size, size)), np.diag(omega)], [-np.diag(omega), -damping]])
-        force = np.concatenate([np.zeros(size), shapes.T @ self._force])
+        force = np.concatenate([np.zeros(size), shapes.T @ self.force])
         tip = self.beam.displacements(np.array([self.beam.length]))[field][0] @ shapes / omega
         return dynamics, force, np.concatenate([tip, np.zeros(size)])
 
@@ -81,8 +82,8 @@ class ForcedBlade:
         dynamics, force, tip = self._dynamics()
         return float(-tip @ np.linalg.solve(dynamics, load * force))
 
-    def newmark_response(self, load: float, duration: float, interval: float = THESIS_INTERVAL) -> tuple[Array, Array]:
-        """The same by Newmark's method on all trial functions with the thesis' constants, a₃ and a₄ corrected."""
+    def full_matrices(self) -> tuple[Array, Array, Array]:
+        """Mass, damping with gyroscopic coupling, and stiffness (N, N) by all trial functions."""
         matrices = self.beam.matrices
         stiffness = matrices.stiffness(self.speed)
         omega, shapes = normal_modes(matrices.mass, stiffness)
@@ -90,12 +91,12 @@ class ForcedBlade:
         damping = moved @ np.diag(2.0 * self.damping_ratio * omega) @ moved.T
         if self.gyroscopic:
             damping = damping + self.speed * matrices.gyroscopic
-        force = load * self._force
-        steps = round(duration / interval)
-        history = newmark(matrices.mass, damping, stiffness, lambda _: force, interval, steps, THESIS_SCHEME)
-        return np.linspace(0.0, duration, steps + 1), history @ self.beam.displacements(np.array([self.beam.length]))[
-            DIRECTIONS[self.direction][0]
-        ][0]
+        return matrices.mass, damping, stiffness
+
+    @property
+    def tip(self) -> Array:
+        """(N,): the tip's displacement by each trial function."""
+        return self.beam.displacements(np.array([self.beam.length]))[DIRECTIONS[self.direction][0]][0]
 
     def frequency_response(self, frequencies: Array) -> Array:
         """Amplitude (K,) of the tip, m per N/m, at ``frequencies`` (K,) in rad/s."""
@@ -103,6 +104,21 @@ class ForcedBlade:
         poles, vectors = np.linalg.eig(dynamics)
         participation = np.linalg.solve(vectors, force) * (tip @ vectors)
         return np.abs((participation / (1j * frequencies[:, None] - poles)).sum(axis=1))
+
+
+def newmark_responses(
+    blades: Sequence[ForcedBlade], load: float, duration: float, interval: float = THESIS_INTERVAL
+) -> tuple[Array, Array]:
+    """Times (K,) and tips (blades, K) as ``step_response`` has them, by Newmark's method on all trial functions.
+
+    With the thesis' constants, a₃ and a₄ corrected. All blades have as many trial functions.
+    """
+    mass, damping, stiffness = (np.array(each) for each in zip(*(blade.full_matrices() for blade in blades), strict=True))
+    forces = np.array([load * blade.force for blade in blades])
+    steps = round(duration / interval)
+    history = newmark(mass, damping, stiffness, lambda _: forces, interval, steps, THESIS_SCHEME)
+    tips = [np.ascontiguousarray(history[:, k]) @ blade.tip for k, blade in enumerate(blades)]
+    return np.linspace(0.0, duration, steps + 1), np.array(tips)
 
 
 def free_motion(transition: Array, start: Array, samples: int) -> Array:
