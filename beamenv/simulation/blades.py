@@ -29,6 +29,7 @@ from beamenv.simulation.strain_limit import StrainLimit, safe_energy
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
+
 def _alike(values: Array) -> Array:
     """One number () in place of equal ones (k,): it broadcasts faster."""
     return np.array(values[0]) if np.all(values == values[0]) else values

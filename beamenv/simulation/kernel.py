@@ -62,8 +62,8 @@ class Operators:
     @classmethod
     def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
         n, p, q = len(plant.A), len(plant.C), len(plant.tip_displacement)
-        places = {"reads": slice(n, n + p), "tips": n + p, "displaced": q, "costs": n + p + q}
-        return cls(fused, np.zeros((*axes, 0)), states=n, crossing=0, **places)
+        tips, weights = n + p, np.zeros((*axes, 0))
+        return cls(fused, weights, states=n, reads=slice(n, tips), tips=tips, displaced=q, costs=tips + q, crossing=0)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""

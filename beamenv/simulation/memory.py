@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.arrays import Arrays, SomeRows, copied, namespace
-from beamenv.simulation.kernel import Multiply, Operators, Views, advance, row_product, views_of, weighted
+from beamenv.simulation.kernel import Multiply, Operators, advance, row_product, views_of, weighted
 
 Array = NDArray[Any]
 Rows = NDArray[np.int64]
