@@ -89,7 +89,7 @@ class Blades:
         )
         moving = self.plant, *self.bank.others
         per_cost = np.array([-1.0 / reward_scale(plant) for plant in moving])
-        self._reward_per_cost = arrays.floats(per_cost[0] if len(moving) == 1 else per_cost[self.plants.group])
+        self._reward_per_cost = arrays.floats(per_cost[0] if len(moving) == 1 else per_cost[self.plants.group])[()]
         sizes = self.plant.B.shape[1], self.plant.disturbance_input.shape[1], self.plant.blade_states
         by_column = len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups)
         operators = self._stepped.operators
