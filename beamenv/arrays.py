@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
 from typing import Any, Literal
 
 import numpy as np
@@ -66,6 +68,11 @@ class Arrays:
         """Whether a step may look at a number: on the processor that costs nothing, a device would have to be waited for."""
         return self.on_host and not self.recorded
 
+    @property
+    def kernels(self) -> Any:
+        """The kernels of a GPU; None on the processor, or without Triton."""
+        return None if self.on_host else _kernels()
+
     def floats(self, values: Any) -> Any:
         """The numbers in this precision: NumPy's own array where it has it already, but a copy in torch."""
         if self.device is None:
@@ -87,6 +94,14 @@ class Arrays:
     def zeros(self, *shape: int) -> Any:
         """Zeros of this precision."""
         return self.floats(np.zeros(shape))
+
+
+@cache
+def _kernels() -> Any:
+    try:
+        return import_module("beamenv.simulation.on_gpu")
+    except ImportError:
+        return None
 
 
 REFERENCE = Arrays()

@@ -14,15 +14,14 @@ from numpy.typing import NDArray
 
 from beamenv.arrays import Arrays
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.design import Design
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.configuration import Count, checked
 from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import batch_reset, chosen_mode, drawn_rows
 from beamenv.envs.batch_blades import blades_of, masked, of_rows
+from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import SeededVectorEnv, Seeds
 from beamenv.envs.specification import Specified
-from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.motion import Motion
@@ -50,7 +49,7 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 
-class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
+class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
     """``num_envs`` blades, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
 
     In the scenarios with several plants (`off-speed`, `off-model`) every episode draws its own from one bank, in `spin-up` each
@@ -156,21 +155,6 @@ class RotatingBeamVectorEnv(Specified, SeededVectorEnv):
     def steps(self) -> int:
         """Control intervals in a whole episode."""
         return self._steps
-
-    @property
-    def plant(self) -> Plant:
-        """The true plant, the one that moves."""
-        return self.task.plant
-
-    @property
-    def design_plant(self) -> Plant:
-        """The plant controllers are to be designed for, of few modes and without electronics."""
-        return self.task.design_plant
-
-    @property
-    def design(self) -> Design:
-        """All that a controller may be built from: ``design.full_plant`` has every mode that is known and the electronics."""
-        return self.task.design
 
     @property
     def state(self) -> Array:

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.design import Design
 from beamenv.blade.model_blade import PlantArgument
+from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import checked_seed
 from beamenv.envs.specification import Specified
-from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
@@ -38,7 +37,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
+class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     """Damp the vibration of a rotating composite blade with piezoelectric patches.
 
     ## Description
@@ -280,21 +279,6 @@ class RotatingBeamEnv(Specified, gymnasium.Env[Any, Any]):
         self._generators: list[np.random.Generator] | None = None
         self.close()
         self._renderer = None if self.render_mode is None else self._make_renderer()
-
-    @property
-    def plant(self) -> Plant:
-        """The true plant, the one that moves."""
-        return self.task.plant
-
-    @property
-    def design_plant(self) -> Plant:
-        """The plant controllers are to be designed for, of few modes and without electronics."""
-        return self.task.design_plant
-
-    @property
-    def design(self) -> Design:
-        """All that a controller may be built from: ``design.full_plant`` has every mode that is known and the electronics."""
-        return self.task.design
 
     @property
     def state(self) -> Array:

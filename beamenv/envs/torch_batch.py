@@ -13,11 +13,11 @@ from gymnasium.vector.utils import batch_space
 
 from beamenv.arrays import Arrays
 from beamenv.blade.config import BladeConfig
-from beamenv.blade.design import Design
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.configuration import Count, Flag, checked
 from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import BatchReset, batch_reset, chosen_mode
+from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import SeededVectorEnv
 from beamenv.envs.torch_arguments import (
     checked_actions,
@@ -30,7 +30,6 @@ from beamenv.envs.torch_arguments import (
 )
 from beamenv.envs.torch_episodes import Outcome, TorchEpisodes
 from beamenv.envs.torch_graph import RecordedStep
-from beamenv.plant.plant import Plant
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.blades import Blades
@@ -43,7 +42,7 @@ BLADE = 4096
 Step = tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor, dict[str, Any]]
 
 
-class TorchRotatingBeamVectorEnv(SeededVectorEnv):
+class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
     """``num_envs`` blades on a device: ``RotatingBeamVectorEnv`` whose observations, rewards, ends and info are torch's tensors.
 
     Noise and load cases are drawn on the device, and episodes begin there: a step copies nothing to the host nor from it, and
@@ -148,21 +147,6 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         return self._episodes.steps
 
     @property
-    def plant(self) -> Plant:
-        """The true plant, the one that moves."""
-        return self.task.plant
-
-    @property
-    def design_plant(self) -> Plant:
-        """The plant controllers are to be designed for, of few modes and without electronics."""
-        return self.task.design_plant
-
-    @property
-    def design(self) -> Design:
-        """All that a controller may be built from."""
-        return self.task.design
-
-    @property
     def state(self) -> torch.Tensor:
         """(N, n) the true states, hidden from an agent: the blades' in energy coordinates, then the electronics'."""
         return self._episodes.blades.state
@@ -225,7 +209,7 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
         with torch.set_grad_enabled(self.differentiable and torch.is_grad_enabled()):
             outcome = self._step(checked_actions(actions, self._actions_shape, self._zeros, self._arrays))
             self._last = outcome.shown
-            observation = outcome.shown.observation.clone()  # the electronics may remember it
+            observation = self._to_keep(outcome.shown.observation)
             return observation, outcome.reward, outcome.terminated, outcome.truncated, self._information(outcome)
 
     def _step(self, actions: torch.Tensor) -> Outcome:
@@ -253,9 +237,13 @@ class TorchRotatingBeamVectorEnv(SeededVectorEnv):
             return info
         info.update(self._steady(outcome.begun))
         if outcome.final is not None:
-            info.update(final_obs=outcome.final.observation.clone(), _final_obs=outcome.begun)
+            info.update(final_obs=self._to_keep(outcome.final.observation), _final_obs=outcome.begun)
             info.update(final_info=_masked(information(outcome.final), outcome.begun), _final_info=outcome.begun)
         return info
+
+    def _to_keep(self, observation: torch.Tensor) -> torch.Tensor:
+        """The observation for the caller to keep: the electronics may remember theirs, unless the step is a recorded one."""
+        return observation if self._recorded is not None else observation.clone()
 
     def _steady(self, mask: torch.Tensor) -> dict[str, Any]:
         """What info tells besides of blades whose episode begins."""

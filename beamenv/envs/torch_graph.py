@@ -34,6 +34,8 @@ class StaticStep:
     def __init__(self, episodes: TorchEpisodes, actions: torch.Tensor, generator: torch.Generator) -> None:
         self.actions, self._episodes, self._generator = actions.clone(), episodes, generator
         self._paths = self._moving()
+        self._read = [dict(vars(owner)) for _, owner in owners(episodes)]
+        """What a graph reads besides: a reset makes others, and these must not be freed."""
         self._values = [mapped(self._now(path), torch.Tensor.clone) for path in self._paths]
         self._put(self._values)
 
@@ -135,9 +137,10 @@ class CompiledStep:
     def _drawn(self) -> list[torch.Tensor]:
         return [draw() for draw in self._calls]
 
-    def run(self) -> Outcome:
-        """One step under the static step's actions."""
-        told = iter(self._function(self._step.memory, self._step.actions, self._drawn()))
+    def run(self, actions: torch.Tensor | None = None) -> Outcome:
+        """One step under actions, or the static step's."""
+        actions = self._step.actions if actions is None else actions
+        told = iter(self._function(self._step.memory, actions, self._drawn()))
         return mapped(self._outcome, lambda _: next(told))
 
 
@@ -163,7 +166,7 @@ class RecordedStep:
 
     def _prepare(self, episodes: TorchEpisodes, actions: torch.Tensor, generator: torch.Generator, compiled: bool) -> None:
         self._step = StaticStep(episodes, actions, generator)
-        self._run = CompiledStep(self._step).run if compiled else self._step.run
+        self._run: Any = CompiledStep(self._step).run if compiled else self._step.run
 
     def renew(self) -> None:
         """Go on from where the episodes are now."""
@@ -171,9 +174,9 @@ class RecordedStep:
 
     def __call__(self, actions: torch.Tensor) -> Outcome:
         """What a step brings, in tensors that later ones leave alone."""
-        self._step.actions.copy_(actions)
         if self._graph is None:
-            return self._run()
+            return self._run(actions)
+        self._step.actions.copy_(actions)
         self._graph.replay()
         copies = {id(leaf): leaf for leaf in leaves(self._outcome)}
         copies = {name: leaf.clone() for name, leaf in copies.items()}

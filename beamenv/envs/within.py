@@ -17,12 +17,15 @@ from beamenv.wrapping import alike, layers
 def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observation",)) -> Task:
     """The task of the blade, or batch of blades, whose observations are their readings, whose actions their voltages if so asked.
 
-    Raises ``ValueError`` for an environment without blades, and for one with a wrapper that shows something else or acts otherwise.
+    Raises ``ValueError`` for an environment without blades, for a batch of tensors, and for one with a wrapper that shows something
+    else or acts otherwise.
     """
     kind: type[Any] = VectorEnv if of_batch else gymnasium.Env
     task = getattr(env.unwrapped, "task", None) if isinstance(env, kind) else None
     if not isinstance(task, Task):
         raise Refused("env", env, "a batch of blades" if of_batch else "an environment with a blade")
+    if hasattr(env.unwrapped, "device"):
+        raise Refused("env", env, "a batch of NumPy's arrays, such as gymnasium.make_vec makes: tensors have no wrappers here")
     for what in unchanged:
         name = f"single_{what}_space" if of_batch else f"{what}_space"
         unlike = not alike(getattr(env, name), getattr(env.unwrapped, name))

@@ -182,7 +182,8 @@ class Blades:
         vibrates.
         """
         if len(self.bank) == 1 and not self._of_numpy and rows is None:
-            return self._stepped.steady.expand(self.count or 1, -1)
+            whole: Any = self._stepped.steady
+            return whole.expand(self.count or 1, -1)
         steady = self._stepped.steady[self.plants.index if rows is None else self.plants.index[rows]]
         return steady if self._shape else steady[0]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -58,9 +57,10 @@ class StrainLimit:
         """
         energy = energy if self.strain.shape[-2] else energy + increment
         if not self.arrays.looks:
-            kernel = None if self.arrays.on_host or not self.strain.shape[-2] else on_gpu()
-            if kernel is not None:
-                return kernel(energy.detach(), moving().detach(), self.strain, self.standing, self.limit, index, _BELOW * self.safe)
+            kernels = self.arrays.kernels if self.strain.shape[-2] else None
+            if kernels is not None:
+                tables = self.strain, self.standing, self.limit
+                return kernels.strained_too_much(energy.detach(), moving().detach(), *tables, index, _BELOW * self.safe)
             own = 0 if len(self.limit) == 1 else index
             return strained_too_much(self.strain[own], self.standing[own], self.limit[own], moving())
         if not energy.ndim:
@@ -74,16 +74,6 @@ class StrainLimit:
     def _strained(self, rows: Any, states: Any, index: Any) -> Any:
         own = index[rows]
         return strained_too_much(self.strain[own], self.standing[own], self.limit[own], states[rows])
-
-
-@cache
-def on_gpu() -> Any:
-    """The kernel that looks at the blades on a GPU; None without Triton."""
-    try:
-        from beamenv.simulation.strained_on_gpu import strained_too_much as kernel
-    except ImportError:
-        return None
-    return kernel
 
 
 def strained_too_much(strain: Any, standing: Any, limit: Any, state: Any) -> Any:

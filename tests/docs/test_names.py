@@ -70,12 +70,22 @@ def name_is_there(name):
         body = tree(place / "__init__.py").body
     else:
         return False
+    module = body
     for part in parts:
         found = [node for node in body if part in defined_by(node)]
         if not found:
             return False
-        body = getattr(found[0], "body", [])
+        body = [*getattr(found[0], "body", []), *inherited(found[0], module)]
     return True
+
+
+def inherited(node, module):
+    """What a class has of those of its bases that its module imports from here."""
+    homes = {each.asname or each.name: node.module for node in module if isinstance(node, ast.ImportFrom) for each in node.names}
+    bases = [base.id for base in getattr(node, "bases", []) if isinstance(base, ast.Name)]
+    files = [(name, ROOT / f"{homes[name].replace('.', '/')}.py") for name in bases if name in homes]
+    there = [(name, tree(file).body) for name, file in files if file.is_file()]
+    return [each for name, body in there for found in body if name in defined_by(found) for each in getattr(found, "body", [])]
 
 
 def tree(file):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import beamenv
-from beamenv.simulation.strain_limit import on_gpu, safe_energy, strained_too_much
+from beamenv.arrays import Arrays
+from beamenv.simulation.strain_limit import safe_energy, strained_too_much
 
 torch = pytest.importorskip("torch")
 
@@ -73,6 +74,31 @@ def test_a_recorded_step_is_the_plain_one(name, recording):
     assert torch.equal(recorded.step(actions)[0], first)
 
 
+@pytest.mark.parametrize("name", ["default", "hysteresis", "wandering speed"])
+def test_a_compiled_step_of_32_bits_is_the_plain_one(name):
+    plain, compiled = (batch(scenario=SCENARIOS[name], compiled=which) for which in (False, True))
+    for envs in (plain, compiled):
+        envs.reset(seed=4, options={"elapsed": np.arange(COUNT)})
+    largest = [0.0] * 5
+    for actions in acting(60):
+        told, expected = (envs.step(actions.to("cuda")) for envs in (compiled, plain))
+        for k, (ours, theirs) in enumerate(zip((*told[:4], compiled.state), (*expected[:4], plain.state), strict=True)):
+            largest[k] = max(largest[k], theirs.double().abs().max().item())
+            assert (ours.double() - theirs.double()).abs().max().item() <= 1e-4 * largest[k], k
+
+
+@pytest.mark.parametrize("shape", [(54, 4, 2, 66), (30, 6, 3, 40)], ids=str)
+def test_the_kernel_multiplies_as_exactly_as_32_bits_do(shape):
+    states, held, loads, width = shape
+    generator = torch.Generator("cuda").manual_seed(0)
+    x, u, d, matrix = (
+        torch.randn(size, generator=generator, device="cuda")
+        for size in ((1000, states), (1000, held), (1000, loads), (states + held + loads, width))
+    )
+    exact = torch.cat([x, u, d], 1).double() @ matrix.double()
+    assert (Arrays(device="cuda").kernels.joined_product(x, u, d, matrix) - exact).abs().max() < 2e-5
+
+
 @pytest.mark.parametrize("recording", [{}, {"graph": True}])
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
 @pytest.mark.parametrize("name", SCENARIOS)
@@ -114,7 +140,7 @@ def test_the_kernel_finds_the_blades_that_are_strained_too_much(plants, dtype):
     states[5, 3], states[80, 0] = float("nan"), float("inf")
     safe = safe_energy(*(each.cpu().numpy() for each in (strain, standing, limit)))
     energy = 0.5 * (states**2).sum(1)
-    found = on_gpu()(energy, states, strain, standing, limit, index, safe)
+    found = Arrays(device="cuda").kernels.strained_too_much(energy, states, strain, standing, limit, index, safe)
     expected = strained_too_much(strain[index], standing[index], limit[index], states)
     assert torch.equal(found, expected)
     assert 100 < expected.sum() < 900

@@ -64,6 +64,13 @@ def test_a_wrapper_is_put_around_batches_that_show_their_readings(within, wrappe
         wrapper(envs)
 
 
+@pytest.mark.parametrize("wrapper", [VectorSensorHistory, VectorPlacementWrapper])
+def test_a_batch_of_tensors_has_no_wrappers(wrapper):
+    pytest.importorskip("torch")
+    with pytest.raises(ValueError, match="^env is .*, but must be a batch of NumPy's arrays, such as gymnasium.make_vec makes"):
+        wrapper(beamenv.torch_vec(2, device="cpu", **SHORT))
+
+
 def test_patches_are_placed_once():
     with pytest.raises(ValueError, match="^env is .*, but must be one whose patches no other wrapper places"):
         PlacementWrapper(PlacementWrapper(single()))

@@ -109,6 +109,15 @@ def test_a_data_set_tells_who_acted_and_how_well(tmp_path):
     assert f"the mean cost J of the others is {np.mean(costs):.4g} J s" in about["description"]
 
 
+@pytest.mark.parametrize(
+    ("scenario", "judges"), [("delay", False), ("long-delay", True), (beamenv.SCENARIOS["delay-failure"], True)]
+)
+def test_a_data_set_of_what_is_kept_for_judging_says_so(scenario, judges, tmp_path):
+    told = record("none", scenario, 1, folder=tmp_path, environment=SHORT).storage.metadata
+    assert told["beamenv"]["kept_for_judging"] is judges
+    assert told["description"].endswith("kept for judging: it cannot judge what learns from these.") is judges
+
+
 def test_returns_are_costs_by_the_environments_scale(tmp_path):
     (each,) = arrays(record("none", "step", 1, folder=tmp_path, environment=SHORT))
     ratio = -each["cost_increment"][1:] / each["rewards"]

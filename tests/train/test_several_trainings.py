@@ -11,7 +11,7 @@ from train.cli.app import app
 from train.cli.train import homes_of
 from train.learning.checkpoint import NAME
 from train.learning.job import run, teacher_for
-from train.learning.several import Stretch, files, held, is_finished, train_all, trained_on, written
+from train.learning.several import Stretch, Trained, files, held, is_finished, train_all, trained_on, written
 from train.workers.parcel import packed, unpacked
 from train.workers.workers import Workers
 
@@ -72,8 +72,7 @@ def test_several_are_resumed_each_from_where_it_is(tmp_path):
     touched = (tmp_path / "0" / "agent.json").stat().st_mtime_ns
     with pytest.raises(ValueError, match="holds a training already: resume or overwrite it"):
         train_all(trainings, Workers(), silent)
-    places = train_all(trainings, Workers(), silent, resume=True)
-    assert places == {home: [home] for home in trainings}
+    assert train_all(trainings, Workers(), silent, resume=True) == Trained({home: [home] for home in trainings})
     assert (tmp_path / "0" / "agent.json").stat().st_mtime_ns == touched
     for home in trainings:
         assert is_finished(home)
@@ -86,9 +85,34 @@ def test_an_interruption_ends_all_of_them_and_keeps_what_is_learnt(tmp_path):
     def told(home, progress):
         interrupted_after(2)(progress) if home.name == "1" else None
 
-    assert list(train_all(trainings, Workers(), told)) == [tmp_path / "0", tmp_path / "1"]
+    assert list(train_all(trainings, Workers(), told).places) == [tmp_path / "0", tmp_path / "1"]
     assert [is_finished(home) for home in trainings] == [True, False, False]
     assert (tmp_path / "1" / NAME).is_file() and not (tmp_path / "2").exists()
+
+
+@pytest.mark.parametrize("workers", [Workers(), Workers(2)], ids=["here", "processes"])
+def test_a_training_that_fails_costs_no_other(workers, tmp_path):
+    teacher = tmp_path / "teacher"
+    run(job(GRADIENT, updates=1), teacher, ignore)
+    taught = replace(job(GRADIENT, seed=1), teacher=teacher)
+    trainings = {tmp_path / "first": taught, tmp_path / "second": job(GRADIENT), tmp_path / "third": replace(taught, seed=2)}
+    trained = train_all(trainings, workers, silent)
+    why = "agent = 'gradient' must start from scratch: only ppo, sac and tqc start from a teacher"
+    assert trained == Trained(
+        {tmp_path / "second": [tmp_path / "second"]}, dict.fromkeys(map(tmp_path.joinpath, ("first", "third")), why)
+    )
+    run(job(GRADIENT), tmp_path / "alone", ignore)
+    assert_same(weights(tmp_path / "second"), weights(tmp_path / "alone"))
+    with pytest.raises(ValueError, match="must start from scratch"):
+        train_all({tmp_path / "only": taught}, workers, silent)
+
+
+def test_none_of_several_begins_before_all_are_looked_at(tmp_path):
+    trainings = {tmp_path / str(seed): job(GRADIENT, seed=seed) for seed in range(2)}
+    run(trainings[tmp_path / "1"], tmp_path / "1", ignore)
+    with pytest.raises(ValueError, match="1' holds a training already"):
+        train_all(trainings, Workers(), silent)
+    assert not (tmp_path / "0").exists()
 
 
 def command(*words):
@@ -139,6 +163,17 @@ def test_what_no_training_can_be_made_of_is_refused_before_any_begins(words, sai
     result = command(*words)
     assert result.exit_code == 2 and said in result.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_says_of_each_that_failed_why_and_saves_the_others(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "brief.toml").write_text(BRIEF)
+    words = ["mine", "--recipe", "brief.toml", "--scenario", "quiet", "--scenario", "white", "--jobs", "1"]
+    result = command(*words)
+    assert result.exit_code == 1
+    assert result.stdout == "mine-white-0 saved in results/agents/mine-white-0\n"
+    said = "beamenv: mine-quiet-0 failed: scenario leaves the blade at rest: there is nothing to learn in it."
+    assert [line for line in result.stderr.splitlines() if line.startswith("beamenv")] == [said]
 
 
 def test_of_one_training_the_folder_is_its_own_of_several_it_holds_theirs(tmp_path):

@@ -1,17 +1,21 @@
 """Speed: what it measures and how it judges."""
 
 import gymnasium
+import numpy as np
 import pytest
 
 import beamenv
 from train.cli.speed import show
-from train.tools.speed import ROWS, TARGETS, batch_run, met, picture_run, single_run, speed
+from train.speed.beside_cartpole import first_actions, ratios, speed, tensor_runs
+from train.speed.rounds import batch_run, picture_run, single_run
+from train.speed.rows import OVER_CARTPOLE, ROWS, TARGETS, met
 
 
 def test_steps_are_counted_over_the_time_they_take():
     env = gymnasium.make(beamenv.ENV_ID, duration=0.01)
     assert single_run(env, steps=50)() > 0.0
-    assert batch_run(gymnasium.make_vec(beamenv.ENV_ID, num_envs=4), steps=40)() > 0.0
+    envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=4)
+    assert batch_run(envs, first_actions(envs), steps=40)() > 0.0
 
 
 def test_pictures_are_counted_over_the_time_they_take():
@@ -22,8 +26,8 @@ def test_pictures_are_counted_over_the_time_they_take():
 @pytest.mark.parametrize(
     ("name", "value", "verdict"),
     [
-        ("batch_over_cartpole", 0.5, True),
-        ("batch_over_cartpole", 0.3, False),
+        ("batch_4096_over_cartpole", 0.5, True),
+        ("batch_4096_over_cartpole", 0.3, False),
         ("single_over_cartpole", 0.4, False),
         ("pictures", 29.0, False),
         ("import_s", 0.2, True),
@@ -36,14 +40,31 @@ def test_rates_must_reach_their_target_and_times_stay_below(name, value, verdict
 
 
 def test_the_table_names_every_measurement_once(capsys):
-    results = {name: 1.5 for name, _, _ in ROWS}
+    results = {name: 1.5 for name, _, _ in ROWS} | {"threads": 1}
     assert set(TARGETS) <= set(results)
     show(results)
     printed = capsys.readouterr().out
     assert "CartPole-v1, gym.make" in printed
     assert "missed" in printed
+    assert "BLAS threads: 1" in printed and f"NumPy {np.__version__}" in printed
+
+
+def test_without_torch_its_batch_is_told_to_need_it(capsys, monkeypatch):
+    monkeypatch.setattr("train.speed.beside_cartpole.find_spec", lambda name: None)
+    assert tensor_runs() == {}
+    show({name: 1.5 for name, _, _ in ROWS if not name.startswith("tensors")} | {"threads": 1})
+    assert capsys.readouterr().out.count("needs torch") == 2
+
+
+def test_each_ratio_is_to_the_cartpole_of_its_kind():
+    found = ratios({"cartpole": 2.0, "single": 1.0, "cartpole_4096": 10.0, "batch_4096": 4.0})
+    assert found == {"single_over_cartpole": 0.5, "batch_4096_over_cartpole": 0.4}
+    assert {f"{name}_over_cartpole" for name in OVER_CARTPOLE} <= {name for name, _, _ in ROWS}
 
 
 @pytest.mark.slow
 def test_every_row_is_measured():
-    assert set(speed()) == {name for name, _, _ in ROWS}
+    pytest.importorskip("torch")
+    found = speed()
+    assert set(found) == {"threads", *(name for name, _, _ in ROWS)}
+    assert found["threads"] == 1

@@ -55,7 +55,8 @@ def record(
 ) -> None:
     """Record a controller's episodes as a Minari data set, for offline learning.
 
-    Nothing is written unless all is: an interrupted recording leaves no data set.
+    Of a scenario that is kept for judging it says so. Nothing is written unless all is: an interrupted recording leaves no data
+    set.
     """
     with one_sentence("nothing is kept"):
         from train.datasets import record as run

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from itertools import product
 from pathlib import Path
@@ -75,7 +76,8 @@ def train(
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
     The folder gets the policy, its learning curve, checkpoints and TensorBoard's files. Of several agents, scenarios and seeds each
-    with each is a training, by several processes or a cluster; --resume then begins those that have not begun.
+    with each is a training, by several processes or a cluster; --resume then begins those that have not begun. One that fails
+    costs no other.
     """
     homes: dict[Path, tuple[str, str, int]] = {}
     with one_sentence(lambda: _resumed_by(context, list(homes))):
@@ -90,17 +92,21 @@ def train(
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
         totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
         with Progressbar(totals, "updates" if minutes is None else "s") as bar:
-            places = train_all(
+            trained = train_all(
                 trainings,
                 working(jobs, cluster),
                 lambda home, progress: bar.training(names[home], totals[names[home]], progress),
                 resume,
                 overwrite,
             )
-        for home, made in places.items():
+        for home, made in trained.places.items():
             Console().print(f"{names[home]} saved in {', '.join(map(str, made))}", soft_wrap=True, markup=False)
-        if not all(is_finished(home) for home in homes):
+        for home, clause in trained.failed.items():
+            print(f"beamenv: {names[home]} failed: {clause}.", file=sys.stderr)  # noqa: T201 - the command's own voice
+        if not all(is_finished(home) for home in homes if home not in trained.failed):
             raise KeyboardInterrupt
+    if trained.failed:
+        raise typer.Exit(1)
 
 
 def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> dict[Path, tuple[str, str, int]]:

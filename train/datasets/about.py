@@ -23,6 +23,9 @@ from train.shared.versions import versions
 BANK = "drawn from a bank of its own, on which controllers are neither compared, tuned nor chosen, and which no law is told"
 
 
+JUDGES = "The scenario is kept for judging: it cannot judge what learns from these."
+
+
 def tier_of(controller: Any, law: Controller) -> int:
     """Of information: a named law's own, an agent's as its file tells, that of what it sees of anything else."""
     if not isinstance(controller, str):
@@ -40,13 +43,15 @@ def metadata(
     tier: int,
     trained_seed: int | None,
     scenario: str,
+    judges: bool,
     eval_spec: str,
     seeds: range,
     costs: Sequence[float],
 ) -> dict[str, Any]:
     """Minari's own keys, and under "beamenv" what it has no keys for.
 
-    ``costs`` are J of each episode in J s, NaN where it ended by failure; the mean is of the others, None if there are none.
+    ``judges`` is whether the scenario is kept for judging. ``costs`` are J of each episode in J s, NaN where it ended by failure;
+    the mean is of the others, None if there are none.
     """
     observes = getattr(law, "observes", "observation")
     whole = [each for each in costs if each == each]
@@ -62,6 +67,7 @@ def metadata(
         "told": "; ".join(what for level, what in TIERS.items() if level <= tier),
         "observes": observes,
         "scenario": scenario,
+        "kept_for_judging": judges,
         "plants": BANK,
         "seeds": [seeds[0], seeds[-1]],
         "cost": {"unit": "J s", "mean": mean, "standard_deviation": deviation, "failed_episodes": failed},
@@ -76,6 +82,7 @@ def metadata(
             f"tier {tier}, told {own['told']}; "
             f"it observes the {observes}{shown}. {failed} of the episodes ended by failure"
             + ("." if mean is None else f", the mean cost J of the others is {mean:.4g} J s.")
+            + (f" {JUDGES}" if judges else "")
         ),
         "eval_env_spec": eval_spec,
         "minari_version": minari.__version__,

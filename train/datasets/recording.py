@@ -18,7 +18,7 @@ from baselines.design.controller import ControllerArgument, as_controller, name_
 from baselines.evaluation.episodes import MOST_SEEDS, Progress, checked_progress
 from baselines.evaluation.fit import check_fit
 from beamenv.configuration import Count, Flag, Refused, checked, checked_table
-from beamenv.knowledge import on_recording_bank
+from beamenv.knowledge import kept_for_judging, on_recording_bank
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task import Task, checked_dtype, resolve_task
 from train.controllers.choice import chosen
@@ -65,9 +65,9 @@ def record(
     - ``overwrite``: whether to replace a data set of this name.
     - ``progress``: called with the number of episodes done and their total.
 
-    Nothing is written unless all is: an interruption leaves no data set, and one that was to be replaced as it was.
-    Raises ``ValueError`` for what is wrong with an argument, for seeds on which controllers are compared, tuned or chosen, and for
-    a controller that does not fit the environment.
+    A data set of a scenario that is kept for judging says so. Nothing is written unless all is: an interruption leaves no data set,
+    and one that was to be replaced as it was. Raises ``ValueError`` for what is wrong with an argument, for seeds on which
+    controllers are compared, tuned or chosen, and for a controller that does not fit the environment.
     """
     count, overwrite = checked("episodes", episodes, EPISODES), checked("overwrite", overwrite, Flag())
     seeds, progress = recorded(seed, count), checked_progress(progress)
@@ -148,4 +148,7 @@ class Stage:
 
     def metadata(self, name: str, controller: str, seeds: range, costs: list[float]) -> dict[str, Any]:
         """What the data set tells of itself."""
-        return metadata(name, controller, self.law, self.tier, self.trained_seed, self.scenario, self.eval_spec, seeds, costs)
+        judges = kept_for_judging(self.task.told_scenario or self.task.scenario)
+        return metadata(
+            name, controller, self.law, self.tier, self.trained_seed, self.scenario, judges, self.eval_spec, seeds, costs
+        )

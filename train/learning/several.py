@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from beamenv.configuration import clause
 from beamenv.configuration.writing import write_whole
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.policy_files import read_about
@@ -20,6 +21,7 @@ from train.learning.training import Progress
 from train.shared.held_models import files_of, held_models, scenario_of_file
 from train.shared.interruption import Interrupted, ending_as_interrupted
 from train.shared.lock import alone_in
+from train.workers.pool import Piece, Result
 from train.workers.workers import Workers
 
 STRETCH = 120.0
@@ -48,6 +50,16 @@ class Stretched:
     progress: Progress | None
 
 
+@dataclass(frozen=True, slots=True)
+class Trained:
+    """What came of trainings, by their folders."""
+
+    places: dict[Path, list[Path]] = field(default_factory=dict)
+    """Folders of the policies."""
+    failed: dict[Path, str] = field(default_factory=dict)
+    """Why there are none, in a clause."""
+
+
 def train_all(
     jobs: Mapping[Path, Job],
     workers: Workers,
@@ -55,15 +67,16 @@ def train_all(
     resume: bool = False,
     overwrite: bool = False,
     stretch: float = STRETCH,
-) -> dict[Path, list[Path]]:
-    """Train every job in its folder; the folders of the policies, by that of the job.
+) -> Trained:
+    """Train every job in its folder.
 
     ``told`` is called with a folder and how far its training is. Workers need none of the files here: what a training leaves comes
     back as it stands after each ``stretch`` seconds, so that their number and their deaths leave no trace in the policies. In this
     process an interruption ends with the training that it meets: what that has learnt is saved, as ``job.run`` does.
 
     With ``resume`` a training with a checkpoint is resumed, one that is finished is left as it is, and the others begin. Raises
-    ValueError, before anything is written, as ``job.run`` does for any of them.
+    ValueError, before anything is written, as ``job.run`` does for any of them. What one of several raises later costs that one
+    alone; what the only one raises is raised.
     """
     workers, whole = workers.at_most(len(jobs)), {job.told() for job in jobs.values()}
     if len(whole) < len(jobs):
@@ -76,27 +89,49 @@ def train_all(
             locks.enter_context(alone_in(home))
         waiting = [Stretch(held(job), home, before(job, home, home in resumed, overwrite), stretch) for home, job in jobs.items()]
         waiting = [each for each in waiting if each.checkpoint is None or not is_finished(each.home)]
+        failed: dict[Path, str] = {}
 
-        def finished(piece: Stretch, result: Stretched) -> Stretch | None:
+        def finished(piece: Stretch, result: Stretched | str) -> Stretch | None:
+            if isinstance(result, str):
+                failed[piece.home] = result
+                return None
             written(piece.home, result.files, begins=piece.checkpoint is None)
             if result.progress is not None:
                 told(piece.home, result.progress)
             return None if result.finished else replace(piece, checkpoint=result.files[NAME])
 
-        workers.do(trained_on, waiting, finished, lambda piece: files(piece.job))
-    return {home: list(runs_in(home).values()) for home in jobs}
+        work = trained_on if len(jobs) == 1 else partial(attempted, trained_on)
+        workers.do(work, waiting, finished, lambda piece: files(piece.job))
+    return Trained({home: list(runs_in(home).values()) for home in jobs if home not in failed}, failed)
 
 
-def _here(jobs: Mapping[Path, Job], told: Told, resumed: Collection[Path], overwrite: bool) -> dict[Path, list[Path]]:
+def _here(jobs: Mapping[Path, Job], told: Told, resumed: Collection[Path], overwrite: bool) -> Trained:
     """The trainings in this process, until one is interrupted."""
-    found = {}
-    for home, job in jobs.items():
-        if before(job, home, home in resumed, overwrite) is None or not is_finished(home):
-            run(job, home, partial(told, home), home in resumed, overwrite)
-        found[home] = list(runs_in(home).values())
+    begun = {home: before(job, home, home in resumed, overwrite) is not None for home, job in jobs.items()}
+    trained = Trained()
+
+    def train(home: Path) -> list[Path]:
+        if not begun[home] or not is_finished(home):
+            run(jobs[home], home, partial(told, home), home in resumed, overwrite)
+        return list(runs_in(home).values())
+
+    for home in jobs:
+        made = train(home) if len(jobs) == 1 else attempted(train, home)
+        if isinstance(made, str):
+            trained.failed[home] = made
+            continue
+        trained.places[home] = made
         if not is_finished(home):
             break
-    return found
+    return trained
+
+
+def attempted(work: Callable[[Piece], Result], piece: Piece) -> Result | str:
+    """What came of it, or in a clause why nothing did: whatever a training raises, the others go on."""
+    try:
+        return work(piece)
+    except Exception as error:  # noqa: BLE001
+        return clause(str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}")
 
 
 def before(job: Job, home: Path, resume: bool, overwrite: bool) -> bytes | None:

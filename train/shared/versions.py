@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from importlib import metadata
+from pathlib import Path
 
 import beamenv
 
@@ -18,6 +19,22 @@ def versions() -> dict[str, str]:
         "platform": f"{platform.system()} {platform.machine()}",
     }
     return own | {name: version for name in PACKAGES if (version := installed_version(name))}
+
+
+def machine() -> str:
+    """The processor, system and versions that a speed was measured with, in one line."""
+    shown = versions()
+    return f"{processor()}, {shown['platform']}, Python {shown['Python']}, NumPy {shown['numpy']}"
+
+
+def processor() -> str:
+    """What the processor is called."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    named = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(named, platform.processor() or platform.machine())
 
 
 def installed_version(package: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,16 @@ import torch
 
 import beamenv
 
-SIZES = {"cpu": (256, 1024, 4096, 16384), "cuda": (4096, 16384, 65536, 262144, 1048576)}
+SIZES = {"cpu": (256, 1024, 4096, 16384), "cuda": (4096, 65536, 1048576, 2097152)}
 """Blades, on either kind of device."""
+
+WAYS: dict[str, dict[str, bool]] = {
+    "plain": {},
+    "captured": {"graph": True},
+    "compiled": {"compiled": True},
+    "compiled, captured": {"graph": True, "compiled": True},
+}
+"""How a GPU steps, and the arguments of ``beamenv.torch_vec`` that ask for it."""
 
 CARTPOLE = 4096
 
@@ -37,7 +45,7 @@ def device_name(device: torch.device) -> str:
 
 
 def rates(device: Any, seconds: float, dtype: str = "float32", scenario: Any = None) -> Iterator[Rate]:
-    """CartPole's native batch, then the batches of tensors, each stepped for so many seconds; on a GPU captured ones too."""
+    """CartPole's native batch, then the batches of tensors, each stepped for so many seconds; on a GPU in all ways."""
     cartpole = gymnasium.make_vec("CartPole-v1", num_envs=CARTPOLE)
     cartpole.action_space.seed(0)
     cartpole.reset(seed=0)
@@ -45,13 +53,13 @@ def rates(device: Any, seconds: float, dtype: str = "float32", scenario: Any = N
     yield Rate("CartPole-v1, NumPy", CARTPOLE, rate(lambda: cartpole.step(actions), CARTPOLE, seconds))
     kind = beamenv.torch_vec(1, device).device.type
     for size in SIZES[kind]:
-        for graph in (False, True) if kind == "cuda" else (False,):
-            yield Rate("captured" if graph else "plain", size, _of_tensors(size, device, seconds, graph, dtype, scenario))
+        for label, how in WAYS.items() if kind == "cuda" else (("plain", {}),):
+            yield Rate(label, size, _of_tensors(size, device, seconds, how, dtype, scenario))
 
 
-def _of_tensors(size: int, device: Any, seconds: float, graph: bool, dtype: str, scenario: Any) -> float:
+def _of_tensors(size: int, device: Any, seconds: float, how: Mapping[str, bool], dtype: str, scenario: Any) -> float:
     """With all noises, loads, rewards, info and autoresets, episodes spread over their length."""
-    envs = beamenv.torch_vec(size, device, dtype=dtype, autoreset_mode="SameStep", graph=graph, scenario=scenario)
+    envs = beamenv.torch_vec(size, device, dtype=dtype, autoreset_mode="SameStep", scenario=scenario, **how)
     envs.reset(seed=0, options={"elapsed": torch.arange(size) * envs.steps // size})
     actions = torch.rand(size, 4, device=envs.device) - 0.5
     return rate(lambda: envs.step(actions), size, seconds, torch.cuda.synchronize if envs.device.type == "cuda" else None)
