@@ -12,6 +12,7 @@
 # where W makes all directions alike, as a natural gradient does (Kakade 2001). The critic is a quadratic of the true state, which a
 # simulation knows, as the value of a linear feedback is. An action is held for two intervals, but the reading between is heard:
 # with it a gain on such filters, fitted to the voltages of LQG with load estimate, has 0.995 of LQG's J.
+# On one core of a busy machine PPO came to 1.14 times LQG's J in a minute (106 updates, 512 blades). Not measured on a GPU.
 
 # %%
 import argparse
