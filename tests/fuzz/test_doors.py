@@ -32,6 +32,7 @@ from tests.fuzz import (
     train_doors,
     wrapper_doors,
 )
+from tests.fuzz.command_words import COMMANDS
 from tests.fuzz.meaning import FLAG, NUMBER
 from tests.fuzz.oracle import Door, examined, shown
 from tests.fuzz.wrong import arguments, copied, value_at
@@ -141,9 +142,9 @@ def test_every_argument_of_an_environment_is_among_those_tried(name, made):
 
 def test_every_option_of_every_command_is_among_those_tried():
     commands = typer.main.get_command(app).commands
-    assert set(commands) == {name for name in command_doors.COMMANDS if " " not in name}
+    assert set(commands) == {name for name in COMMANDS if " " not in name}
     for name, command in commands.items():
-        positional, options, flags, _ = command_doors.COMMANDS[name]
+        positional, options, flags, _ = COMMANDS[name]
         told = {option for each in command.params for option in (*each.opts, *each.secondary_opts) if option.startswith("--")}
         tried = {*options, *flags, "--help"}
         opposites = {f"--{name[5:]}" if name.startswith("--no-") else f"--no-{name[2:]}" for name in flags}
