@@ -193,7 +193,7 @@ class Fresh:
     def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
         self._own, self.state = sizes[-1], arrays.zeros(count, operators.states)
         shared = operators.fused.ndim == 2 and arrays.compiled and arrays.precision == "float32"
-        self._kernels = arrays.kernels if shared else None
+        self._kernels: Any = arrays.kernels if shared else None
 
     def join(self, acting: Any, loads: Any) -> tuple[Any, Any]:
         """[state, voltages, loads] (N, s), and the voltages; where a kernel joins them, voltages and loads alone."""
