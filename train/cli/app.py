@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
 from train.cli.benchmark import benchmark
 from train.cli.export import export
@@ -22,10 +21,12 @@ from train.cli.options import (
     PresetOption,
     ScenarioOption,
     SpeedOption,
+    TrainedSeedOption,
     environment_arguments,
     one_sentence,
     print_json,
     print_table,
+    say,
     working,
 )
 from train.cli.place import place
@@ -71,7 +72,7 @@ def evaluate(
     scenario: ScenarioOption = "default",
     plant: PlantOption = None,
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
-    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
+    trained_seed: TrainedSeedOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
@@ -135,7 +136,7 @@ def compare(
         print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:
         print_table(screen_table(evaluations, tiers))
-        Console().print(f"written to {folder}", markup=False)
+        say(f"written to {folder}")
 
 
 @app.command()
@@ -153,7 +154,7 @@ def explore(
 
         server = serve(port, host, blade_config(preset, load_config(blade) if blade else None))
     name = f"[{host}]" if ":" in host else host
-    Console().print(f"http://{name}:{server.port} (Ctrl-C ends it)", markup=False, highlight=False)
+    say(f"http://{name}:{server.port} (Ctrl-C ends it)")
     server.serve_forever()
 
 

@@ -4,15 +4,30 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from beamenv.configuration.files import ENDINGS
-from beamenv.scenarios.named import GROUPS
+from train.cli.bars import Bars
+from train.cli.benchmark_options import (
+    SEEDS,
+    ControllersOption,
+    DocsOption,
+    EpisodesOption,
+    FolderOption,
+    ModelsOption,
+    QuickOption,
+    RunsOption,
+    ScenariosOption,
+    SubmitOption,
+    TierOption,
+    TrustOption,
+)
 from train.cli.benchmark_table import finite_row, show_entry, show_table
 from train.cli.options import (
     RESUMES,
@@ -20,68 +35,40 @@ from train.cli.options import (
     JobsOption,
     JsonOption,
     PlantOption,
+    complain,
     one_sentence,
+    overwriting,
     print_json,
+    say,
     working,
 )
-from train.cli.quick import QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, told, wide
+from train.cli.quick import QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS, quick_controllers, wide
 from train.shared.digests import digest
 from train.shared.files import check_folder
 
 if TYPE_CHECKING:
     from train.benchmark.table import BenchmarkTable
 
-SEEDS = 128
-
 LONGEST = 60
 """Characters of a folder's name before a digest ends it."""
 
 
 def benchmark(
-    scenario: Annotated[
-        list[str] | None,
-        typer.Option(help=f"Name or TOML file of a scenario, or {', '.join(GROUPS)} of them; repeat for more. All if left out."),
-    ] = None,
-    controller: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Name of a controller or shipped agent, or a trained one's folder; repeat for more. All with a name if left out."
-        ),
-    ] = None,
-    seeds: Annotated[int | None, typer.Option(min=2, help=f"How many held-out episodes; {SEEDS} if left out.")] = None,
-    runs: Annotated[
-        int | None, typer.Option(min=1, help="How many training runs of each agent, the first ones; all of them if left out.")
-    ] = None,
-    folder: Annotated[
-        Path | None,
-        typer.Option(
-            help="Where cells, tables, heat map and page are written; results/benchmark, or …-WHAT IS CHOSEN, if left out."
-        ),
-    ] = None,
-    model: Annotated[
-        list[Path] | None,
-        typer.Option(help="Stable-Baselines3 model to take part. Such a file can run code when it is loaded: see --trust."),
-    ] = None,
-    trust: Annotated[bool, typer.Option("--trust", help="Load model files: I know where they are from.")] = False,
-    quick: Annotated[
-        bool, typer.Option("--quick", help=f"Less than a minute on two cores: {told()}. What else is given comes first.")
-    ] = False,
-    submit: Annotated[
-        str | None,
-        typer.Option(
-            help="Enter a trained agent's folder, a model's .zip or a controller by name on the leaderboard, once it has been run "
-            "in every scenario."
-        ),
-    ] = None,
-    tier: Annotated[int | None, typer.Option(help="Of the entry: 0, 1 or 2; what it says of itself, or 1, if left out.")] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace another entry of the same name.")] = False,
+    scenario: ScenariosOption = None,
+    controller: ControllersOption = None,
+    seeds: EpisodesOption = None,
+    runs: RunsOption = None,
+    folder: FolderOption = None,
+    model: ModelsOption = None,
+    trust: TrustOption = False,
+    quick: QuickOption = False,
+    submit: SubmitOption = None,
+    tier: TierOption = None,
+    overwrite: Annotated[bool, overwriting("another entry of the same name")] = False,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
     plant: PlantOption = None,
-    docs: Annotated[
-        Path | None,
-        typer.Option(help="Folder that gets benchmark.md and its heat map; with --submit that of the leaderboard, else results."),
-    ] = None,
+    docs: DocsOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Every controller in every scenario on the same held-out episodes; with --quick a few, with --submit one of yours.
@@ -91,59 +78,79 @@ def benchmark(
     left out with its reason, which is no failure; asked for by name, it is refused.
     """
     with one_sentence(RESUMES):
-        workers = working(jobs, cluster)
-        chosen = {
-            "scenario": scenario,
-            "controller": controller,
-            "seeds": seeds,
-            "runs": runs,
-            "model": model,
-            "quick": quick,
-            "plant": plant,
-        }
+        workers, asked = working(jobs, cluster), Asked(scenario, controller, seeds, runs, model, quick, plant)
+        how = {"trusted": trust, "jobs": workers.jobs, "cluster": cluster}
         if submit is not None:
-            how = {"trusted": trust, "overwrite": overwrite, "jobs": workers.jobs, "cluster": cluster}
-            entered(submit, chosen, folder, docs, as_json, tier=tier, **how)
+            entered(submit, asked, folder, docs, as_json, tier=tier, overwrite=overwrite, **how)
             return
-        for name, given in {"tier": tier, "overwrite": overwrite or None}.items():
-            if given is not None:
-                raise ValueError(f"{name} = {given} is of an entry on the leaderboard: name that with --submit.")
+        check_no_entry(tier=tier, overwrite=overwrite or None)
         if docs is not None:
             check_folder(docs, "docs")
-        episodes = seeds or (QUICK_SEEDS if quick else SEEDS)
-        those = model or ([] if plant is None else [plant])
-        usual = default_folder(scenario or (), controller or (), episodes, those, quick=quick, runs=runs)
-        home = usual if folder is None else folder
-        table = _measured(
-            scenarios=scenario or (QUICK_SCENARIOS if quick else None),
-            controllers=controller or (quick_controllers(plant) if quick else None),
-            seeds=episodes,
-            runs=runs or (QUICK_RUNS if quick else None),
-            folder=home,
-            models=model or (),
-            trusted=trust,
-            jobs=workers.jobs,
-            cluster=cluster,
-            environment={} if plant is None else {"plant": str(plant)},
-        )
+        home = asked.usual_folder if folder is None else folder
+        table = _measured(**asked.arguments, folder=home, **how)
         if docs is not None:
             from train.benchmark.showing.docs import write_docs
 
             write_docs(docs, table, shlex.join(["beamenv", *sys.argv[1:]]))
-    _show(table, None if as_json else home)
-    if quick and not as_json:
-        Console().print(wide(table), highlight=False, markup=False)
+    _show(table, None if as_json else home, quick)
     if table.sentences:
         raise typer.Exit(1)
 
 
-def entered(
-    submit: str, chosen: Mapping[str, Any], folder: Path | None, docs: Path | None, as_json: bool, **arguments: Any
-) -> None:
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is to be measured, as far as options say."""
+
+    scenario: list[str] | None
+    controller: list[str] | None
+    seeds: int | None
+    runs: int | None
+    model: list[Path] | None
+    quick: bool
+    plant: Path | None
+
+    @property
+    def given(self) -> list[str]:
+        """The names of the options that say something."""
+        return [name for name in self.__dataclass_fields__ if getattr(self, name)]
+
+    @property
+    def episodes(self) -> int:
+        """How many."""
+        return self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
+
+    @property
+    def usual_folder(self) -> Path:
+        """Where it is written unless said otherwise."""
+        models = self.model or ([] if self.plant is None else [self.plant])
+        chosen = self.scenario or (), self.controller or (), self.episodes, models
+        return default_folder(*chosen, quick=self.quick, runs=self.runs)
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Those of the benchmark; what else is given comes before what is quick."""
+        return {
+            "scenarios": self.scenario or (QUICK_SCENARIOS if self.quick else None),
+            "controllers": self.controller or (quick_controllers(self.plant) if self.quick else None),
+            "seeds": self.episodes,
+            "runs": self.runs or (QUICK_RUNS if self.quick else None),
+            "models": self.model or (),
+            "environment": {} if self.plant is None else {"plant": str(self.plant)},
+        }
+
+
+def check_no_entry(**options: int | bool | None) -> None:
+    """``ValueError`` for options of an entry where none is made."""
+    for name, given in options.items():
+        if given is not None:
+            raise ValueError(f"{name} = {given} is of an entry on the leaderboard: name that with --submit.")
+
+
+def entered(submit: str, asked: Asked, folder: Path | None, docs: Path | None, as_json: bool, **arguments: Any) -> None:
     """Run an entry, append it to the leaderboard, and say where it stands."""
     from train.benchmark.submission import submit as run
 
-    if others := [name for name, given in chosen.items() if given]:
+    if others := asked.given:
         raise ValueError(f"submit = {submit!r} runs what every entry is put through, so leave out {' and '.join(others)}.")
     board = Path("results") if docs is None else docs
     home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
@@ -182,32 +189,20 @@ def default_folder(
     return Path("results", "".join(letter if letter.isalnum() or letter in "-_. " else "_" for letter in short))
 
 
-class _Bar:
-    """Cells done, on standard error."""
+class _Bar(Bars):
+    """Cells done."""
 
     def __init__(self) -> None:
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-        columns = (TextColumn("{task.description:>44}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-        self._bars = Progress(*columns, console=Console(stderr=True))
+        name = TextColumn("{task.description:>44}", markup=False)
+        super().__init__(name, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
         self._task = self._bars.add_task("building the blades", total=None)
 
-    def __enter__(self) -> _Bar:
-        if self._bars.console.is_terminal:  # elsewhere bad input is to leave its one line alone
-            self._bars.start()
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if self._bars.live.is_started:
-            self._bars.stop()
-
     def show(self, done: int, total: int, cell: object) -> None:
-        self._bars.start()
         name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))
-        self._bars.update(self._task, description=name.strip(), completed=done, total=total)
+        self.update(self._task, description=name.strip(), completed=done, total=total)
 
 
-def _show(table: BenchmarkTable, folder: Path | None) -> None:
+def _show(table: BenchmarkTable, folder: Path | None, quick: bool) -> None:
     """For people, who are told the folder, or as JSON; and what could not be measured."""
     from train.benchmark.showing.report import as_json
 
@@ -216,6 +211,8 @@ def _show(table: BenchmarkTable, folder: Path | None) -> None:
     else:
         show_table(table, folder)
     for sentence in table.left_out:
-        print(f"beamenv: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        complain(sentence)
     for where, sentence in table.sentences.items():
-        print(f"beamenv: {where}: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        complain(f"{where}: {sentence}")
+    if quick and folder is not None:
+        say(wide(table))

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from train.cli.options import print_table
+from train.cli.options import print_table, say
 
 if TYPE_CHECKING:
     from train.benchmark.leaderboard import Entry
@@ -27,9 +27,9 @@ def show_table(table: BenchmarkTable, folder: Path) -> None:
     from train.benchmark.targets import findings
 
     print_costs(table)
-    Console().print(f"▲ some episodes unstable. Written to {folder}", highlight=False, markup=False, soft_wrap=True)
+    say(f"▲ some episodes unstable. Written to {folder}")
     for each in findings(table):
-        Console().print(each.sentence, highlight=False, markup=False)
+        say(each.sentence)
 
 
 def print_costs(table: BenchmarkTable) -> None:
@@ -91,7 +91,7 @@ def show_entry(entry: Entry, table: BenchmarkTable, board: Path, folder: Path) -
     lines += [f"unstable: {row[2 * len(SPLITS)]}", f"{entry.name} is on the leaderboard: {board / NAME}, {board / PAGE}"]
     lines += [f"the run: {folder}"]
     for line in lines:
-        Console().print(line, highlight=False, markup=False, soft_wrap=True)
+        say(line)
 
 
 def finite_row(entry: Entry) -> dict[str, Any]:

@@ -10,14 +10,18 @@ from rich.console import Console
 
 from train.cli.options import (
     BladeOption,
+    ControllerArgument,
     JsonOption,
     PlantOption,
     PresetOption,
     ScenarioOption,
     SpeedOption,
+    TrainedSeedOption,
     environment_arguments,
     one_sentence,
+    overwriting,
     print_json,
+    say,
 )
 
 if TYPE_CHECKING:
@@ -28,9 +32,7 @@ STEPS, PASSES = 2000, 20
 
 
 def export(
-    controller: Annotated[
-        str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
-    ],
+    controller: ControllerArgument,
     format: Annotated[
         str | None, typer.Option("--format", help="c, onnx or mat; what the output ends in if left out, or else c.")
     ] = None,
@@ -44,9 +46,9 @@ def export(
     blade: BladeOption = None,
     scenario: ScenarioOption = "default",
     plant: PlantOption = None,
-    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
+    trained_seed: TrainedSeedOption = None,
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there.")] = False,
+    overwrite: Annotated[bool, overwriting("a file that is there")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
@@ -108,16 +110,11 @@ def _measured(found: Exported) -> float:
 
 
 def _show(found: Exported, path: Path, seconds: float | None) -> None:
-    screen, remembered = Console(soft_wrap=True), sum(delay.size for delay in found.diagram.following)
-    screen.print(
-        f"written to {path}: {found.controller}, in {found.precision} precision, with {remembered} numbers to remember",
-        markup=False,
-    )
+    remembered = sum(delay.size for delay in found.diagram.following)
+    say(f"written to {path}: {found.controller}, in {found.precision} precision, with {remembered} numbers to remember")
     if seconds is not None:
         interval = found.plant.control_interval
-        screen.print(
+        say(
             f"a step takes {1e6 * seconds:.3g} µs on this computer, {100.0 * seconds / interval:.2g} % of the control interval of "
-            f"{1e6 * interval:.4g} µs",
-            markup=False,
-            highlight=False,
+            f"{1e6 * interval:.4g} µs"
         )

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from train.cli.options import (
@@ -20,6 +19,7 @@ from train.cli.options import (
     one_sentence,
     print_json,
     print_table,
+    say,
 )
 
 FASTEST = 1e6
@@ -72,9 +72,9 @@ def frequencies(
     print_table(table)
     for each, state in zip(speeds, steady, strict=True):
         if each > 0.0 and config.model != "thesis":
-            Console().print(_turning(each, state, config.patches.failure_strain), soft_wrap=True)
+            say(_turning(each, state, config.patches.failure_strain))
     if note:
-        Console().print(note, soft_wrap=True)
+        say(note)
 
 
 def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
@@ -122,4 +122,4 @@ def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path |
         table.add_row(str(number), f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f})", f"{100.0 * ratio:.3g}")
     print_table(table)
     if model.assumed:
-        Console().print(f"assumed: {'; '.join(model.assumed)}", soft_wrap=True, markup=False)
+        say(f"assumed: {'; '.join(model.assumed)}")

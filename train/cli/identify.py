@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from train.cli.options import JsonOption, one_sentence, print_json, print_table
+from train.cli.bars import fleeting
+from train.cli.options import JsonOption, one_sentence, print_json, print_table, say
 from train.shared.files import check_folder
 
 
@@ -76,9 +76,9 @@ def _tell(found: Any, trial: Any, written: Sequence[Path], as_json: bool) -> Non
         return
     show(found)
     if trial.safe:
-        Console().print(trial.sentence, soft_wrap=True, markup=False, highlight=False)
+        say(trial.sentence)
     for path in written:
-        Console().print(f"written to {path}", soft_wrap=True, markup=False, highlight=False)
+        say(f"written to {path}")
 
 
 def _order(order: str) -> Any:
@@ -105,11 +105,8 @@ def _ranges(full_scale: list[float] | None, names: Sequence[str]) -> dict[str, A
 
 @contextmanager
 def bar() -> Iterator[Callable[[str, float], None]]:
-    """What is being done, on standard error."""
-    columns = TextColumn("{task.description:>12}", markup=False), BarColumn(), TimeElapsedColumn()
-    screen = Console(stderr=True)
-    # elsewhere bad input is to leave its one line alone
-    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as progress:
+    """What is being done."""
+    with fleeting(TextColumn("{task.description:>12}", markup=False), BarColumn(), TimeElapsedColumn()) as progress:
         task = progress.add_task("reading", total=1.0)
         yield lambda what, done: progress.update(task, description=what, completed=done)
 
@@ -132,4 +129,4 @@ def show(found: Any) -> None:
     for name, *values in zip(names, fit.one_step, fit.free_run, fit.attainable, strict=True):
         fits.add_row(name, *(f"{value:.3f}" for value in values))
     print_table(fits)
-    Console().print(found.choice.reason, soft_wrap=True, markup=False, highlight=False)
+    say(found.choice.reason)

@@ -42,7 +42,16 @@ ClusterOption = Annotated[
     str | None,
     typer.Option(help="HOST:PORT or ray://HOST:PORT of a Ray cluster that runs, or local: Ray here. Of the extra cluster."),
 ]
+ControllerArgument = Annotated[
+    str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
+]
+TrainedSeedOption = Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
+
+
+def overwriting(what: str) -> Any:
+    """The option --overwrite, of what is there and would else be kept."""
+    return typer.Option("--overwrite", help=f"Replace {what}.")
 
 
 def environment_arguments(preset: str, speed: float | None, blade: Path | None, plant: Path | None = None) -> dict[str, Any]:
@@ -77,11 +86,11 @@ def one_sentence(interrupted: str | Callable[[], str] = "") -> Iterator[None]:
     except BrokenPipeError:
         raise
     except (ValueError, OSError) as error:
-        print(f"beamenv: {_said(error)}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        complain(_said(error))
         raise typer.Exit(2) from None
     except KeyboardInterrupt as error:
         holds = interrupted if isinstance(interrupted, str) else interrupted()
-        print(f"beamenv: interrupted{holds and ': '}{holds}.", file=sys.stderr)  # noqa: T201
+        complain(f"interrupted{holds and ': '}{holds}.")
         raise typer.Exit(status_of(error)) from None
 
 
@@ -105,6 +114,16 @@ def same_command(context: typer.Context, **changed: Any) -> str:
         elif value not in (None, False, parameter.default):
             words += [word for each in several for word in (parameter.opts[0], str(each))]
     return shlex.join(words)
+
+
+def say(line: str) -> None:
+    """To standard output, as it stands and on as many lines of the terminal as it takes."""
+    Console().print(line, soft_wrap=True, markup=False, highlight=False)
+
+
+def complain(sentence: str) -> None:
+    """To standard error, in the name of the command."""
+    print(f"beamenv: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
 
 
 def print_table(table: Table) -> None:

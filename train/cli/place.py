@@ -10,10 +10,11 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json, print_table
+from train.cli.bars import fleeting
+from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json, print_table, say
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 from train.shared.files import check_picture
 
@@ -67,9 +68,9 @@ def place(
 
 @contextmanager
 def bars(sides: Any) -> Iterator[Callable[[str, float, float], None]]:
-    """A bar for each side, on standard error."""
+    """A bar for each side."""
     columns = TextColumn("{task.description:>9}"), BarColumn(), TextColumn("{task.fields[cost]}"), TimeElapsedColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    with fleeting(*columns) as progress:
         tasks = {side: progress.add_task(side, total=1.0, cost="") for side in sides}
 
         def report(side: str, done: float, cost: float) -> None:
@@ -92,10 +93,10 @@ def show(sides: list[PlacedSide]) -> None:
         ):
             positions.add_row(label, *(f"{z:.4f}" for z in layout), f"{cost:.5g}", f"{100.0 * cost / side.uniform_cost:.2f} %")
         print_table(positions)
-        Console().print(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
+        say(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
         print_table(damping_table(side))
         if side.note:
-            Console().print(side.note, soft_wrap=True)
+            say(side.note)
 
 
 def damping_table(side: PlacedSide) -> Table:

@@ -1,53 +1,41 @@
-"""Progress bars of training, with the running cost; on standard error, so that standard output stays for results."""
+"""Progress bars of training, with the running cost."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import TracebackType
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, TaskID, TextColumn, TimeRemainingColumn
 
 from baselines import Evaluation
+from train.cli.bars import Bars
 from train.comparison.compare import Listener
 from train.learning.training import Progress as TrainingProgress
 
 
-class Progressbar(Listener):
+class Progressbar(Bars, Listener):
     """One bar an agent, one line a controller evaluated."""
 
     def __init__(self, budget: Mapping[str, float], unit: str = "s") -> None:
         """Budgets in ``unit``: "s" or "updates"."""
         self._unit = unit
         self.without: list[str] = []
-        self._bars = Progress(
+        super().__init__(
             TextColumn("{task.description:>10}", markup=False),
             BarColumn(),
             TextColumn("{task.completed:.0f} of {task.total:.0f} " + unit),
             TextColumn("J / no control {task.fields[cost]}  {task.fields[rate]}"),
             TimeRemainingColumn(),
-            console=Console(stderr=True),
         )
         self._tasks: dict[str, TaskID] = {
             name: self._bars.add_task(name, total=seconds, start=False, cost="–", rate="") for name, seconds in budget.items()
         }
 
-    def __enter__(self) -> Progressbar:
-        if self._bars.console.is_terminal:  # elsewhere bad input is to leave its one line alone
-            self._bars.start()
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        if self._bars.live.is_started:
-            self._bars.stop()
-
     def training(self, name: str, budget: float, progress: TrainingProgress) -> None:
         """Move an agent's bar."""
-        self._bars.start()
         task = self._tasks[name]
         self._bars.start_task(task)
         rate = f"{progress.steps / max(progress.elapsed, 1e-9) / 1e3:.0f} k steps/s"
-        self._bars.update(
+        self.update(
             task,
             completed=min(progress.elapsed if self._unit == "s" else progress.updates, budget),
             cost=f"{progress.cost:.3f}",

@@ -8,19 +8,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
+from train.cli.bars import fleeting
 from train.cli.options import (
     BladeOption,
+    ControllerArgument,
     JsonOption,
     PlantOption,
     PresetOption,
     ScenarioOption,
     SpeedOption,
+    TrainedSeedOption,
     environment_arguments,
     one_sentence,
+    overwriting,
     print_json,
+    say,
 )
 from train.shared.held_out import RECORDED
 
@@ -29,9 +33,7 @@ if TYPE_CHECKING:
 
 
 def record(
-    controller: Annotated[
-        str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
-    ],
+    controller: ControllerArgument,
     scenario: ScenarioOption = "default",
     episodes: Annotated[int, typer.Option(min=1, help="How many.")] = 100,
     seed: Annotated[
@@ -45,8 +47,8 @@ def record(
         Path | None,
         typer.Option(help="Of all data sets; if left out where Minari looks, MINARI_DATASETS_PATH or ~/.minari/datasets."),
     ] = None,
-    trained_seed: Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the data set of this name.")] = False,
+    trained_seed: TrainedSeedOption = None,
+    overwrite: Annotated[bool, overwriting("the data set of this name")] = False,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -79,10 +81,8 @@ def record(
 
 @contextmanager
 def bar(episodes: int) -> Iterator[Callable[[int, int], None]]:
-    """Episodes done, on standard error."""
-    screen = Console(stderr=True)
-    columns = TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as progress:
+    """Episodes done."""
+    with fleeting(TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()) as progress:
         task = progress.add_task("", total=episodes)
         yield lambda done, total: progress.update(task, completed=done, total=total)
 
@@ -94,8 +94,7 @@ def _show(made: MinariDataset, folder: Path | None, as_json: bool) -> None:
         about = {"dataset_id": spec.dataset_id, "folder": str(spec.data_path), "episodes": spec.total_episodes}
         print_json({**about, "steps": spec.total_steps, **told["beamenv"]})
         return
-    screen = Console(soft_wrap=True, highlight=False)
-    screen.print(f"written to {spec.data_path}: {spec.total_episodes} episodes, {spec.total_steps} steps", markup=False)
-    screen.print(told["description"], markup=False)
+    say(f"written to {spec.data_path}: {spec.total_episodes} episodes, {spec.total_steps} steps")
+    say(told["description"])
     where = "" if folder is None else f", with MINARI_DATASETS_PATH={folder}"
-    screen.print(f"minari.load_dataset({spec.dataset_id!r}) loads it{where}", markup=False)
+    say(f"minari.load_dataset({spec.dataset_id!r}) loads it{where}")

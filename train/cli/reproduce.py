@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import typer
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 
 from beamenv.configuration.writing import write_whole
+from train.cli.bars import Bars
 from train.reproduce.catalogue import NAMES, STUDIES, chosen
 from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
@@ -49,17 +51,24 @@ def reproduce(
 
 def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, records: list[Record], workers: Workers) -> None:
     """Run the studies under a progress bar, adding each record as it is finished."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    with Progress(TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()) as progress:
-        task = progress.add_task(studies[0].name, total=len(studies))
-        following = iter([*(study.name for study in studies[1:]), "finished"])
+    with _Bar(len(studies)) as bar:
 
         def finished(record: Record) -> None:
             records.append(record)
-            progress.update(task, advance=1, description=next(following))
+            bar.show(record)
 
         run(studies, output, fresh=fresh, finished=finished, workers=workers)
+
+
+class _Bar(Bars):
+    """Studies that are finished, and the last of them."""
+
+    def __init__(self, studies: int) -> None:
+        super().__init__(TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        self._task = self._bars.add_task("", total=studies)
+
+    def show(self, record: Record) -> None:
+        self.update(self._task, advance=1, description=record.name)
 
 
 def sum_up(output: Path, records: list[Record], docs: Path | None) -> None:

@@ -8,10 +8,9 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.table import Table
 
-from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, print_table
+from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, print_table, say
 from train.shared.files import check_picture
 
 ROWS = ("γx", "γy", "w′", "θx′", "θy′", "φ′")
@@ -86,11 +85,10 @@ def _print(found: Any, walls: list[dict[str, Any]]) -> None:
     print_table(table)
     classical = np.diag(found.classical_stiffness)
     names = zip(("EA", "EI flap", "EI lag", "GJ"), classical, ("N", "N m²", "N m²", "N m²"), strict=True)
-    console = Console()
-    console.print("no transverse force: " + ", ".join(f"{name} {value:.5g} {unit}" for name, value, unit in names), soft_wrap=True)
+    say("no transverse force: " + ", ".join(f"{name} {value:.5g} {unit}" for name, value, unit in names))
     centres = (("tension", found.tension_centre), ("shear", found.shear_centre), ("mass", found.mass_centre))
     places = ", ".join(f"{name} centre ({_millimetres(x)}, {_millimetres(y)}) mm" for name, (x, y) in centres)
-    console.print(f"{places}; {found.mass_per_length:.4g} kg/m", soft_wrap=True)
+    say(f"{places}; {found.mass_per_length:.4g} kg/m")
 
 
 def _millimetres(metres: float) -> str:

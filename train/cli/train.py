@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
 
 from beamenv.configuration import FileName, Number, checked
 from train.cli.options import (
@@ -20,52 +18,48 @@ from train.cli.options import (
     PlantOption,
     PresetOption,
     SpeedOption,
+    complain,
     environment_arguments,
     one_sentence,
+    overwriting,
     same_command,
+    say,
     working,
 )
-from train.learning.recipes import NAMES
+from train.cli.train_options import (
+    AgentsArgument,
+    DeviceOption,
+    FolderOption,
+    MinutesOption,
+    RecipeOption,
+    ResumeOption,
+    ScenariosOption,
+    SeedsOption,
+    StartOption,
+    UpdatesOption,
+)
 
 if TYPE_CHECKING:
     from train.learning.job import Job
     from train.learning.recipe import Recipe
     from train.learning.session import Budget
+    from train.learning.training import Progress
+    from train.workers.workers import Workers
 
 
 def train(
     context: typer.Context,
-    agent: Annotated[list[str], typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe; several of them.")],
-    scenario: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="A name, a .toml file, or generalist: all but those kept for judging; repeat for more. nominal if left out."
-        ),
-    ] = None,
-    minutes: Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")] = None,
-    updates: Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")] = None,
-    seed: Annotated[
-        list[int] | None, typer.Option(min=0, max=2**63 - 1, help="Of the training; repeat for more. 0 if left out.")
-    ] = None,
-    folder: Annotated[
-        Path | None,
-        typer.Option(
-            help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out. Of several the folder of such folders."
-        ),
-    ] = None,
-    recipe: Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")] = None,
-    start: Annotated[
-        Path | None,
-        typer.Option("--from", help="Folder of a trained policy to clone first, then to tune; its best run of several."),
-    ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments, to the same result.")
-    ] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the training or agent that the folder holds.")] = False,
-    device: Annotated[
-        str | None,
-        typer.Option(help="cpu or cuda, of what is trained through the plant; the recipe's if left out."),
-    ] = None,
+    agent: AgentsArgument,
+    scenario: ScenariosOption = None,
+    minutes: MinutesOption = None,
+    updates: UpdatesOption = None,
+    seed: SeedsOption = None,
+    folder: FolderOption = None,
+    recipe: RecipeOption = None,
+    start: StartOption = None,
+    resume: ResumeOption = False,
+    overwrite: Annotated[bool, overwriting("the training or agent that the folder holds")] = False,
+    device: DeviceOption = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
     preset: PresetOption = "thesis",
@@ -81,32 +75,37 @@ def train(
     """
     homes: dict[Path, tuple[str, str, int]] = {}
     with one_sentence(lambda: _resumed_by(context, list(homes))):
-        from train.cli.progress import Progressbar
-        from train.learning.several import is_finished, train_all
-
         recipes = {each: _recipe(each, recipe, device, len(agent)) for each in agent}
         budgets = {each: _budget(minutes, updates, recipes[each].updates) for each in agent}
         environment = environment_arguments(preset, speed, blade, plant)
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
         trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
-        totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
-        with Progressbar(totals, "updates" if minutes is None else "s") as bar:
-            trained = train_all(
-                trainings,
-                working(jobs, cluster),
-                lambda home, progress: bar.training(names[home], totals[names[home]], progress),
-                resume,
-                overwrite,
-            )
-        for home, made in trained.places.items():
-            Console().print(f"{names[home]} saved in {', '.join(map(str, made))}", soft_wrap=True, markup=False)
-        for home, clause in trained.failed.items():
-            print(f"beamenv: {names[home]} failed: {clause}.", file=sys.stderr)  # noqa: T201 - the command's own voice
-        if not all(is_finished(home) for home in homes if home not in trained.failed):
-            raise KeyboardInterrupt
-    if trained.failed:
+        failed = _trained(trainings, names, working(jobs, cluster), resume, overwrite)
+    if failed:
         raise typer.Exit(1)
+
+
+def _trained(trainings: Mapping[Path, Job], names: Mapping[Path, str], workers: Workers, resume: bool, overwrite: bool) -> bool:
+    """Train under a bar, and say what became of each; whether one has failed. ``KeyboardInterrupt`` if one was not finished."""
+    from train.cli.progress import Progressbar
+    from train.learning.several import is_finished, train_all
+
+    totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
+    by_clock = any(math.isfinite(job.budget.seconds) for job in trainings.values())
+    with Progressbar(totals, "s" if by_clock else "updates") as bar:
+
+        def told(home: Path, progress: Progress) -> None:
+            bar.training(names[home], totals[names[home]], progress)
+
+        trained = train_all(trainings, workers, told, resume, overwrite)
+    for home, made in trained.places.items():
+        say(f"{names[home]} saved in {', '.join(map(str, made))}")
+    for home, clause in trained.failed.items():
+        complain(f"{names[home]} failed: {clause}.")
+    if not all(is_finished(home) for home in trainings if home not in trained.failed):
+        raise KeyboardInterrupt
+    return bool(trained.failed)
 
 
 def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> dict[Path, tuple[str, str, int]]:

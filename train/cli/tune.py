@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
 from beamenv.configuration import Count, FileName, Refused, checked
+from train.cli.bars import Bars
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -24,10 +23,13 @@ from train.cli.options import (
     PlantOption,
     PresetOption,
     SpeedOption,
+    complain,
     environment_arguments,
     one_sentence,
+    overwriting,
     print_json,
     print_table,
+    say,
 )
 from train.learning.recipes import NAMES
 
@@ -48,7 +50,7 @@ def tune(
     folder: Annotated[
         Path | None, typer.Option(help="Where it is written; results/tuning/RECIPE-SCENARIO-SEED if left out.")
     ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace another tuning that the folder holds.")] = False,
+    overwrite: Annotated[bool, overwriting("another tuning that the folder holds")] = False,
     cluster: ClusterOption = "local",
     jobs: Annotated[int | None, typer.Option(min=1, help="Trials side by side; as many as there are cores if left out.")] = None,
     preset: PresetOption = "thesis",
@@ -84,22 +86,13 @@ def tune(
         _show(name, tuned)
 
 
-class _Bar:
-    """Trials that have ended, on standard error, with the best of those that had all their updates."""
+class _Bar(Bars):
+    """Trials that have ended, with the best of those that had all their updates."""
 
     def __init__(self, trials: int) -> None:
-        columns = (TextColumn("trials"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[best]}"), TimeElapsedColumn())
-        self._bars = Progress(*columns, console=Console(stderr=True))
+        best = TextColumn("{task.fields[best]}")
+        super().__init__(TextColumn("trials"), BarColumn(), MofNCompleteColumn(), best, TimeElapsedColumn())
         self._task = self._bars.add_task("trials", total=trials, best="")
-
-    def __enter__(self) -> _Bar:
-        if self._bars.console.is_terminal:  # elsewhere bad input is to leave its one line alone
-            self._bars.start()
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if self._bars.live.is_started:
-            self._bars.stop()
 
     def show(self, records: Sequence[Record]) -> None:
         """How far it is."""
@@ -124,12 +117,11 @@ def _show(name: str, tuned: Tuned) -> None:
         values = [f"{value:.3g}" if isinstance(value, float) else str(value) for value in each.settings.values()]
         table.add_row(*map(Text, [str(each.trial), each.ended, str(each.updates), cost, *values]))
     print_table(table)
-    say = Console().print
-    say(_sentence(tuned, len(whole)), soft_wrap=True, markup=False, highlight=False)
+    say(_sentence(tuned, len(whole)))
     for each in tuned.records:
         if each.sentence:
-            print(f"beamenv: trial {each.trial} failed: {each.sentence}.", file=sys.stderr)  # noqa: T201 - the command's own voice
-    say(f"{tuned.path}, for {shlex.join(['beamenv', 'train', name, '--recipe', str(tuned.path)])}", soft_wrap=True, markup=False)
+            complain(f"trial {each.trial} failed: {each.sentence}.")
+    say(f"{tuned.path}, for {shlex.join(['beamenv', 'train', name, '--recipe', str(tuned.path)])}")
 
 
 def _sentence(tuned: Tuned, whole: int) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 from typer.core import TyperGroup
 
 from beamenv.configuration.sentence import cut
+from train.cli.options import complain
 
 
 class OneSentence(TyperGroup):
@@ -34,5 +35,5 @@ def _told(error: Any) -> int:
     if type(error).__name__ == "NoArgsIsHelpError":
         error.show()
     else:
-        print(f"beamenv: {words}{'' if words.endswith('.') else '.'}", file=sys.stderr)  # noqa: T201 - the command's own voice
+        complain(f"{words}{'' if words.endswith('.') else '.'}")
     return int(error.exit_code)

@@ -40,7 +40,7 @@ def _ppo(device: str, minutes: float) -> int:
     if not EXAMPLE.is_file():
         sys.stderr.write("The PPO is an example of the repository, which is not beside this installation.\n")
         return 2
-    blades = 16384 if device.startswith("cuda") else 256
+    blades = 16384 if device.startswith("cuda") else 512
     words = ["--device", device, "--minutes", str(minutes), "--blades", str(blades)]
     _say(f"PPO from readings alone, {minutes:g} minutes; the target is J over LQG's of 1.05 in 2 minutes of a GPU")
     return subprocess.run([sys.executable, str(EXAMPLE), *words], check=False).returncode
