@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from beamenv.envs.single import RotatingBeamEnv
     from beamenv.envs.stable_baselines import BladeVecEnv
     from beamenv.envs.torch_batch import TorchRotatingBeamVectorEnv, torch_vec
+    from beamenv.envs.torch_history import TorchSensorHistory
     from beamenv.knowledge import Prior
     from beamenv.patches import PatchLayout
     from beamenv.plant.files import load_plant, save_plant
@@ -73,6 +74,7 @@ _HOMES = {
     "torch_vec": "envs.torch_batch",
     "SensorHistory": "envs.history",
     "VectorSensorHistory": "envs.history",
+    "TorchSensorHistory": "envs.torch_history",
 }
 
 __all__ = [
@@ -100,6 +102,7 @@ __all__ = [
     "Scenario",
     "SensorHistory",
     "TorchRotatingBeamVectorEnv",
+    "TorchSensorHistory",
     "UNSEEN_SCENARIOS",
     "VectorPlacementWrapper",
     "VectorSensorHistory",

@@ -30,8 +30,9 @@ def blades_of(tasks: Sequence[Task], count: int, arrays: Arrays = REFERENCE) -> 
 
 def masked(info: dict[str, Any], mask: Mask | None = None) -> dict[str, Any]:
     """Info with Gymnasium's mask "_key" beside every key: which rows it holds for, all if None."""
+    mask = np.ones(len(info[INFO[0]]), dtype=np.bool_) if mask is None else mask
     for name in INFO:
-        info[f"_{name}"] = np.ones(len(info[name]), dtype=np.bool_) if mask is None else mask.copy()
+        info[f"_{name}"] = mask.copy()
     return info
 
 

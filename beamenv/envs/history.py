@@ -84,7 +84,7 @@ class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
     def __init__(self, env: gymnasium.Env[Any, Any], length: int = 12) -> None:
         RecordConstructorArgs.__init__(self, length=checked("length", length, Count(1, LONGEST)))
-        plant, length = _normalised_plant(env, length, of_batch=False)
+        plant, length = normalised_plant(env, length, of_batch=False)
         gymnasium.Wrapper.__init__(self, env)
         self._drive = drive_limit(plant)
         self._history = RollingHistory(1, length, len(plant.C), len(self._drive))
@@ -113,7 +113,7 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
     """
 
     def __init__(self, env: VectorEnv[Any, Any, NDArray[Any]], length: int = 12) -> None:
-        plant, length = _normalised_plant(env, length, of_batch=True)
+        plant, length = normalised_plant(env, length, of_batch=True)
         super().__init__(env)
         self._drive = drive_limit(plant)
         self._history = RollingHistory(env.num_envs, length, len(plant.C), len(self._drive))
@@ -173,10 +173,10 @@ def _space(history: RollingHistory) -> Box:
     return Box(-1.0, 1.0, (history.length * history.width,), np.float32)
 
 
-def _normalised_plant(env: Any, length: Any, of_batch: bool) -> tuple[Plant, int]:
+def normalised_plant(env: Any, length: Any, of_batch: bool, of_tensors: bool = False) -> tuple[Plant, int]:
     """The plant of the environment within, and the length as an integer; ValueError unless both will do."""
     length = checked("length", length, Count(1, LONGEST))
-    task = task_within(env, of_batch)
+    task = task_within(env, of_batch, of_tensors=of_tensors)
     plant, blades = task.plant, env.num_envs if of_batch else 1
     check_room("length", length, INSTANT * blades * (len(plant.C) + plant.B.shape[1]), "instants")
     if task.physical_units:

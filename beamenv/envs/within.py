@@ -14,18 +14,19 @@ from beamenv.task import Task
 from beamenv.wrapping import alike, layers
 
 
-def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observation",)) -> Task:
+def task_within(env: Any, of_batch: bool, unchanged: Sequence[str] = ("observation",), of_tensors: bool = False) -> Task:
     """The task of the blade, or batch of blades, whose observations are their readings, whose actions their voltages if so asked.
 
-    Raises ``ValueError`` for an environment without blades, for a batch of tensors, and for one with a wrapper that shows something
-    else or acts otherwise.
+    Raises ``ValueError`` for an environment without blades, for a batch of tensors or, ``of_tensors``, of arrays, and for one
+    with a wrapper that shows something else or acts otherwise.
     """
     kind: type[Any] = VectorEnv if of_batch else gymnasium.Env
     task = getattr(env.unwrapped, "task", None) if isinstance(env, kind) else None
     if not isinstance(task, Task):
         raise Refused("env", env, "a batch of blades" if of_batch else "an environment with a blade")
-    if hasattr(env.unwrapped, "device"):
-        raise Refused("env", env, "a batch of NumPy's arrays, such as gymnasium.make_vec makes: tensors have no wrappers here")
+    if hasattr(env.unwrapped, "device") is not of_tensors:
+        arrays = "tensors, such as beamenv.torch_vec makes" if of_tensors else "NumPy's arrays, such as gymnasium.make_vec makes"
+        raise Refused("env", env, f"a batch of {arrays}")
     for what in unchanged:
         name = f"single_{what}_space" if of_batch else f"{what}_space"
         unlike = not alike(getattr(env, name), getattr(env.unwrapped, name))

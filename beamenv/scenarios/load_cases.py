@@ -54,28 +54,30 @@ class LoadCases:
     """(N, H, k), N/m: lag, flap."""
     revolution: Array
     """(N,) rad per control interval: the rotor's."""
-    oscillating: Integers | None = field(init=False, repr=False)
-    """Rows with ``rate`` > 0, kept so that sines are evaluated for them alone; None of tensors."""
+    oscillating: tuple[Integers, Array, Array] | None = field(init=False, repr=False)
+    """Rows with ``rate`` > 0, with rates and phases, kept so that sines are evaluated for them alone; None of tensors."""
 
     def __post_init__(self) -> None:
         of_numpy = isinstance(self.rate, np.ndarray)
-        object.__setattr__(self, "oscillating", np.flatnonzero(self.rate > 0.0) if of_numpy else None)
+        rows = np.flatnonzero(self.rate > 0.0) if of_numpy else None
+        object.__setattr__(self, "oscillating", None if rows is None else (rows, self.rate[rows], self.phase[rows]))
         for each in fields(self) if of_numpy else ():
-            getattr(self, each.name).setflags(write=False)
+            if each.init:
+                getattr(self, each.name).setflags(write=False)
 
     def __len__(self) -> int:
         return len(self.case)
 
     def gain(self, step: int | Integers) -> Array:
         """Share of the amplitude that acts in interval ``step``, an integer or an array that broadcasts against (N,): (…, N)."""
-        acts, rows = (self.onset <= step) & (step < self.end), self.oscillating
-        if rows is None:
+        acts = (self.onset <= step) & (step < self.end)
+        if self.oscillating is None:
             torch = namespace(self.rate)
             return acts * torch.where(self.rate > 0.0, torch.sin(self.rate * step + self.phase), 1.0)
-        gain = acts.astype(np.float64)
+        gain, (rows, rate, phase) = acts.astype(np.float64), self.oscillating
         if len(rows):
             steps = step[..., rows] if isinstance(step, np.ndarray) and step.shape[-1] > 1 else step
-            gain[..., rows] *= np.sin(self.rate[rows] * steps + self.phase[rows])
+            gain[..., rows] *= np.sin(rate * steps + phase)
         return gain
 
     def at(self, step: int | Integers) -> Array:

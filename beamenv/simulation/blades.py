@@ -29,9 +29,6 @@ from beamenv.simulation.strain_limit import StrainLimit, safe_energy
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_FULL, _MINUS_FULL = np.array(1.0), np.array(-1.0)
-"""NumPy is quicker with these than with Python numbers, which tells with a blade alone."""
-
 
 def _alike(values: Array) -> Array:
     """One number () in place of equal ones (k,): it broadcasts faster."""
@@ -71,6 +68,8 @@ class Blades:
         self._normalised = normalised(self.plant)
         limits = drive_limit(self.plant), self.plant.sensor_full_scale, *self._normalised.voltage_limits
         self._drive, self._full_scale, self._lowest, self._highest = (arrays.floats(_alike(limit)) for limit in limits)
+        self._most, self._least = arrays.floats(np.array(1.0)), arrays.floats(np.array(-1.0))
+        """Of readings, as arrays: NumPy is quicker with these than with Python's numbers."""
         self._disturbances: SharedDisturbances | SeededDisturbances | None = None
         n = self.count or 1
         self.electronics = Electronics(self.plant, scenario, n, arrays) if scenario.imperfect else None
@@ -90,7 +89,7 @@ class Blades:
         )
         moving = self.plant, *self.bank.others
         per_cost = np.array([-1.0 / reward_scale(plant) for plant in moving])
-        self._reward_per_cost = arrays.floats(per_cost[0] if len(moving) == 1 else per_cost[self.plants.group])
+        self._reward_per_cost = arrays.floats(per_cost[0] if len(moving) == 1 else per_cost[self.plants.group])[()]
         sizes = self.plant.B.shape[1], self.plant.disturbance_input.shape[1], self.plant.blade_states
         by_column = len(self.bank) == self.bank.groups and not (self._lie.runs and self.count == self.bank.groups)
         operators = self._stepped.operators
@@ -368,8 +367,8 @@ class Blades:
         reading = output + noise
         if not self._of_numpy:
             return self._in_units(namespace(output).clip(reading, -1.0, 1.0))
-        np.minimum(reading, _FULL, out=reading)
-        np.maximum(reading, _MINUS_FULL, out=reading)
+        np.minimum(reading, self._most, out=reading)
+        np.maximum(reading, self._least, out=reading)
         return self._in_units(self._by_blade(reading) if self._shape else reading)
 
     def _in_units(self, reading: Any) -> Any:

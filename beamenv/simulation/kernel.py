@@ -33,10 +33,8 @@ class Operators:
     """(b,), or (..., b), J s per J: cost of the squares of the first b states; b = 0 where all of it is in ``fused``."""
     states: int
     """n"""
-    outputs: int
-    """p"""
-    reads: int
-    """Column of the product in which the outputs begin: among the next states where filters show them."""
+    reads: slice
+    """Columns of the product that are the outputs: among the next states where filters show them."""
     tips: int
     """Column in which the tip displacement begins."""
     displaced: int
@@ -64,8 +62,8 @@ class Operators:
     @classmethod
     def _plain(cls, plant: Plant, fused: Any, axes: tuple[int, ...]) -> Operators:
         n, p, q = len(plant.A), len(plant.C), len(plant.tip_displacement)
-        places = {"reads": n, "tips": n + p, "displaced": q, "costs": n + p + q}
-        return cls(fused, np.zeros((*axes, 0)), states=n, outputs=p, crossing=0, **places)
+        tips, weights = n + p, np.zeros((*axes, 0))
+        return cls(fused, weights, states=n, reads=slice(n, tips), tips=tips, displaced=q, costs=tips + q, crossing=0)
 
     def convert(self, to_array: Callable[[Any], Any]) -> Operators:
         """The same operators with a copy of each array passed through ``to_array``, say ``torch.as_tensor``."""
@@ -117,13 +115,13 @@ def views_of(operators: Operators, joined: Any, product: Any) -> Views:
 
 def views_apart(operators: Operators, crossing: Any, lagging: tuple[Any, Any] | None, product: Any) -> Views:
     """As ``views_of``, where what goes in does not lie together."""
-    n, lag, read, tip, cost = operators.states, operators.lagging, operators.reads, operators.tips, operators.costs
+    n, lag, tip, cost = operators.states, operators.lagging, operators.tips, operators.costs
     return Views(
         crossing,
         lagging,
         product[..., : n - lag],
         product[..., :n],
-        product[..., read : read + operators.outputs],
+        product[..., operators.reads],
         product[..., tip : tip + operators.displaced],
         product[..., cost : cost + crossing.shape[-1]],
     )

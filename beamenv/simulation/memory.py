@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.arrays import Arrays, SomeRows, copied, namespace
-from beamenv.simulation.kernel import Multiply, Operators, Views, advance, row_product, views_apart, views_of, weighted
+from beamenv.simulation.kernel import Multiply, Operators, advance, row_product, views_apart, views_of, weighted
 
 Array = NDArray[Any]
 Rows = NDArray[np.int64]
@@ -21,9 +21,6 @@ _BLOCK = 256
 
 _SMALL = 1_000_000
 """Products of up to so many multiplications BLAS does without rearranging the matrices first, a third faster."""
-
-_CACHE = 1_500_000
-"""Bytes of blades that a step goes through at a time: they are then still at hand where they are needed again."""
 
 _PAGE, _SHIFT = 64, 24
 """Columns of groups begin this many numbers after a multiple of that: powers of two apart they would share the cache's lines."""
@@ -120,29 +117,6 @@ Sizes = tuple[int, int, int]
 """Voltages, loads, and states of the blade's own."""
 
 
-class Part(NamedTuple):
-    """Blades that a step goes through together: views of the batch's memory at this instant and at the next."""
-
-    joined: Array
-    product: Array
-    views: Views
-    squares: Array
-    energetic: Array
-    """(…, b) that the product gives."""
-
-    @classmethod
-    def of(cls, operators: Operators, now: Instant, then: Instant, squares: Array, which: Any) -> Part:
-        """The blades ``which`` of a batch."""
-        joined, product = now.joined[which], then.product[which]
-        return cls(joined, product, views_of(operators, joined, product), squares[which], then.energetic[which])
-
-    def advance(self, operators: Operators, multiply: Multiply, halves: Array) -> tuple[Array, Array]:
-        """Write the product and the squares there; the increment of J and the energy."""
-        *_, increment = advance(operators, self.joined, self.product, multiply, self.squares, self.views)
-        np.square(self.energetic, out=self.squares)
-        return increment, weighted(self.squares, halves)
-
-
 class InPlace:
     """The states of blades in NumPy's memory, which a step writes to: column by column where blades of a group have one plant,
     blade by blade for a plant each, as BLAS likes it.
@@ -158,13 +132,7 @@ class InPlace:
             memories.append(lie.columns_first(columns, arrays.precision)[1] if by_column else by_blade)
         *both, self.weighted, self.squares = memories
         self._now, self._then = (Instant.of(each, n, m, k, b, width) for each in both)
-        of_block = sum(each[:1].nbytes for each in memories) if len(lie.shape) == 2 and by_column and not lie.runs else 0
-        at_once = max(1, _CACHE // of_block) if of_block else len(lie.shape) and lie.shape[0]
-        slices = [slice(k, k + at_once) for k in range(0, lie.shape[0], at_once)] if lie.shape else [...]
         there = self._now, self._then
-        self._parts, self._next_parts = (
-            [Part.of(operators, one, other, self.squares, each) for each in slices] for one, other in (there, there[::-1])
-        )
         self._views, self._next_views = (views_of(operators, one.joined, other.product) for one, other in (there, there[::-1]))
 
     @property
@@ -179,21 +147,18 @@ class InPlace:
 
     def join(self, acting: Array, loads: Array) -> tuple[Array, Array]:
         """[state, voltages, loads] (…, s), of which the loads have been written, and the voltages there."""
-        joined, _, voltages, *_ = self._now
-        voltages[...] = acting if acting.shape == voltages.shape else acting.reshape(voltages.shape)
-        return joined, voltages
+        now = self._now
+        now.voltages[...] = acting if acting.shape == now.voltages.shape else acting.reshape(now.voltages.shape)
+        return now.joined, now.voltages
 
     def advance(self, operators: Operators, joined: Array, multiply: Multiply, halves: Array) -> tuple[Array, Array, Array, Array]:
         """Go on to the next state; output, tip displacement, and increment of J of the interval, as ``kernel.advance`` gives them,
         and the sum of squares of the blade's own states there weighted by ``halves`` (b,): its energy.
         """
-        done = [part.advance(operators, multiply, halves) for part in self._parts]
-        increment, energy = done[0] if len(done) == 1 else (np.concatenate(each) for each in zip(*done, strict=True))
-        views = self._views
-        self._now, self._then = self._then, self._now
-        self._parts, self._next_parts = self._next_parts, self._parts
-        self._views, self._next_views = self._next_views, views
-        return views.output, views.tip, increment, energy
+        now, then, views = self._now, self._then, self._views
+        _, output, tip, increment = advance(operators, joined, then.product, multiply, self.squares, views)
+        self._now, self._then, self._views, self._next_views = then, now, self._next_views, views
+        return output, tip, increment, weighted(np.square(then.energetic, out=self.squares), halves)
 
     def put(self, those: Any, state: Array) -> None:
         """Put some blades into other states (k, n), at rest otherwise."""

@@ -5,8 +5,10 @@ import pytest
 
 from beamenv.blade.build import build_plant
 from beamenv.blade.presets import blade_config
-from beamenv.plant.plant import sample
+from beamenv.plant.plant import normalised, sample
 from beamenv.simulation.kernel import Operators, advance
+from beamenv.simulation.plants.cost_axes import lean
+from beamenv.task import resolve_task
 
 PLANT = build_plant(blade_config())
 OPERATORS = Operators.from_plant(PLANT)
@@ -54,3 +56,14 @@ def test_torch_runs_the_very_same_code_with_gradients():
         np.testing.assert_allclose(actual.detach().numpy(), expected, rtol=1e-11)
     advance(operators, z)[3].sum().backward()
     np.testing.assert_allclose(z.grad.numpy(), 2.0 * joined(3) @ sample(PLANT).cost, rtol=1e-10, atol=1e-18)
+
+
+@pytest.mark.parametrize("preset", ["thesis", "sound-blade"])
+def test_readings_that_are_states_need_no_columns_of_their_own(preset):
+    bank = resolve_task(preset=preset).bank
+    whole, fewer = bank.operators, lean(bank.operators, normalised(bank.plant))
+    assert whole.fused.shape[1] - fewer.fused.shape[1] == len(bank.plant.C)
+    z = np.random.default_rng(0).normal(size=(5, len(whole.fused)))
+    for expected, actual in zip(advance(whole, z), advance(fewer, z), strict=True):
+        np.testing.assert_allclose(actual, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+    assert lean(fewer, normalised(bank.plant)).fused is fewer.fused

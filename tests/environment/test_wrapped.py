@@ -65,8 +65,10 @@ def test_a_wrapper_is_put_around_batches_that_show_their_readings(within, wrappe
 
 
 @pytest.mark.parametrize("wrapper", [VectorSensorHistory, VectorPlacementWrapper])
-def test_a_batch_of_tensors_has_no_wrappers(wrapper):
+def test_a_batch_of_tensors_has_wrappers_of_its_own(wrapper):
     pytest.importorskip("torch")
+    with pytest.raises(ValueError, match="^env is .*, but must be a batch of tensors, such as beamenv.torch_vec makes"):
+        beamenv.TorchSensorHistory(batch())
     with pytest.raises(ValueError, match="^env is .*, but must be a batch of NumPy's arrays, such as gymnasium.make_vec makes"):
         wrapper(beamenv.torch_vec(2, device="cpu", **SHORT))
 

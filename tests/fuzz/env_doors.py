@@ -141,20 +141,24 @@ def made(make):
 
 def of_tensors(name, **given):
     """What a batch of tensors is and does."""
-    envs = getattr(beamenv, name)(**given)
+    return lived_on_tensors(getattr(beamenv, name)(**given))
+
+
+def lived_on_tensors(envs):
     observation, _ = envs.reset(seed=3)
     for _ in range(2):
         observation, *_ = envs.step(np.zeros(envs.action_space.shape))
         assert bool(observation.isfinite().all()), "observation is not finite"
     assert str(observation.dtype) == f"torch.{envs.observation_space.dtype}", "other numbers than the space's"
-    task = envs.task
+    blades, task = envs.unwrapped, envs.unwrapped.task
     return {
         "blade": task.config,
         "scenario": task.scenario,
         "physical_units": task.physical_units,
         "num_envs": envs.num_envs,
-        "steps": envs.steps,
-        "differentiable": envs.differentiable,
+        "steps": blades.steps,
+        "differentiable": blades.differentiable,
+        "shown": observation.shape,
     }
 
 

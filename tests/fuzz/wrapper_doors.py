@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import beamenv
 from tests.fuzz import small
-from tests.fuzz.env_doors import lived
+from tests.fuzz.env_doors import lived, lived_on_tensors
 from tests.fuzz.episode_doors import LOAD, in_episode
 from tests.fuzz.meaning import ANYTHING, ARRAY, COUNT, NOTHING, NUMBER, NUMBERS, Kind, maybe, table
 from tests.fuzz.oracle import Door
@@ -23,12 +23,16 @@ def new_envs():
     return gym.make_vec(beamenv.ENV_ID, num_envs=2, blade=small.BLADE, duration=small.DURATION)
 
 
-def wrapper(cls, vector=False):
+def new_tensors():
+    return beamenv.torch_vec(2, "cpu", blade=small.BLADE, duration=small.DURATION)
+
+
+def wrapper(cls, made=new_env, lived=lived):
     """Around an environment of its own where the example gives none; what is refused leaves it as it was."""
 
     def call(env=None, **given):
         own = env is OWN
-        inner = (new_envs() if vector else new_env()) if own else env
+        inner = made() if own else env
         task = inner.unwrapped.task if own else None
         try:
             return lived(cls(inner, **given))
@@ -107,10 +111,17 @@ DOORS = [
     ),
     Door(
         "VectorSensorHistory",
-        wrapper(beamenv.VectorSensorHistory, True),
+        wrapper(beamenv.VectorSensorHistory, new_envs),
         {"env": VECTOR_ENV, "length": COUNT},
         lambda: {"env": OWN, "length": 2},
         public="VectorSensorHistory",
+    ),
+    Door(
+        "TorchSensorHistory",
+        wrapper(beamenv.TorchSensorHistory, new_tensors, lived_on_tensors),
+        {"env": VECTOR_ENV, "length": COUNT},
+        lambda: {"env": OWN, "length": 2},
+        public="TorchSensorHistory",
     ),
     Door(
         "PlacementWrapper",
@@ -122,7 +133,7 @@ DOORS = [
     ),
     Door(
         "VectorPlacementWrapper",
-        wrapper(beamenv.VectorPlacementWrapper, True),
+        wrapper(beamenv.VectorPlacementWrapper, new_envs),
         {"env": VECTOR_ENV, "actuators": maybe(SIDE), "sensors": maybe(SIDE), "layouts": ANYTHING, "bank": COUNT},
         lambda: {"env": OWN, "actuators": [0.1, 0.6], "sensors": None, "layouts": None, "bank": 2},
         told=("layout", "actuators"),

@@ -110,7 +110,13 @@ def test_a_data_set_tells_who_acted_and_how_well(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("scenario", "judges"), [("delay", False), ("long-delay", True), (beamenv.SCENARIOS["delay-failure"], True)]
+    ("scenario", "judges"),
+    [
+        ("delay", False),
+        ("long-delay", True),
+        (beamenv.SCENARIOS["delay-failure"], True),
+        ({"preset": "solid", "white_load": False}, False),  # one's own
+    ],
 )
 def test_a_data_set_of_what_is_kept_for_judging_says_so(scenario, judges, tmp_path):
     told = record("none", scenario, 1, folder=tmp_path, environment=SHORT).storage.metadata

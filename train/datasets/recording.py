@@ -18,7 +18,9 @@ from baselines.design.controller import ControllerArgument, as_controller, name_
 from baselines.evaluation.episodes import MOST_SEEDS, Progress, checked_progress
 from baselines.evaluation.fit import check_fit
 from beamenv.configuration import Count, Flag, Refused, checked, checked_table
-from beamenv.knowledge import kept_for_judging, on_recording_bank
+from beamenv.knowledge import on_recording_bank
+from beamenv.scenarios.named import UNSEEN
+from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task import Task, checked_dtype, resolve_task
 from train.controllers.choice import chosen
@@ -148,7 +150,7 @@ class Stage:
 
     def metadata(self, name: str, controller: str, seeds: range, costs: list[float]) -> dict[str, Any]:
         """What the data set tells of itself."""
-        judges = kept_for_judging(self.task.told_scenario or self.task.scenario)
+        judges = (self.task.told_scenario or self.task.scenario) in [SCENARIOS[each] for each in UNSEEN]
         return metadata(
             name, controller, self.law, self.tier, self.trained_seed, self.scenario, judges, self.eval_spec, seeds, costs
         )

@@ -16,7 +16,7 @@ from beamenv.plant.energy import energy_coordinates, in_energy_coordinates
 from beamenv.plant.plant import Plant, normalised
 from beamenv.scenarios.load_cases import static_deflection
 from beamenv.simulation.kernel import Operators
-from beamenv.simulation.plants.cost_axes import cost_axes, in_axes
+from beamenv.simulation.plants.cost_axes import cost_axes, in_axes, lean
 from beamenv.simulation.plants.walks import Walk
 
 Array = NDArray[np.float64]
@@ -111,7 +111,7 @@ class Bank(ReadOnly):
         parts = {name: getattr(self, name) for name in (*BY_PLANT, *NOT_ALWAYS)}
         own = None if self.own is None else (floats(self.own[0]), floats(self.own[1]))
         converted: dict[str, Any] = {name: None if part is None else floats(part) for name, part in parts.items()}
-        return replace(self, operators=self.operators.convert(floats), own=own, **converted)
+        return replace(self, operators=lean(self.operators, normalised(self.plant)).convert(floats), own=own, **converted)
 
     @classmethod
     def single(cls, plant: Plant, speed: float = 0.0, to_design: Array | None = None) -> Bank:

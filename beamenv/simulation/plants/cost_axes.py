@@ -7,6 +7,8 @@ then still needs of the product are the columns of voltages, loads and amplifier
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,12 +40,14 @@ def without_cost(plant: Plant) -> int:
         matters = moved
 
 
-def output_states(plant: Plant) -> int | None:
-    """The first of neighbouring states that the outputs are, one each; None where outputs are others."""
-    (p, n), b = plant.C.shape, plant.blade_states
-    if plant.D.any():
+def output_states(plant: Plant) -> slice | None:
+    """The equally spaced states, after the blade's, that the outputs are, one each; None where outputs are others."""
+    (p, n), places = plant.C.shape, plant.C.argmax(axis=1)
+    every = places[1] - places[0] if p > 1 else 1
+    if every < 1 or places[0] < plant.blade_states or plant.D.any():
         return None
-    return next((k for k in range(b, n - p + 1) if np.array_equal(plant.C, np.eye(p, n, k))), None)
+    shown = slice(int(places[0]), int(places[0] + p * every), int(every))
+    return shown if np.array_equal(plant.C, np.eye(n)[shown]) else None
 
 
 def amplifier_decay(plant: Plant) -> float | None:
@@ -69,8 +73,9 @@ def in_axes(operators: Operators, axes: Array, following: Array, plant: Plant) -
 
     ``plant``, with normalised voltages and currents, says which states are what.
     """
-    n, p, q, b = operators.states, operators.outputs, operators.displaced, plant.blade_states
-    reads, decay = output_states(plant), amplifier_decay(plant)
+    n, p, q, b = operators.states, len(plant.C), operators.displaced, plant.blade_states
+    shown, decay = output_states(plant), amplifier_decay(plant)
+    reads = None if shown is None or shown.step > 1 else shown
     lagging = 0 if decay is None else plant.B.shape[1]
     fused, size, crossing = operators.fused, operators.fused.shape[-2], b + without_cost(plant)
     whole = np.broadcast_to(np.eye(size), (*fused.shape[:-2], size, size)).copy()
@@ -87,8 +92,7 @@ def in_axes(operators: Operators, axes: Array, following: Array, plant: Plant) -
         fused=sealed(np.ascontiguousarray(np.concatenate(parts, axis=-1))),
         weights=sealed(np.diagonal(cost[..., :b, :b], axis1=-2, axis2=-1).copy()),
         states=n,
-        outputs=p,
-        reads=tips + q if reads is None else reads,
+        reads=slice(tips + q, tips + q + p) if reads is None else reads,
         tips=tips,
         displaced=q,
         costs=costs,
@@ -96,3 +100,14 @@ def in_axes(operators: Operators, axes: Array, following: Array, plant: Plant) -
         lagging=lagging,
         decay=decay or 0.0,
     )
+
+
+def lean(operators: Operators, plant: Plant) -> Operators:
+    """Operators of ``in_axes`` without columns for outputs that are states, neighbours or not.
+
+    BLAS rounds what is left otherwise, for it goes through columns several at a time: NumPy's 64 bits, the reference, keep them.
+    """
+    shown, beyond = output_states(plant), operators.tips + operators.displaced
+    if shown is None or operators.reads.start < beyond:
+        return operators
+    return replace(operators, fused=operators.fused[..., :beyond], reads=shown)

@@ -140,7 +140,7 @@ class SharedDisturbances:
         assert cases is not None
         gain = cases.gain(self._steps)
         if self._arrays.of_numpy:
-            np.multiply(self._amplitude, gain.reshape(*out.shape[:-1], 1), out=out, casting="same_kind")
+            np.multiply(self._amplitude, self._arrays.floats(gain).reshape(*out.shape[:-1], 1), out=out)
             np.add(out, first, out=out)
         else:
             out = self._amplitude * gain[:, None] + first
