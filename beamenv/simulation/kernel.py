@@ -108,17 +108,11 @@ class Views(NamedTuple):
 
 def views_of(operators: Operators, joined: Any, product: Any) -> Views:
     """The parts of rows (…, s) that go in and of rows (…, w) that come out."""
-    n, lag = operators.states, operators.lagging
-    lagging = (joined[..., n - lag : n], joined[..., n : n + lag]) if lag else None
-    return views_apart(operators, joined[..., operators.crossing :], lagging, product)
-
-
-def views_apart(operators: Operators, crossing: Any, lagging: tuple[Any, Any] | None, product: Any) -> Views:
-    """As ``views_of``, where what goes in does not lie together."""
     n, lag, tip, cost = operators.states, operators.lagging, operators.tips, operators.costs
+    crossing = joined[..., operators.crossing :]
     return Views(
         crossing,
-        lagging,
+        (joined[..., n - lag : n], joined[..., n : n + lag]) if lag else None,
         product[..., : n - lag],
         product[..., :n],
         product[..., operators.reads],

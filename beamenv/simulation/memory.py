@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.arrays import Arrays, SomeRows, copied, namespace
-from beamenv.simulation.kernel import Multiply, Operators, advance, row_product, views_apart, views_of, weighted
+from beamenv.simulation.kernel import Multiply, Operators, advance, row_product, views_of, weighted
 
 Array = NDArray[Any]
 Rows = NDArray[np.int64]
@@ -192,31 +192,15 @@ class Fresh:
 
     def __init__(self, count: int, operators: Operators, sizes: Sizes, arrays: Arrays) -> None:
         self._own, self.state = sizes[-1], arrays.zeros(count, operators.states)
-        shared = operators.fused.ndim == 2 and arrays.compiled and arrays.precision == "float32"
-        self._kernels: Any = arrays.kernels if shared else None
 
     def join(self, acting: Any, loads: Any) -> tuple[Any, Any]:
-        """[state, voltages, loads] (N, s), and the voltages; where a kernel joins them, voltages and loads alone."""
-        if self._kernels is not None:
-            return (acting, loads), acting
+        """[state, voltages, loads] (N, s), and the voltages."""
         return namespace(acting).concatenate([self.state, acting, loads], -1), acting
 
     def advance(self, operators: Operators, joined: Any, multiply: Multiply, halves: Any) -> tuple[Any, Any, Any, Any]:
         """As ``InPlace.advance``."""
-        if self._kernels is None:
-            self.state, output, tip, increment = advance(operators, joined, multiply=multiply)
-        else:
-            self.state, output, tip, increment = self._advance_apart(operators, *joined)
+        self.state, output, tip, increment = advance(operators, joined, multiply=multiply)
         return output, tip, increment, weighted(self.state[:, : self._own] ** 2, halves)
-
-    def _advance_apart(self, operators: Operators, acting: Any, loads: Any) -> tuple[Any, Any, Any, Any]:
-        """As ``kernel.advance``, of what does not lie together in memory, where it would have to be written first."""
-        state, last = self.state, operators.states - operators.lagging
-        product = self._kernels.joined_product(state, acting, loads, operators.fused)
-        crossing = namespace(state).concatenate([state[:, operators.crossing :], acting, loads], -1)
-        lagging = (state[:, last:], acting) if operators.lagging else None
-        squares = state[:, : operators.weights.shape[-1]] ** 2
-        return advance(operators, None, None, lambda *_: product, squares, views_apart(operators, crossing, lagging, product))
 
     def put(self, those: Any, state: Any) -> None:
         """Put some blades into other states."""

@@ -1,8 +1,7 @@
-"""Kernels of a GPU's own, in Triton, which PyTorch for CUDA brings: the product of a step, and the look for strains.
+"""A kernel of a GPU's own, in Triton, which PyTorch for CUDA brings: the look for strains.
 
-A product of many rows and few columns libraries leave at a fifth of what the memory allows. To multiply the strains of all blades
-takes three times as long as their step, and hardly ever has one energy enough to fail, but the host would have to wait for the
-device to learn which: here each block of blades decides by itself.
+To multiply the strains of all blades takes three times as long as their step, and hardly ever has one energy enough to fail; but
+the host would have to wait for the device to learn which. Here each block of blades decides by itself.
 """
 
 from typing import Any
@@ -13,55 +12,6 @@ import triton.language as tl
 
 _BLADES, _POINTS = 64, 64
 """Blades that one program looks after, and places of a blade whose strains it works out at a time."""
-
-_ROWS, _COLUMNS, _WARPS = 128, 32, 4
-"""Rows of a product that one program makes, columns it makes at a time, and its warps of threads."""
-
-
-@triton.jit  # type: ignore[untyped-decorator]
-def _multiply(  # type: ignore[no-untyped-def]
-    state, held, loads, matrix, out, count, states, voltages, further, width,
-    ROWS: tl.constexpr, STATES: tl.constexpr, INPUTS: tl.constexpr, COLUMNS: tl.constexpr,
-):  # fmt: skip
-    rows = tl.program_id(0) * ROWS + tl.arange(0, ROWS)[:, None]
-    there, of_state, of_input = rows < count, tl.arange(0, STATES), tl.arange(0, INPUTS)
-    moving = tl.load(state + rows * states + of_state, mask=there & (of_state < states), other=0.0)
-    asked, beyond = of_input < voltages, of_input - voltages
-    driven = tl.load(held + rows * voltages + of_input, mask=there & asked, other=0.0)
-    driven += tl.load(loads + rows * further + beyond, mask=there & (beyond >= 0) & (beyond < further), other=0.0)
-    for first in range(0, width, COLUMNS):
-        columns = first + tl.arange(0, COLUMNS)
-        inside = columns < width
-        own = tl.load(matrix + of_state[:, None] * width + columns, mask=(of_state < states)[:, None] & inside, other=0.0)
-        rest = tl.load(
-            matrix + (states + of_input)[:, None] * width + columns,
-            mask=(of_input < voltages + further)[:, None] & inside,
-            other=0.0,
-        )
-        total = tl.dot(driven, rest, tl.dot(moving, own, input_precision="tf32x3"), input_precision="tf32x3")
-        tl.store(out + rows * width + columns, total, mask=there & inside)
-
-
-@torch.library.custom_op("beamenv::joined_product", mutates_args=())
-def joined_product(state: torch.Tensor, held: torch.Tensor, loads: torch.Tensor, matrix: torch.Tensor) -> torch.Tensor:
-    """[state, held, loads] (N, n + m + k) times a matrix (n + m + k, w), all of 32 bits: on tensor cores, in three parts of fewer
-    bits each, which together are as exact as a product of 32 bits.
-    """
-    (count, states), width = state.shape, matrix.shape[1]
-    out = torch.empty(count, width, dtype=state.dtype, device=state.device)
-    inputs = held.shape[1] + loads.shape[1]
-    _multiply[(triton.cdiv(count, _ROWS),)](
-        state.contiguous(), held.contiguous(), loads.contiguous(), matrix.contiguous(), out,
-        count, states, held.shape[1], loads.shape[1], width,
-        ROWS=_ROWS, STATES=max(16, triton.next_power_of_2(states)), INPUTS=max(16, triton.next_power_of_2(inputs)),
-        COLUMNS=_COLUMNS, num_warps=_WARPS,
-    )  # fmt: skip
-    return out
-
-
-@joined_product.register_fake
-def _(state: torch.Tensor, held: torch.Tensor, loads: torch.Tensor, matrix: torch.Tensor) -> torch.Tensor:
-    return state.new_empty(state.shape[0], matrix.shape[1])
 
 
 @triton.jit  # type: ignore[untyped-decorator]

@@ -8,7 +8,6 @@ import pytest
 import beamenv
 from beamenv.arrays import Arrays, on_host
 from beamenv.simulation import blades, starts
-from beamenv.simulation.strain_limit import strained_too_much
 
 torch = pytest.importorskip("torch")
 
@@ -116,37 +115,6 @@ def test_a_compiled_step_is_the_plain_one(name, mode):
     first = compiled.step(actions)[0]
     compiled.load_state_dict(kept)
     assert torch.equal(compiled.step(actions)[0], first)
-
-
-class OfThePlainKind:
-    """What the kernels of a GPU do, without these."""
-
-    @staticmethod
-    def joined_product(state, held, loads, matrix):
-        return torch.cat([state, held, loads], -1) @ matrix
-
-    @staticmethod
-    def strained_too_much(energy, states, strain, standing, limit, index, safe):
-        found = strained_too_much(strain[index], standing[index], limit[index], states)
-        assert not (found & (energy <= safe)).any()
-        return found
-
-
-@pytest.mark.parametrize("name", ["default", "brittle", "hysteresis", "drawn plants"])
-def test_what_does_not_lie_together_steps_as_what_does(name, monkeypatch):
-    made = {"scenario": SCENARIOS[name], "duration": 0.01, "blade": SMALL, "autoreset_mode": "SameStep"}
-    plain = beamenv.torch_vec(COUNT, device="cpu", **made)
-    monkeypatch.setattr(Arrays, "kernels", property(lambda arrays: OfThePlainKind))
-    apart = beamenv.torch_vec(COUNT, device="cpu", compiled=True, **made)
-    monkeypatch.setattr(type(apart), "_step", lambda envs, actions: envs._episodes.step(actions, envs.generator))
-    random = torch.Generator().manual_seed(0)
-    for envs in (plain, apart):
-        envs.reset(seed=4, options={"elapsed": np.arange(COUNT)})
-    for _ in range(50):
-        actions = 0.1 * torch.randn(COUNT, 4, generator=random)
-        for ours, theirs in zip(apart.step(actions)[:4], plain.step(actions)[:4], strict=True):
-            torch.testing.assert_close(ours, theirs, rtol=1e-4, atol=1e-5)
-        torch.testing.assert_close(apart.state, plain.state, rtol=1e-4, atol=1e-4 * plain.state.abs().max().item())
 
 
 @pytest.fixture

@@ -87,18 +87,6 @@ def test_a_compiled_step_of_32_bits_is_the_plain_one(name):
             assert (ours.double() - theirs.double()).abs().max().item() <= 1e-4 * largest[k], k
 
 
-@pytest.mark.parametrize("shape", [(54, 4, 2, 66), (30, 6, 3, 40)], ids=str)
-def test_the_kernel_multiplies_as_exactly_as_32_bits_do(shape):
-    states, held, loads, width = shape
-    generator = torch.Generator("cuda").manual_seed(0)
-    x, u, d, matrix = (
-        torch.randn(size, generator=generator, device="cuda")
-        for size in ((1000, states), (1000, held), (1000, loads), (states + held + loads, width))
-    )
-    exact = torch.cat([x, u, d], 1).double() @ matrix.double()
-    assert (Arrays(device="cuda").kernels.joined_product(x, u, d, matrix) - exact).abs().max() < 2e-5
-
-
 @pytest.mark.parametrize("recording", [{}, {"graph": True}])
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
 @pytest.mark.parametrize("name", SCENARIOS)

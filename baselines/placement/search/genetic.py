@@ -30,12 +30,12 @@ class Genetic:
 
     def run(self, recorder: Recorder, start: Array, generator: np.random.Generator) -> None:
         """Search from a random population; the start takes no part."""
-        bounds = recorder.problem.bounds
+        bounds, known = recorder.problem.bounds, dict[bytes, float]()
         algorithm = self._algorithm(bounds, int(generator.integers(2**31)))
         for generation in range(self.generations):
             children = algorithm.ask()
             layouts = bounds.repaired(decoded(children.get("X"), bounds, self.bits))
-            children.set("F", recorder.costs(layouts)[:, None])
+            children.set("F", _costs(recorder, layouts, known)[:, None])
             algorithm.evaluator.eval(algorithm.problem, children)
             algorithm.tell(infills=children)
             recorder.note((generation + 1) / self.generations)
@@ -64,6 +64,15 @@ class Genetic:
         problem = Problem(n_var=bits * bounds.count, n_obj=1, vtype=bool, xl=0, xu=1)
         algorithm.setup(problem, termination=("n_gen", self.generations), seed=seed, verbose=False)
         return algorithm
+
+
+def _costs(recorder: Recorder, layouts: Array, known: dict[bytes, float]) -> Array:
+    """Costs (N,) of layouts (N, count), of which those that have died out before are ``known``: with one patch every second one."""
+    names = [layout.tobytes() for layout in layouts]
+    new = [k for k, name in enumerate(names) if name not in known]
+    if new:
+        known.update(zip([names[k] for k in new], recorder.costs(layouts[new]).tolist(), strict=True))
+    return np.array([known[name] for name in names])
 
 
 def decoded(strings: Bits, bounds: Bounds, bits: int) -> Array:
