@@ -8,6 +8,7 @@ import pytest
 import beamenv
 from beamenv.arrays import Arrays
 from beamenv.simulation.strain_limit import safe_energy, strained_too_much
+from tests.environment.test_captured import SCENARIOS
 
 torch = pytest.importorskip("torch")
 
@@ -17,16 +18,6 @@ pytestmark = [
 ]
 
 COUNT = 7
-SCENARIOS = {
-    "default": "default",
-    "brittle": {"magnitude": [100.0, 8000.0], "onset": [0.0, 0.005]},
-    "failure on the way": {"preset": "mid-failure", "failures": {"onset": [0.0, 0.01]}},
-    "hysteresis": "hysteresis",
-    "dropout and turbulence": {"acquisition": {"dropout": 0.2}, "rotor": {"turbulence": 5.0, "harmonics": [3.0, 1.0]}},
-    "drawn plants": {"plants": {"speed_ratio": [0.8, 1.2], "bank": 3}},
-    "wandering speed": {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 4}},
-    "run-up": {"plants": {"spin_up": [100.0, 110.0]}},
-}
 SHARES = {"float64": 1e-10, "float32": 1e-4}
 
 
