@@ -68,7 +68,8 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
     - `graph`: on a GPU capture the step as a CUDA graph, and replay it: to start the kernels of a small batch one by one takes
       longer than they do.
     - `compiled`: trace the step and compile it (TorchInductor; on the processor that takes a C++ compiler): fewer passes over the
-      memory, for half a minute at the first step. With either, steps are the same operations whatever the numbers are.
+      memory, for half a minute at the first step. With either, steps are the same operations whatever the numbers are; where each
+      blade has a seed of its own they are not recorded.
 
     **Actions** are a tensor (N, m) on the device; an array of NumPy, such as the action space samples, is taken too, and copied.
     On the processor numbers that are not finite are refused; on a GPU nobody looks, which would be to wait for it: such a

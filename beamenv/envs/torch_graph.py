@@ -13,9 +13,9 @@ from functools import reduce
 from typing import Any
 
 import torch
-from torch.fx.experimental.proxy_tensor import make_fx
 from torch.overrides import TorchFunctionMode
 
+from beamenv.configuration import Refused
 from beamenv.envs.torch_episodes import Outcome, TorchEpisodes
 
 _WARM_UP = 3
@@ -74,11 +74,12 @@ class StaticStep:
     def undone(self, act: Callable[[], Any]) -> Any:
         """What an act brings, after which all that moves is where it was."""
         before, drawn = [leaf.clone() for leaf in self.memory], self._generator.get_state()
-        result = act()
-        for leaf, value in zip(self.memory, before, strict=True):
-            leaf.copy_(value)
-        self._generator.set_state(drawn)
-        return result
+        try:
+            return act()
+        finally:
+            for leaf, value in zip(self.memory, before, strict=True):
+                leaf.copy_(value)
+            self._generator.set_state(drawn)
 
     def on(self, memory: Sequence[torch.Tensor], actions: torch.Tensor) -> Outcome:
         """``run`` on other tensors than its own: what a recording of it is made from."""
@@ -121,6 +122,9 @@ class CompiledStep:
     """A ``StaticStep`` traced once, and compiled: what is drawn is handed in, for a generator draws outside."""
 
     def __init__(self, step: StaticStep) -> None:
+        from torch._dynamo.exc import BackendCompilerFailed  # these take longer to import than torch itself
+        from torch.fx.experimental.proxy_tensor import make_fx
+
         self._step = step
         with _Drawing() as drawing:
             self._outcome = step.undone(step.run)
@@ -132,7 +136,11 @@ class CompiledStep:
 
         graph = step.undone(lambda: make_fx(function)(step.memory, step.actions, self._drawn()))
         self._function: Any = torch.compile(graph, dynamic=False)
-        step.undone(self.run)
+        try:
+            step.undone(self.run)
+        except BackendCompilerFailed as error:
+            reason = str(error).partition("\n")[0]
+            raise Refused("compiled", True, f"False on this machine, where torch cannot compile ({reason})") from None
 
     def _drawn(self) -> list[torch.Tensor]:
         return [draw() for draw in self._calls]

@@ -11,6 +11,7 @@ from beamenv.simulation import blades, starts
 
 torch = pytest.importorskip("torch")
 
+from torch._dynamo.exc import BackendCompilerFailed  # noqa: E402
 from torch.utils._python_dispatch import TorchDispatchMode  # noqa: E402
 from torch.utils._pytree import tree_flatten, tree_map  # noqa: E402
 
@@ -115,6 +116,26 @@ def test_a_compiled_step_is_the_plain_one(name, mode):
     first = compiled.step(actions)[0]
     compiled.load_state_dict(kept)
     assert torch.equal(compiled.step(actions)[0], first)
+
+
+def test_without_a_compiler_that_is_said_and_nothing_moves(monkeypatch):
+    envs = beamenv.torch_vec(COUNT, device="cpu", compiled=True, duration=0.01, blade=SMALL)
+    plain = beamenv.torch_vec(COUNT, device="cpu", duration=0.01, blade=SMALL)
+    for each in (envs, plain):
+        each.reset(seed=1)
+
+    def failing(graph, **options):
+        def run(*arguments):
+            raise BackendCompilerFailed(run, RuntimeError("no compiler"), None)
+
+        return run
+
+    monkeypatch.setattr(torch, "compile", failing)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="^compiled is True, but must be False on this machine, where torch"):
+            envs.step(torch.zeros(COUNT, 4))
+    torch.testing.assert_close(envs.state, plain.state, rtol=1e-5, atol=1e-9)
+    assert torch.equal(envs.generator.get_state(), plain.generator.get_state())
 
 
 @pytest.fixture
