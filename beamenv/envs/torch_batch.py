@@ -19,6 +19,7 @@ from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import BatchReset, batch_reset, chosen_mode
 from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import SeededVectorEnv
+from beamenv.envs.states import check_state
 from beamenv.envs.torch_arguments import (
     checked_actions,
     checked_device,
@@ -266,9 +267,10 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
         return {**self._episodes.state_dict(), "generator": self.generator.get_state()}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go back to a ``state_dict`` of an equally made batch."""
+        """Go back to a ``state_dict`` of an equally made batch; ``ValueError`` of another, before anything has changed."""
         if self.generator is None:
             raise gymnasium.error.ResetNeeded("Call reset with one seed, or none, before load_state_dict.")
+        check_state(state, self.state_dict())
         self._episodes.load_state_dict(state)
         self._go_on()
         self.generator.set_state(state["generator"].cpu())
