@@ -1,20 +1,25 @@
 # %% [markdown]
 # # PPO on a batch of tensors
 #
-# Proximal policy optimisation in plain PyTorch, on a GPU if there is one: `python 08_ppo_on_a_gpu.py --device cuda --minutes 2`.
+# Proximal policy optimisation in plain PyTorch, on a GPU if there is one: with `--device cuda --minutes 2`.
+# Without options it stops after two seconds, for a try, and has learnt next to nothing.
 # The policy hears the readings and the voltages that it gave, nothing else. Each runs through a chain of twelve Laguerre filters
-# (Wahlberg 1991), whose outputs h tell what came lately and, ever more coarsely, what came before. A gain on them is learnt,
+# (Wahlberg 1991), whose outputs $h$ tell what came lately and, ever more coarsely, what came before. A gain on them is learnt,
 #
 # $$
-# u \sim \mathcal{N}(K W h, \sigma^2 I), \qquad h \leftarrow A h + b \, (y_-, y, u_-), \qquad W \, \mathrm{E}[h h^T] \, W^T = I ,
+# \begin{gathered}
+# u \sim \mathcal{N}(K W h, \sigma^2 I), \qquad W \, \mathrm{E}[h h^T] \, W^T = I , \\
+# h \leftarrow A h + b \, (y_-, y, u_-) ,
+# \end{gathered}
 # $$
 #
-# where W makes all directions alike, as a natural gradient does (Kakade 2001). The critic is a quadratic of the true state, which a
-# simulation knows, and of the voltages to come, as the value of a linear feedback is. An action is held for two intervals, but the reading between is heard:
+# where $W$ makes all directions alike, as a natural gradient does (Kakade 2001). The critic is a quadratic of the true state, which
+# a simulation knows, and of the voltages to come, as the value of a linear feedback is. An action is held for two intervals, but
+# the reading between is heard:
 # with it a gain on such filters, fitted to the voltages of LQG with load estimate, has 0.995 of LQG's J.
-# On one core of a busy machine PPO came to 1.15 times LQG's J in 72 s (131 updates, 512 blades); begun at that fitted gain, an earlier
-# version left it. With steps of one rate, on an H200, 16384 blades took 859 updates in two minutes and diverged. Now the divergence
-# of an update is bounded, and a collapse of the reward brings the last good gain back; this version has not run on a GPU, nor for long.
+# On one core of a busy machine PPO came to 1.15 times LQG's J in 72 s (131 updates, 512 blades); begun at that fitted gain, an
+# earlier version left it. With steps of one rate, on an H200, 16384 blades took 859 updates in two minutes and diverged. Now each
+# update's divergence is bounded, and a collapse of the reward brings the last good gain back; this version has not run on a GPU.
 
 # %%
 import argparse

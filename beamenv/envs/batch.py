@@ -22,6 +22,7 @@ from beamenv.envs.batch_blades import blades_of, masked, of_rows
 from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import SeededVectorEnv, Seeds
 from beamenv.envs.specification import Specified
+from beamenv.envs.states import check_state
 from beamenv.plant.spread import Spread
 from beamenv.scenarios.scenario import Scenario
 from beamenv.simulation.motion import Motion
@@ -281,9 +282,10 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
         return {"blades": self._blades.state_dict(), **own}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go back to a ``state_dict`` of an equally made batch."""
+        """Go back to a ``state_dict`` of an equally made batch; ``ValueError`` of another, before anything has changed."""
         if not isinstance(self._generators, np.random.Generator):
             raise gymnasium.error.ResetNeeded("Call reset with one seed, or none, before load_state_dict.")
+        check_state(state, self.state_dict())
         self._blades.load_state_dict(state["blades"])
         self._elapsed[:], self._over = np.asarray(state["elapsed"]), np.asarray(state["over"]).copy()
         self._generators.bit_generator.state = state["generator"]

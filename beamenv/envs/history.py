@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from beamenv.configuration import Count, checked
 from beamenv.configuration.memory import check_room
+from beamenv.envs.states import check_state
 from beamenv.envs.within import task_within
 from beamenv.plant.plant import Plant, drive_limit
 
@@ -154,7 +155,8 @@ class VectorSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type p
         return {**self._history.state_dict(), "over": self._over.copy()}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go back to a ``state_dict`` of an equally made wrapper."""
+        """Go back to a ``state_dict`` of an equally made wrapper; ``ValueError`` of another."""
+        check_state(state, self.state_dict())
         self._history.load_state_dict(state)
         self._over = np.asarray(state["over"]).copy()
 

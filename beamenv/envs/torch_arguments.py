@@ -72,8 +72,8 @@ def checked_actions(actions: Any, shape: tuple[int, ...], zeros: torch.Tensor, a
         raise ValueError(f"action has shape {tuple(actions.shape)}, but must have shape {shape}.")
     if actions.device != zeros.device:
         raise ValueError(f"action is on {actions.device}, but must be on {zeros.device}, where the blades are.")
-    if actions.is_complex() or actions.dtype == torch.bool:
-        raise Refused("action", actions, "a tensor of real numbers")
+    if actions.is_complex() or actions.dtype == torch.bool or actions.layout is not torch.strided:
+        raise Refused("action", actions, "a dense tensor of real numbers")
     if arrays.on_host and not bool(torch.isfinite(actions).all()):
         wrong = (~torch.isfinite(actions)).nonzero()[0].tolist()
         raise ValueError(f"action{wrong} is {actions[tuple(wrong)].item()}, but every number must be finite.")

@@ -19,6 +19,7 @@ from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import BatchReset, batch_reset, chosen_mode
 from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import SeededVectorEnv
+from beamenv.envs.states import check_state
 from beamenv.envs.torch_arguments import (
     checked_actions,
     checked_device,
@@ -68,7 +69,7 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
     - `graph`: on a GPU capture the step as a CUDA graph, and replay it: to start the kernels of a small batch one by one takes
       longer than they do.
     - `compiled`: trace the step and compile it (TorchInductor; on the processor that takes a C++ compiler): fewer passes over the
-      memory, for half a minute at the first step. With either, steps are the same operations whatever the numbers are; where each
+      memory, for 5 to 30 s at the first step. With either, steps are the same operations whatever the numbers are; where each
       blade has a seed of its own they are not recorded.
 
     **Actions** are a tensor (N, m) on the device; an array of NumPy, such as the action space samples, is taken too, and copied.
@@ -266,9 +267,10 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
         return {**self._episodes.state_dict(), "generator": self.generator.get_state()}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go back to a ``state_dict`` of an equally made batch."""
+        """Go back to a ``state_dict`` of an equally made batch; ``ValueError`` of another, before anything has changed."""
         if self.generator is None:
             raise gymnasium.error.ResetNeeded("Call reset with one seed, or none, before load_state_dict.")
+        check_state(state, self.state_dict())
         self._episodes.load_state_dict(state)
         self._go_on()
         self.generator.set_state(state["generator"].cpu())

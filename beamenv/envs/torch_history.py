@@ -11,6 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorWrapper
 from gymnasium.vector.utils import batch_space
 
 from beamenv.envs.history import normalised_plant
+from beamenv.envs.states import check_state
 from beamenv.envs.torch_batch import Step, TorchRotatingBeamVectorEnv
 from beamenv.plant.plant import drive_limit
 
@@ -80,5 +81,6 @@ class TorchSensorHistory(VectorWrapper):  # in Gymnasium 1.2 it takes no type pa
         return {"window": self._window.clone()}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go back to a ``state_dict`` of an equally made wrapper."""
+        """Go back to a ``state_dict`` of an equally made wrapper; ``ValueError`` of another."""
+        check_state(state, self.state_dict())
         self._window = state["window"].to(self._window).clone()

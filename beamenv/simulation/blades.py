@@ -136,7 +136,7 @@ class Blades:
     def disturbances(self) -> SharedDisturbances | SeededDisturbances:
         """Loads and noise, from the first ``begin`` on."""
         if self._disturbances is None:
-            raise ValueError("blades have not begun: call begin first.")
+            raise ValueError("no episode has begun: call reset first.")
         return self._disturbances
 
     @property

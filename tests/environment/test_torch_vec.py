@@ -75,6 +75,16 @@ def test_a_seed_for_each_blade_gives_the_episodes_of_numpy(scenario, dtype, mode
     assert ended >= 2 * COUNT
 
 
+def test_a_generator_waits_while_its_blade_rests():
+    """The noise of 64 intervals is drawn at a time: where episodes end just before, the resting step is the one to draw more."""
+    arguments = {"duration": 0.1, "max_episode_steps": 63}
+    ours, theirs = batch_of(dtype="float64", **arguments), RotatingBeamVectorEnv(COUNT, dtype="float64", **arguments)
+    seeds, largest = list(range(COUNT)), {}
+    assert_alike(told(ours.reset(seed=seeds)), told(theirs.reset(seed=seeds)), 1e-10, largest)
+    for actions in acting(70):
+        assert_alike(told(ours.step(torch.tensor(actions))), told(theirs.step(actions)), 1e-10, largest)
+
+
 def episode(envs, seed, steps=80):
     first, _ = envs.reset(seed=seed)
     return [first, *(envs.step(torch.tensor(0.02 * actions))[0] for actions in acting(steps))]  # full voltages clip readings
@@ -165,6 +175,17 @@ def test_blades_that_have_ended_must_begin_again_before_a_step():
         envs.step(torch.zeros(COUNT, 4))
 
 
+def test_blades_that_began_again_by_a_mask_may_step():
+    envs, mask = batch_of(max_episode_steps=1, autoreset_mode="Disabled"), np.arange(COUNT) < 3
+    envs.reset(seed=0)
+    envs.step(torch.zeros(COUNT, 4))
+    envs.reset(options={"reset_mask": mask})
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"blades \[3, 4, 5, 6\]"):
+        envs.step(torch.zeros(COUNT, 4))
+    envs.reset(options={"reset_mask": ~mask})
+    envs.step(torch.zeros(COUNT, 4))
+
+
 @pytest.mark.parametrize("scenario", ["default", "mid-failure", {"rotor": {"turbulence": 5.0}}, "hysteresis"])
 def test_an_equal_batch_goes_on_bit_for_bit_from_a_state(scenario):
     first, second = (batch_of(scenario=scenario) for _ in range(2))
@@ -208,6 +229,28 @@ def test_what_a_device_draws_has_the_distribution_of_what_numpy_draws():
             error = np.sqrt((one.var(axis=0) + two.var(axis=0)) / MANY)
             assert np.all(np.abs(one.mean(axis=0) - two.mean(axis=0)) <= 4.0 * error)
     assert ours[-1][:, 1].max() == 3.0 and set(ours[-1][:, 0]) == {0.0, 1.0, 2.0}
+
+
+def noises(envs, zeros):
+    """(N, 12): line loads and readings of each blade at the first two instants, where nothing acts but noise."""
+    first, _ = envs.reset(seed=3)
+    loads = envs.coming_loads
+    second, *_ = envs.step(zeros)
+    return np.column_stack([np.asarray(each, dtype=np.float64) for each in (loads, envs.coming_loads, first, second)])
+
+
+def test_the_noise_of_a_device_has_the_strength_of_numpy_s_and_is_another_for_each_blade_and_instant():
+    noisy = {**CERTAIN, "white_load": True, "sensor_noise": True, "magnitude": [0.0, 0.0]}
+    made = {"scenario": noisy, "duration": 0.02, "blade": SMALL}
+    ours = noises(batch_of(MANY, **made), torch.zeros(MANY, 4))
+    theirs = noises(RotatingBeamVectorEnv(MANY, **made), np.zeros((MANY, 4)))
+    assert theirs.std(axis=0).min() > 0.0
+    for one, two in ((ours, theirs), (ours**2, theirs**2)):
+        error = np.sqrt((one.var(axis=0) + two.var(axis=0)) / MANY)
+        assert np.all(np.abs(one.mean(axis=0) - two.mean(axis=0)) <= 4.0 * error)
+    correlation = np.corrcoef(ours[:, :4].T) - np.eye(4)  # of loads with those of the next instant, and of blades with the next
+    assert np.abs(correlation).max() < 4.0 / np.sqrt(MANY)
+    assert abs(np.corrcoef(ours[:-1, 0], ours[1:, 0])[0, 1]) < 4.0 / np.sqrt(MANY)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from beamenv import scenario
 from tests.train.benchmarked import SMALL
 from tests.train.brief import GRADIENT, assert_same, ignore, job, weights
-from tests.train.pieces import Mortal, halved, kill, killed_once
+from tests.train.pieces import Mortal, Waiting, halved, kill, killed_once, threads
 from train.benchmark import benchmark
 from train.benchmark.bench import Setting
 from train.benchmark.cells import Job
@@ -25,9 +25,11 @@ from train.controllers.sources import Trained
 from train.learning.job import run
 from train.learning.several import train_all
 from train.shared.cluster import check_address, connected
+from train.shared.threads import ONE_THREAD
 from train.workers import arrival
 from train.workers.node import carried_out, opened, terms
 from train.workers.parcel import packed, unpacked
+from train.workers.pool import hand_out
 from train.workers.workers import Workers
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -77,6 +79,20 @@ def test_a_worker_that_is_killed_costs_its_own_piece(cluster, ray, tmp_path):
     assert again["second"] > begun["second"]
     if cluster is not None:
         assert {name for name in names if again[name] != begun[name]} == {"second"}
+
+
+@pytest.mark.parametrize(("together", "again"), [(False, [1, 1, 2]), (True, [1, 1, 2, 2])])
+def test_what_others_were_at_is_done_again_only_where_they_died_too(together, again):
+    pool, found = Waiting(together), []
+    hand_out(pool, halved, [1, 2], lambda piece, result: found.append((piece, result)))
+    assert sorted(pool.begun) == again
+    assert sorted(found) == [(1, 1), (2, 2)]
+
+
+def test_libraries_of_a_worker_have_one_thread(ray):
+    found = []
+    Workers(2, "local").do(threads, [0], lambda piece, result: found.append(result))
+    assert ONE_THREAD.items() <= found[0].items()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")

@@ -72,6 +72,13 @@ def test_the_best_of_those_that_had_all_their_updates_is_written(ran, tmp_path):
     assert len((tmp_path / "trials.csv").read_text().splitlines()) == 5
 
 
+def test_all_trials_have_one_seed_and_one_budget(ran, tmp_path):
+    tune(tuning(seed=3), tmp_path, ignore)
+    assert [job.seed for job in ran.plan.jobs] == 4 * [3]
+    assert [job.budget for job in ran.plan.jobs] == 4 * [ran.plan.jobs[0].budget]
+    assert {job.recipe.updates for job in ran.plan.jobs} == {ran.plan.jobs[0].budget.updates}
+
+
 def test_an_interruption_loses_no_trial_and_the_same_call_resumes(ran, tmp_path):
     ran.interrupted = 2
     with pytest.raises(KeyboardInterrupt):

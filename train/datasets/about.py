@@ -54,6 +54,7 @@ def metadata(
     the mean is of the others, None if there are none.
     """
     observes = getattr(law, "observes", "observation")
+    told = [what for level, what in TIERS.items() if level <= tier]
     whole = [each for each in costs if each == each]
     failed, mean, deviation = len(costs) - len(whole), None, None
     if whole:
@@ -64,7 +65,7 @@ def metadata(
         "trained_seed": trained_seed,
         "law": name_of(law),
         "tier": tier,
-        "told": "; ".join(what for level, what in TIERS.items() if level <= tier),
+        "told": "; ".join(told),
         "observes": observes,
         "scenario": scenario,
         "kept_for_judging": judges,
@@ -79,9 +80,9 @@ def metadata(
         "algorithm_name": controller,
         "description": (
             f"{name_of(law)} on {len(costs)} episodes of the scenario {scenario} of {beamenv.ENV_ID}; "
-            f"tier {tier}, told {own['told']}; "
-            f"it observes the {observes}{shown}. {failed} of the episodes ended by failure"
-            + ("." if mean is None else f", the mean cost J of the others is {mean:.4g} J s.")
+            f"tier {tier}, told {' and '.join(told)}; "
+            f"it acts on the {observes}{shown}. {failed or 'None'} of the episodes ended by failure"
+            + ("." if mean is None else f"; the mean cost J{' of the others' if failed else ''} is {mean:.4g} J s.")
             + (f" {JUDGES}" if judges else "")
         ),
         "eval_env_spec": eval_spec,
