@@ -92,5 +92,5 @@ def test_a_batch_of_several_plants_goes_on_too():
 
 
 def test_before_the_first_episode_there_is_no_state():
-    with pytest.raises(ValueError, match="call begin first"):
+    with pytest.raises(ValueError, match="call reset first"):
         batch_of("default", 2).state_dict()
