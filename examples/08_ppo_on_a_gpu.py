@@ -19,8 +19,8 @@
 # with it a gain on such filters, fitted to the voltages of LQG with load estimate, has 0.995 of LQG's J.
 # On one core of a busy machine PPO came to 1.15 times LQG's J in 72 s (131 updates, 512 blades); begun at that fitted gain, an
 # earlier version left it. With steps of one rate, on an H200, 16384 blades took 859 updates in two minutes and diverged. Now each
-# update's divergence is bounded, and a collapse of the reward brings the last good gain back: 1356 updates in 390 s stayed stable and
-# ended at 1.18, so that time is not what is missing. This version has not run on a GPU.
+# update's divergence is bounded, and a collapse of the reward brings the last good gain back: 1356 updates in 390 s stayed stable
+# and ended at 1.18, so that time is not what is missing. This version has not run on a GPU.
 
 # %%
 import argparse
