@@ -52,8 +52,8 @@ class StrainLimit:
         """(N,) whether blades with plants ``index`` (N,) have failed, or () of a blade alone, by their energy in J.
 
         Only a blade with enough energy can have, and only then are its strains worked out of the states (N, n) that ``moving``
-        gives; on a device they always are, for it would have to be waited for. Where no strain is known only what is no longer a
-        number has failed, be it in the ``increment`` of J alone.
+        gives. A GPU's kernel does the same block by block; what is recorded without one works out all, for it may not look. Where
+        no strain is known only what is no longer a number has failed, be it in the ``increment`` of J alone.
         """
         energy = energy if self.strain.shape[-2] else energy + increment
         if not self.arrays.looks:
