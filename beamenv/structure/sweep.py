@@ -100,7 +100,9 @@ class SteadyFamily:
     nodes: Array
     """Ω² (n,)."""
     coefficients: Array
-    """Over Ω² (n, all)."""
+    """(n, all), over Ω² where nothing moves the blade at rest."""
+    heated: bool
+    """Whether heat does."""
 
     @classmethod
     def of(cls, beam: ExactBeam, columns: NDArray[np.intp], speeds: Array) -> SteadyFamily:
@@ -109,15 +111,18 @@ class SteadyFamily:
         nodes = np.unique(moving) if len(np.unique(moving)) <= NODES else _chebyshev(moving.min(), moving.max())
         coefficients: list[Array] = []
         near: SteadyState | None = None
+        heated = beam.heat is not None
         for square in nodes.tolist():
             near = beam.at(float(np.sqrt(square)), near).steady
             assert near is not None
-            coefficients.append(near.coefficients / square)
-        return cls(beam, columns, nodes, np.array(coefficients))
+            coefficients.append(near.coefficients if heated else near.coefficients / square)
+        return cls(beam, columns, nodes, np.array(coefficients), heated)
 
     def at(self, speeds: Array) -> tuple[Array, Array]:
         """(S, N, N) each."""
-        states = speeds[:, None] ** 2 * (between(self.nodes, speeds**2) @ self.coefficients)
+        states = between(self.nodes, speeds**2) @ self.coefficients
+        if not self.heated:
+            states = speeds[:, None] ** 2 * states
         stiffness, coupling = [], []
         for speed, state in zip(speeds.tolist(), states, strict=True):
             point = self.beam.at_stations.about(state, speed).restricted(self.columns)

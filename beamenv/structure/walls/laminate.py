@@ -35,6 +35,10 @@ class Ply:
     material: Lamina
     angle_deg: Annotated[float, DEGREES]
 
+    def at(self, temperature_K: float) -> Ply:
+        """With its material's constants at a temperature."""
+        return Ply(self.material.at(temperature_K), self.angle_deg)
+
 
 @dataclass(frozen=True, slots=True)
 class Layup:
@@ -139,6 +143,10 @@ class Laminate:
         """The same wall with a further layer of ``thickness`` (m) on its outer face; the mid-line stays where it is."""
         thickness = checked("thickness", thickness, Number(gt=0.0, unit="m"))
         return Laminate((*self.interfaces, self.interfaces[-1] + thickness), (*self.plies, ply))
+
+    def at(self, temperature_K: float) -> Laminate:
+        """The same wall with its materials' constants at a temperature; ``ValueError`` beyond their data."""
+        return Laminate(self.interfaces, tuple(ply.at(temperature_K) for ply in self.plies))
 
     @property
     def turned_over(self) -> Laminate:
