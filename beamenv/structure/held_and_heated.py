@@ -6,12 +6,14 @@ from beamenv.configuration import Number, Numbers, Refused
 from beamenv.structure.geometrically_exact.heat import Heat
 from beamenv.structure.planform import Steps, check_table
 
-ROOM = 300.0
-"""K: at which the materials' constants hold, and blades are made unless said otherwise."""
+ROOM = 293.15
+"""K, 20 °C: at which blades are free of thermal strain unless said otherwise."""
 
 KELVIN = Number(gt=0.0, le=5000.0, unit="K")
 DIFFERENCE = Number(ge=-5000.0, le=5000.0, unit="K")
-SPRINGS = Numbers(Number(ge=0.0, le=1e15), least=6, most=6, of="stiffnesses: 3 (N/m) along lag, flap and span, 3 (N m/rad) about them")
+SPRINGS = Numbers(
+    Number(ge=0.0, le=1e15), least=6, most=6, of="stiffnesses: 3 (N/m) along lag, flap and span, 3 (N m/rad) about them"
+)
 
 
 def temperatures_of(temperature: float | None, table: Steps | None) -> Steps | None:

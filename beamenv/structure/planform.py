@@ -22,6 +22,9 @@ a polynomial."""
 SIZES_OF_PIECE = 7
 """The same of each of several pieces of the span."""
 
+TEMPERATURES = 4
+"""The same of a piece that is not equally hot all along, where it is not tapered: materials follow cubic curves within it."""
+
 LEAST_PIECE = 0.02
 """Of the span."""
 
@@ -108,7 +111,8 @@ class Planform:
     def pieces(self) -> tuple[Piece, ...]:
         """One where neither is by a table."""
         tapered = self.taper != 1.0 if self.chords is None else len({size for _, size in self.chords}) > 1
-        end, known = self.covered / self.length, {share for table in (self.twists, self.chords, self.temperatures) for share, _ in table or ()}
+        tables = self.twists, self.chords, self.temperatures
+        end, known = self.covered / self.length, {share for table in tables for share, _ in table or ()}
         near = any(-1e-9 <= share - end <= LEAST_PIECE for share in {1.0, *known})
         split = {end} if tapered and end > LEAST_PIECE and not near else set()
         shares = sorted({0.0, 1.0, *split, *known})
@@ -122,7 +126,8 @@ class Planform:
         count = SIZES_OF_PIECE if several else SIZES
         sizes, temperatures = _between(first, last, count), None
         if self.temperatures is not None:
-            hot = _between(*self.temperature(ends).tolist(), count)
+            coldest, hottest = self.temperature(ends).tolist()
+            hot = _between(coldest, hottest, count if len(sizes) > 1 else TEMPERATURES)
             most = max(len(sizes), len(hot))
             sizes, temperatures = (each * most if len(each) == 1 else each for each in (sizes, hot))
         return Piece(float(ends[0]), float(ends[1]), rate, sizes, temperatures)

@@ -165,9 +165,8 @@ class BladeAtStations(Sealed):
         onward = np.einsum("s,st,sj->jt", self.weight, self.slope, self.free.onward).ravel()
         return self.asked(self.free.strain) - solve_triangular(self.shape_stiffness, onward, lower=True, check_finite=False)
 
-    def stressing(self, strain: Array, share: float = 1.0) -> tuple[Array, Array]:
-        """Of strains (S, 6) those that make stress, beyond a share of what heat does freely, and what they ask of the shapes."""
-        asked = self.asked(strain)
+    def stressing(self, strain: Array, asked: Array, share: float = 1.0) -> tuple[Array, Array]:
+        """Of strains (S, 6), which ask Z e of the shapes, those that make stress, beyond a share of what heat does, and theirs."""
         if self.free is None:
             return strain, asked
         return strain - share * self.free.strain, asked - share * self._asked_by_heat
@@ -182,8 +181,10 @@ class BladeAtStations(Sealed):
     def stress_stiffness(self, coefficients: Array, share: float = 1.0) -> Array:
         """(N, N): what the stresses of small displacements and of heat add to the stiffness of the unloaded blade."""
         placement, strain = self.unloaded, self.strain_rows @ coefficients
-        strain, asked = self.stressing(strain, share)
-        stressed = placement.strain_rows.swapaxes(-1, -2) @ under_stress(self._moments(strain, asked, share)) @ placement.strain_rows
+        strain, asked = self.stressing(strain, self.asked(strain), share)
+        stressed = (
+            placement.strain_rows.swapaxes(-1, -2) @ under_stress(self._moments(strain, asked, share)) @ placement.strain_rows
+        )
         return symmetric(self.form(placement.geometric(self.resultants(strain, asked)) + stressed))
 
     def _moments(self, strain: Array, asked: Array, share: float) -> Array:
@@ -251,7 +252,7 @@ class BladeAtStations(Sealed):
     def newton_step(self, q: Array, speed: float, share: float = 1.0) -> Array:
         """Increment (N,) of displacements and spins towards the steady state, under a share of the heat, from coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
-        inertia, stressed = self.inertia(placement), self._stressed(placement, *self.stressing(placement.strain, share), share)
+        inertia, stressed = self.inertia(placement), self._stressed(placement, self.asked(placement.strain), share)
         pull = np.einsum("sfi,sf->si", placement.strain_rows, stressed.resultants)
         push = self.force(speed**2 * inertia.centrifugal - pull)
         if self.springs is not None:
@@ -260,11 +261,11 @@ class BladeAtStations(Sealed):
         tangent = self._with_springs(self._tangent(placement, stressed, inertia, speed, rows, self.asked(rows)), q)
         return np.asarray(np.linalg.solve(tangent, push))
 
-    def _stressed(self, placement: Placement, strain: Array, asked: Array, share: float = 1.0) -> Stressed:
-        """The energy is ½ dᵀ E d − ½ |Z d + g|² + ½ ∫ m·s dz, with the strains d = e − e_T, the moments m of theirs and of heat, and
-        the fibres' squares s of the strains e less those of e_T: a blade that expands freely is not stressed.
+    def _stressed(self, placement: Placement, asked: Array, share: float = 1.0) -> Stressed:
+        """The energy is ½ dᵀ E d − ½ |Z d + g|² + ½ ∫ m·s dz, with the strains d = e − e_T, the moments m of theirs and of heat,
+        and the fibres' squares s of the strains e less those of e_T: a blade that expands freely is not stressed.
         """
-        per_strain = self.stress_moments[:, :, BEAM]
+        (strain, asked), per_strain = self.stressing(placement.strain, asked, share), self.stress_moments[:, :, BEAM]
         moments, fibres = self._moments(strain, asked, share), FibreExtension.of(placement.strain)
         if self.free is not None:
             fibres = fibres.beyond(share * self.free.strain)
@@ -302,15 +303,15 @@ class BladeAtStations(Sealed):
         """M, K and G about the steady state with coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
         strain_rows = placement.strain_rows @ self.rows
-        (strain, steadily), asked = self.stressing(placement.strain), self.asked(strain_rows)
+        steadily, asked = self.asked(placement.strain), self.asked(strain_rows)
         inertia, following = self.inertia(placement), self.amplitudes(asked)
-        stiffness = self._tangent(placement, self._stressed(placement, strain, steadily), inertia, speed, strain_rows, asked)
+        stiffness = self._tangent(placement, self._stressed(placement, steadily), inertia, speed, strain_rows, asked)
         return OperatingPoint(
             speed=speed,
             mass=self.mass(inertia, following),
             stiffness=self._with_springs(stiffness, q),
             gyroscopic=speed * self.form(inertia.gyroscopic),
-            steady=SteadyState(q, self.amplitudes(steadily)),
+            steady=SteadyState(q, self.amplitudes(self.stressing(placement.strain, steadily)[1])),
             following=following,
         )
 

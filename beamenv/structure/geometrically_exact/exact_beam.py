@@ -171,8 +171,8 @@ class ExactBeam:
         """The linear steady state of a blade that is heated and does not turn."""
         at = self.at_stations
         coefficients = np.asarray(np.linalg.solve(at.elastic_at_rest, at.thermal_force))
-        _, asked = at.stressing(at.strain_rows @ coefficients)
-        return SteadyState(coefficients, at.amplitudes(asked))
+        strain = at.strain_rows @ coefficients
+        return SteadyState(coefficients, at.amplitudes(at.stressing(strain, at.asked(strain))[1]))
 
     def _linear(self, speed: float, share: float = 1.0) -> SteadyState:
         """The linear steady state at a speed, under a share of the heat."""

@@ -1,8 +1,8 @@
 """What heat does to a blade at the stations at which it is integrated.
 
-The sections' strains e that make stress are those beyond the free ones, e_T. With the work ρ of balanced stresses on the amplitudes'
-derivatives the energy of the shapes is ½ aᵀ K_aa a + aᵀ ∫ (Φᵀ E_ae + Φ′ᵀ E_a′e) (e − e_T) dz + aᵀ ∫ Φ′ᵀ ρ dz: in units in which K_aa
-is 1 they are asked for Z (e − e_T) + g, g = L⁻¹ ∫ Φ′ᵀ ρ dz.
+The sections' strains e that make stress are those beyond the free ones, e_T. With the work ρ of balanced stresses on derivatives of
+the amplitudes the energy of the shapes is ½ aᵀ K_aa a + aᵀ ∫ (Φᵀ E_ae + Φ′ᵀ E_a′e) (e − e_T) dz + aᵀ ∫ Φ′ᵀ ρ dz: in units in
+which K_aa is 1 they are asked for Z (e − e_T) + g, g = L⁻¹ ∫ Φ′ᵀ ρ dz.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """What heat does to a section that is free to warp: how it strains and warps, and the stresses that then balance in it.
 
-A field of temperature T strains a point by α T were it alone. With displacements u = w, the same at every section, and beam strains e
+A field of temperature T strains a point by α T were it alone. With displacements w, the same at every section, and beam strains e
 the energy is ½ ∫ (B w + S Z e − α T)ᵀ Q (B w + S Z e − α T) dA. It is least where
 
     ∫ Bᵀ Q (B w + S Z e) dA = ∫ Bᵀ Q α T dA,        ∫ (S Z)ᵀ Q (B w + S Z e) dA = ∫ (S Z)ᵀ Q α T dA,
 
-the equations of Saint-Venant's solutions with other loads: no part of the section is held, and no resultant is left. What is left are
-stresses σ* = Q (B w + S Z e − α T) that do no work on warping that is the same all along. They do on warping that changes, and their
-second moments stiffen the twist as those of tension do. Any further strain s of the section stores ½ sᵀ E s beside that work.
+the equations of Saint-Venant's solutions with other loads: no part of the section is held, and no resultant is left. What is left
+are stresses σ* = Q (B w + S Z e − α T) that do no work on warping that is the same all along. They do on warping that changes, and
+their second moments stiffen the twist as those of tension do. Any further strain s of the section stores ½ sᵀ E s beside that work.
 """
 
 from __future__ import annotations
@@ -120,5 +120,7 @@ def thermal_stress(ply: Ply) -> Array:
     material, angle = ply.material, np.radians(ply.angle_deg)
     along, across = material.expansion
     c, s = np.cos(angle), np.sin(angle)
-    strain = np.array([c * c * along + s * s * across, across, 0.0, 2.0 * c * s * (along - across), 0.0, s * s * along + c * c * across])
+    strain = np.array(
+        [c * c * along + s * s * across, across, 0.0, 2.0 * c * s * (along - across), 0.0, s * s * along + c * c * across]
+    )
     return np.asarray(wall_stiffness(material, angle) @ strain)
