@@ -130,7 +130,8 @@ class BeamConfig:
     chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
     temperature: Annotated[float | None, KELVIN] = None
-    """K, of the blade and its patches. None: that at which all data hold, and nothing is strained."""
+    """K, of the blade and its patches. None: that at which all data hold, and nothing is strained; beside a difference that of
+    reference."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of ``temperature``: pairs of the share of the span, from 0 to 1, and K."""
     temperature_difference: Annotated[float, DIFFERENCE] = 0.0
@@ -145,8 +146,12 @@ class BeamConfig:
             for name in MODULI:
                 if getattr(self.material, name) < SOFTEST:
                     raise Refused(f"material.{name}", getattr(self.material, name), f"at least {SOFTEST:g} (Pa)")
-        temperatures = temperatures_of(self.temperature, self.temperature_table)
-        check_held_and_heated("blade", temperatures, self.temperature_difference, self.tip_springs, "blade.beam")
+        check_held_and_heated("blade", self.temperatures, self.tip_springs, "blade.beam")
+
+    @property
+    def temperatures(self) -> Steps | None:
+        """Shares of the span and the temperature (K) there; None where there is none."""
+        return temperatures_of(self.temperature, self.temperature_table, self.temperature_difference, self.reference_temperature)
 
     @property
     def root_section(self) -> Section:
@@ -237,9 +242,7 @@ class BladeConfig:
 
     def __post_init__(self) -> None:
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
-        beam = self.beam
-        temperatures = temperatures_of(beam.temperature, beam.temperature_table)
-        check_held_and_heated(self.model, temperatures, beam.temperature_difference, beam.tip_springs, "blade.beam")
+        check_held_and_heated(self.model, self.beam.temperatures, self.beam.tip_springs, "blade.beam")
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

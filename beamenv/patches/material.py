@@ -70,14 +70,18 @@ class PatchMaterial:
         """The sheet at a temperature; ``ValueError`` beyond its data, or where it would lose its polarisation."""
         highest = np.inf if self.warmest is None else self.warmest
         if not COLDEST <= temperature_K <= highest:
-            raise Refused("temperature", temperature_K, f"a number from {COLDEST:g} to {highest:g} (K), as hot as its patches may be")
+            raise Refused(
+                "temperature", temperature_K, f"a number from {COLDEST:g} to {highest:g} (K), as hot as its patches may be"
+            )
         share = 1.0 + self.permittivity_per_K * (temperature_K - ROOM)
         if share <= 0.0:
-            raise Refused("patch_material.permittivity_per_K", self.permittivity_per_K, f"one that leaves some at {temperature_K:g} K")
+            raise Refused(
+                "patch_material.permittivity_per_K", self.permittivity_per_K, f"one that leaves some at {temperature_K:g} K"
+            )
         strained, stored = float(np.sqrt(share)), None if self.permittivity is None else share * self.permittivity
         lamina = self.lamina.at(temperature_K)
-        still = {"permittivity": stored, "permittivity_per_K": 0.0, "warmest": None}
-        return replace(self, lamina=lamina, d11=strained * self.d11, d12=strained * self.d12, **still)
+        warm = replace(self, lamina=lamina, d11=strained * self.d11, d12=strained * self.d12, permittivity=stored)
+        return replace(warm, permittivity_per_K=0.0, warmest=None)
 
     def piezoelectric_stress(self) -> Array:
         """E = d Q (2,): stress along and across the axis 1 per field under plane stress, C/m²."""
@@ -134,7 +138,7 @@ EXPANSION = 3.0e-6
 """1/K, across the polarisation: CTS' 3195, a PZT-5A (data sheet)."""
 
 SOFT = 4e-3
-"""1/K: the permittivity's coefficient of PIC255, −20 … 125 °C (PI Ceramic's data); of other soft PZT too, no table of d was read."""
+"""1/K: the permittivity's coefficient of PIC255, −20 … 125 °C (PI Ceramic's data); taken for other soft PZT too."""
 
 PYROELECTRIC = -4e-4
 """C/m²K: typical of PZT, whose polarisation falls with heat."""
@@ -159,9 +163,7 @@ to 85 °C, and from −35 °C on, below which its data are drawn out. Expansion:
 1968) for 86 % of PZT-5A in epoxy of 3 GPa and 55·10⁻⁶/K, no measured one was found."""
 
 PZT = PatchMaterial(
-    lamina=Lamina(
-        E1=124e9, E2=130e9, G12=70e9, G13=70e9, G23=74e9, nu12=0.25, density=8000.0, alpha1=EXPANSION, alpha2=EXPANSION
-    ),
+    lamina=Lamina(E1=124e9, E2=130e9, G12=70e9, G13=70e9, G23=74e9, nu12=0.25, density=8000.0, alpha1=EXPANSION, alpha2=EXPANSION),
     d11=-140e-12,
     d12=-140e-12,
     thickness=0.3e-3,

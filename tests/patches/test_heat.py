@@ -33,8 +33,8 @@ def test_free_strain_rises_as_the_root_of_permittivity(name, rise):
 
 
 def test_force_charge_and_energy_of_a_warm_patch_follow():
-    """Force and charge per strain with d, energy and charge per volt with its square, of walls that do not soften: within 0.3 %, for
-    the blade is longer by 0.18 %.
+    """Force and charge per strain with d, energy and charge per volt with its square, of walls that do not soften: within 0.3 %,
+    for the blade is longer by 0.18 %.
     """
     either = [local_response(beam(temperature=temperature), LAYOUT) for temperature in (None, MADE_AT + 80.0)]
     assert either[1].energy == pytest.approx(1.32 * either[0].energy, rel=3e-3, abs=3e-3 * np.abs(either[0].energy).max())

@@ -278,7 +278,7 @@ def test_without_a_temperature_nothing_changes():
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"temperature_difference": 5.0}, "beam.temperature_difference"),
+        ({"temperature_difference": 5.0, "model": "thesis"}, "beam.temperature"),
         ({"temperature": 310.0, "temperature_table": ((0.0, 300.0), (1.0, 310.0))}, "beam.temperature"),
         ({"temperature_table": ((0.0, 300.0), (0.9, 310.0))}, "beam.temperature_table"),
         ({"temperature": 310.0, "model": "thesis"}, "beam.temperature"),

@@ -20,6 +20,7 @@ from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
 from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Refused
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
 from beamenv.structure import RotatingBeam
@@ -74,7 +75,15 @@ class Contributions(ReadOnly):
 
 
 def contributions(config: BladeConfig) -> Contributions:
-    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second."""
+    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second. ``ValueError`` for a
+    blade that heat strains or springs hold.
+    """
+    beam = config.beam
+    if beam.temperatures is not None:
+        hot = beam.temperatures[0][1]
+        raise Refused("blade.beam.temperature", hot, "None where patches are placed, at the temperature of their data (K)")
+    if beam.tip_springs is not None and any(beam.tip_springs):
+        raise Refused("blade.beam.tip_springs", list(beam.tip_springs), "None where patches are placed on a cantilever")
     return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
 
 
