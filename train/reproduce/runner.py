@@ -233,7 +233,7 @@ def with_verdict(kept: dict[str, Any]) -> dict[str, Any]:
 
 def second_of(kept: dict[str, Any]) -> Second:
     """A second judgement likewise."""
-    return Second(**(with_verdict(kept) | {"reading": tuple(kept["reading"]), "enough": tuple(kept["enough"])}))
+    return Second(**(with_verdict(kept) | {name: tuple(kept[name]) for name in ("reading", "enough", "told")}))
 
 
 def source_fingerprint(model: Model) -> str:

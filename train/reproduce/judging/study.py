@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from train.figures.figure import Panel
-from train.reproduce.judging.verdicts import Judgement, Rule, Verdict, weakest
+from train.reproduce.judging.verdicts import Judged, Judgement, Rule, Verdict, weakest
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.equations import Reading, readings
 from train.reproduce.thesis.readings import read_by
@@ -101,7 +101,7 @@ class Study:
     """From the model and, where it has parts, from what they came to."""
     parts: Callable[[Model], Parts] = no_parts
     rests_on: Reading = ()
-    """The equations, by name, in which the thesis differs from us and which its numbers rest on; empty: what we compute is its own."""
+    """Equations, by name, in which the thesis differs from us and which its numbers rest on; empty: what we compute is its own."""
     printed: Callable[[Model], Mapping[str, Any]] | None = None
     """Evidence for the second verdict where it follows from what the thesis prints, by the keys of the statements."""
     unprinted: str = ""
@@ -139,11 +139,11 @@ class Study:
         """The thesis', asides left out."""
         return tuple(statement for statement in self.statements if not statement.aside)
 
-    def verdict(self, judgements: Mapping[str, Judgement]) -> Verdict:
+    def verdict(self, judgements: Mapping[str, Judged]) -> Verdict:
         """The weakest verdict of the thesis' statements."""
         return weakest(self.verdicts(judgements))
 
-    def verdicts(self, judgements: Mapping[str, Judgement]) -> list[Verdict]:
+    def verdicts(self, judgements: Mapping[str, Judged]) -> list[Verdict]:
         """Those of the thesis' statements, asides left out."""
         return [judgements[statement.key].verdict for statement in self.own_statements]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,15 @@ class Judgement:
     thesis: str
     ours: str
     deviation: str
+
+
+class Judged(Protocol):
+    """A first or a second judgement."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """What became of the statement."""
+        ...
 
 
 class Rule(ABC):

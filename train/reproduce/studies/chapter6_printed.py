@@ -34,14 +34,14 @@ def one_to_four(side: Side, model: Model) -> Evidence:
     layouts = {(by, *case): printed_positions(side, "all", *case, by) for case in CASES for by in ("ga", "sqp")}
     costs = {key: cost_of(config, side, layout, key[2]) for key, layout in layouts.items()}
     alone = {speed: cost_of(config, side, printed_positions(side, "four", 4, speed, "sqp"), speed) for speed in SPEEDS}
-    against = [costs["sqp", *case] / costs["ga", *case] for case in CASES]
+    against = [costs[("sqp", *case)] / costs[("ga", *case)] for case in CASES]
     half = 0.5 * config.patches.length
-    evidence = {
+    evidence: dict[str, Any] = {
         "then": np.array(against) < 1.0,
         "superior": np.array([*against, *(costs["sqp", 4, speed] / alone[speed] for speed in SPEEDS)]) - 1.0,
         "shift": [[layouts["sqp", count, speed].mean() + half for speed in SPEEDS] for count in COUNTS],
     }
-    return evidence if side == "actuators" else evidence | near_the_root(model)
+    return evidence if side == "actuators" else {**evidence, **near_the_root(model)}
 
 
 def near_the_root(model: Model) -> Evidence:

@@ -23,6 +23,9 @@ def box_by(box: BeamConfig, reading: Reading) -> BeamConfig:
         box = UniformTensionBlade(**{each.name: getattr(box, each.name) for each in fields(BeamConfig)})
     material = MATERIALS[box.material] if isinstance(box.material, str) else box.material
     read = ply(material, reading)
-    changes = {"material": read} if read is not material else {}
-    changes |= {"shear_flow": "thesis"} if SHEAR_FLOW in reading else {}
-    return replace(box, **changes, **({"terms": 6} if SIX_TERMS in reading else {}))
+    return replace(
+        box,
+        material=box.material if read is material else read,
+        shear_flow="thesis" if SHEAR_FLOW in reading else box.shear_flow,
+        terms=6 if SIX_TERMS in reading else box.terms,
+    )

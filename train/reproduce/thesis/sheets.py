@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import fields, replace
 
 from beamenv.patches import MFC, PatchLayout
-from beamenv.patches.group import PatchGroup
-from beamenv.patches.layout import SIDES
+from beamenv.patches.group import PatchGroup, Positions
+from beamenv.patches.layout import Groups
 from beamenv.patches.material import PatchMaterial
 from beamenv.structure.walls.materials import Lamina
 from train.reproduce.thesis.as_printed import PrintedQ, PrintedQ12
@@ -48,9 +48,12 @@ def sheet(material: str | PatchMaterial, reading: Reading) -> str | PatchMateria
 
 def layout_by(layout: PatchLayout, reading: Reading) -> PatchLayout:
     """A layout with the sheets of a reading."""
-    changed: dict[str, tuple[PatchGroup, ...]] = {}
-    for side in SIDES:
-        given = getattr(layout, side)
-        if isinstance(given, tuple) and given and isinstance(given[0], PatchGroup):
-            changed[side] = tuple(replace(group, material=sheet(group.material, reading)) for group in given)
-    return replace(layout, material=sheet(layout.material, reading), **changed)
+    actuators, sensors = (groups_by(given, reading) for given in (layout.actuators, layout.sensors))
+    return replace(layout, material=sheet(layout.material, reading), actuators=actuators, sensors=sensors)
+
+
+def groups_by(given: int | Positions | Groups, reading: Reading) -> int | Positions | Groups:
+    """Groups of patches likewise; a number of patches or their positions stay as they are."""
+    if isinstance(given, tuple) and given and isinstance(given[0], PatchGroup):
+        return tuple(replace(group, material=sheet(group.material, reading)) for group in given if isinstance(group, PatchGroup))
+    return given
