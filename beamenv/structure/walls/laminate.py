@@ -170,6 +170,10 @@ class Laminate:
         thickness = checked("thickness", thickness, Number(gt=0.0, unit="m"))
         return Laminate((*self.interfaces, self.interfaces[-1] + thickness), (*self.plies, ply))
 
+    def at(self, temperature_K: float) -> Laminate:
+        """The same wall with its materials' constants at a temperature; ``ValueError`` beyond their data."""
+        return Laminate(self.interfaces, tuple(ply.at(temperature_K) for ply in self.plies))
+
     @property
     def turned_over(self) -> Laminate:
         """The same plies from the outer face to the inner."""
