@@ -150,7 +150,7 @@ def places(mesh: Mesh, members: NDArray[np.intp], along: Array, across: Array, w
 
 
 def layers(laminate: Laminate) -> list[tuple[float, float, Ply]]:
-    """Bottom and top (m) of a wall's layers, equal neighbouring plies being one, but for graded ones, of which each is by itself."""
+    """Bottom and top (m) of a wall's layers, equal neighbouring plies being one, but graded ones each by itself."""
     found: list[tuple[float, float, Ply]] = []
     for low, high, ply in zip(laminate.interfaces[:-1], laminate.interfaces[1:], laminate.plies, strict=True):
         if found and found[-1][2] == ply and ply.uniform is not None:

@@ -1,4 +1,4 @@
-"""What a ply adds to a section of solid elements: one constant stiffness, or as many as change each in its own way with the depth."""
+"""What a ply adds to a section of solid elements: one stiffness, or as many as change each in its own way with the depth."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from beamenv.structure.section.elements import ACROSS
 from beamenv.structure.section.integrals import Rule
-from beamenv.structure.walls.depth_rules import gauss_rule_of_weight
+from beamenv.structure.walls.depth_rules import gauss_rule_of_weight, interpolating_rule
 from beamenv.structure.walls.graded import FunctionallyGraded, mixture_through
 from beamenv.structure.walls.laminate import Ply
-from beamenv.structure.walls.materials import wall_stiffness
+from beamenv.structure.walls.materials import Lamina, wall_stiffness
 
 Array = NDArray[np.float64]
 
@@ -47,11 +47,35 @@ def parts_of(ply: Ply) -> list[PlyPart]:
     rule, mixture = mixture_through(ply.material)
 
     def weighed(values: Array) -> Rule:
-        places, weights = gauss_rule_of_weight(rule.place, rule.weight * values, ACROSS + 1)
-        return tuple(places.tolist()), tuple(weights.tolist())
+        return _as_rule(*gauss_rule_of_weight(rule.place, rule.weight * values, ACROSS + 1))
 
     return [
         PlyPart(DILATATION, 0.0, weighed(mixture.bulk)),
         PlyPart(DISTORTION, 0.0, weighed(mixture.shear)),
         PlyPart(None, 1.0, weighed(mixture.density)),
     ]
+
+
+def thermal_stress(ply: Ply) -> tuple[Array, Rule | None]:
+    """Q α (6,), Pa/K, for a wall's strains (ε_ss, ε_nn, γ_sn, γ_sz, γ_nz, ε_zz): what holds a ply that is 1 K warmer; or its
+    direction and the rule that weighs it with 3 K α, which may change its sign within a graded ply.
+    """
+    if ply.uniform is not None:
+        return _held(ply.uniform, float(np.radians(ply.angle_deg))), None
+    assert isinstance(ply.material, FunctionallyGraded)
+    rule, mixture = mixture_through(ply.material)
+    alpha = mixture.alpha if mixture.alpha is not None else [each.expansion for each in ply.material.constituents]
+    return DILATATION[0], _as_rule(*interpolating_rule(rule.place, rule.weight * 3.0 * mixture.bulk * alpha, 2 * ACROSS + 2))
+
+
+def _held(material: Lamina, angle: float) -> Array:
+    along, across = material.expansion
+    c, s = np.cos(angle), np.sin(angle)
+    strain = np.array(
+        [c * c * along + s * s * across, across, 0.0, 2.0 * c * s * (along - across), 0.0, s * s * along + c * c * across]
+    )
+    return np.asarray(wall_stiffness(material, angle) @ strain)
+
+
+def _as_rule(places: Array, weights: Array) -> Rule:
+    return tuple(places.tolist()), tuple(weights.tolist())

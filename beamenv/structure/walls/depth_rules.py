@@ -1,4 +1,4 @@
-"""Integration through walls whose properties follow a power of the depth, whatever the power, and Gauss's rules for such weights."""
+"""Integration through walls whose properties follow a power of the depth, whatever the power, and rules for such weights."""
 
 from __future__ import annotations
 
@@ -74,3 +74,15 @@ def gauss_rule_of_weight(places: Array, weights: Array, count: int) -> tuple[Arr
             basis.append(onward / norm)
     found, vectors = np.linalg.eigh(tridiagonal)
     return found, total * vectors[0] ** 2
+
+
+def interpolating_rule(places: Array, weights: Array, count: int) -> tuple[Array, Array]:
+    """(count,) each: a rule on −1 … 1 for a weight of any sign that is given as a finer rule, exact to degree count − 1.
+
+    At Gauss's places, each Lagrange polynomial through which is integrated by its Legendre coefficients.
+    """
+    found, usual = np.polynomial.legendre.leggauss(count)
+    degree = np.arange(count)
+    moments = np.polynomial.legendre.legvander(places, count - 1).T @ weights
+    values = np.polynomial.legendre.legvander(found, count - 1)
+    return found, usual * (values @ ((degree + 0.5) * moments))

@@ -190,7 +190,8 @@ class Laminate:
         layers = list(zip(self.plies, self.interfaces[:-1], self.interfaces[1:], angles, strict=True))
         if any(ply.uniform is None for ply in self.plies):
             return np.sum([_integral(ply, low, high, angle, value, highest) for ply, low, high, angle in layers], axis=0)
-        return self.moments(np.array([value(ply.uniform, angle) for ply, *_, angle in layers]), highest)
+        uniform = [(ply.uniform, angle) for ply, *_, angle in layers if ply.uniform is not None]
+        return self.moments(np.array([value(*each) for each in uniform]), highest)
 
 
 def _integral(ply: Ply, low: float, high: float, angle: float, value: Callable[[Lamina, float], Any], highest: int) -> Array:

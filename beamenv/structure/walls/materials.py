@@ -109,7 +109,7 @@ class Lamina:
     def scaled(self, modulus: float, mass: float) -> Lamina:
         """With moduli and density times ratios."""
         stiffer = {name: modulus * getattr(self, name) for name in MODULI}
-        return replace(self, density=mass * self.density, **stiffer)  # type: ignore[arg-type]
+        return replace(self, density=mass * self.density, **stiffer)
 
     @property
     def expansion(self) -> tuple[float, float]:
