@@ -77,8 +77,8 @@ class AdaptiveNeural(Law):
 
     u_ad within its share of the drive, μ a one, the estimate and the latest voltages in units of what is usual. W and V learn along
     p (``hidden_layer.learned``), P = ĀᵀPĀ + CᵀS⁻¹C, Ā = A − ALC: EᵀPE is what the error E of the model will show in normalised
-    innovations squared. Where ε is white, as on the design, p has no direction in the mean and nothing is learned but noise. δ is the
-    answer of a stable filter to a network whose weights are bounded, so that u_ad is bounded whatever the blade does.
+    innovations squared. Where ε is white, as on the design, p has no direction in the mean and nothing is learned but noise. δ is
+    the answer of a stable filter to a network whose weights are bounded, so that u_ad is bounded whatever the blade does.
     """
 
     base: LinearController

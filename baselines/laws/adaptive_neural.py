@@ -65,10 +65,10 @@ def adaptive_neural(
 ) -> AdaptiveNeural:
     """A linear law augmented by a network that learns within each episode; None: ``reference_lqg(plant)``.
 
-    ``plant`` is all that is known of the blade, such as ``Design.full_plant``. The filter and the regulator that the network's forces
-    go through are those of ``full_order_lqg``. The base is ``verified`` on ``plant`` unless ``verify=False``; with what the network
-    adds, nothing is promised but that it is bounded. Raises ``ValueError`` for a base that is not linear or stands behind other
-    instruments, for settings that are none, and as ``reference_lqg`` does.
+    ``plant`` is all that is known of the blade, such as ``Design.full_plant``. The filter and the regulator that the network's
+    forces go through are those of ``full_order_lqg``. The base is ``verified`` on ``plant`` unless ``verify=False``; with what the
+    network adds, nothing is promised but that it is bounded. Raises ``ValueError`` for a base that is not linear or stands behind
+    other instruments, for settings that are none, and as ``reference_lqg`` does.
     """
     checked_plant(plant)
     given = optional_instance("settings", settings, AdaptationSettings, "an AdaptationSettings, such as AdaptationSettings()")

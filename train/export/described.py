@@ -7,7 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from baselines import AdaptiveNeural, ClippedLQG, InverseHysteresis, Law, LinearController, MultipleModel, PredictiveController, ScheduledLQG
+from baselines import (
+    AdaptiveNeural,
+    ClippedLQG,
+    InverseHysteresis,
+    Law,
+    LinearController,
+    MultipleModel,
+    PredictiveController,
+    ScheduledLQG,
+)
 from baselines.design.controller import name_of
 from baselines.design.instruments import Instruments, checked_plant
 from baselines.laws.time_varying_lqg import TimeVaryingLQG
