@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields, replace
 
 from beamenv.blade.config import BeamConfig
+from beamenv.structure.walls.materials import Lamina
 from beamenv.structure.walls.named import MATERIALS
 from train.reproduce.thesis.as_printed import UniformTensionBlade
 from train.reproduce.thesis.configurations import Model
@@ -22,7 +23,7 @@ def box_by(box: BeamConfig, reading: Reading) -> BeamConfig:
     if UNIFORM_TENSION in reading:
         box = UniformTensionBlade(**{each.name: getattr(box, each.name) for each in fields(BeamConfig)})
     material = MATERIALS[box.material] if isinstance(box.material, str) else box.material
-    read = ply(material, reading)
+    read = ply(material, reading) if isinstance(material, Lamina) else material
     return replace(
         box,
         material=box.material if read is material else read,
