@@ -20,18 +20,16 @@ from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, Fi
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows
 from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.integrals import MONOMIALS
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 
 Array = NDArray[np.float64]
 
 BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), slice(RIGID + AMPLITUDES, STRAINS)
-
-HELD = 1e-10
-"""Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +57,14 @@ class BladeAtStations(Sealed):
     """(S, 6)"""
     shape_mass: Array
     """(S, AMPLITUDES, AMPLITUDES)"""
+    held: float
+    """Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
 
     @classmethod
-    def of(cls, space: TrialSpace, stations: Stations, sections: SectionsAlong, hub_radius: float) -> BladeAtStations:
+    def of(cls, space: SpanSpace, stations: Stations, sections: SectionsAlong, hub_radius: float) -> BladeAtStations:
         """Gather the sections and tabulate the trial functions."""
         z, solid = stations.z, sections.solid
-        value, slope = shape_tables(space, z)
+        value, slope = space.amplitude_table(z)
         energy, stress_moments = solid.energy, solid.stress_moments
         if space.rigid:
             energy, stress_moments = without_shear(energy), moments_without_shear(stress_moments, energy)
@@ -80,6 +80,7 @@ class BladeAtStations(Sealed):
             stress_moments=sections.at(z, stress_moments),
             section_inertia=sections.at(z, solid.inertia),
             shape_mass=sections.at(z, solid.shape_mass),
+            held=space.held,
         )
 
     @sealed_property
@@ -116,7 +117,7 @@ class BladeAtStations(Sealed):
         mixed = self._shape_form(self.energy[:, SHAPE, SHAPE_SLOPE], self.value, self.slope)
         whole = whole + mixed + mixed.T + self._shape_form(self.energy[:, SHAPE_SLOPE, SHAPE_SLOPE], self.slope, self.slope)
         size = AMPLITUDES * terms
-        whole[np.arange(size), np.arange(size)] += HELD * np.diagonal(whole).max()
+        whole[np.arange(size), np.arange(size)] += self.held * np.diagonal(whole).max()
         return np.asarray(np.linalg.cholesky(whole))
 
     def _shape_form(self, section: Array, left: Array, right: Array) -> Array:

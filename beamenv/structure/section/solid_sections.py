@@ -22,7 +22,7 @@ from beamenv.structure.section.element_sums import ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
 from beamenv.structure.section.integrals import MONOMIALS
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.trial_functions import gauss_rule
+from beamenv.structure.stations import gauss_rule
 from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate
 
