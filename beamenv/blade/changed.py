@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from beamenv.blade.config import MATERIALS, BladeConfig
+from beamenv.blade.config import BladeConfig
+from beamenv.structure.walls.named import MATERIALS
 
 
 def changed_blade(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Annotated, Any
 
 from pydantic_core import CoreSchema, core_schema
@@ -32,7 +31,7 @@ from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
 from beamenv.plant.limits import VOLTAGES
 from beamenv.sensors.kinds import SENSORS, Accelerometer, PatchCurrent, Sensor
-from beamenv.structure import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
+from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
@@ -40,10 +39,7 @@ from beamenv.structure.planform import TABLE, Steps
 from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
 from beamenv.structure.walls.laminate import PLY_ANGLES
-
-MATERIALS: Mapping[str, Lamina] = MappingProxyType(
-    {"graphite-epoxy": GRAPHITE_EPOXY, "as4-3501-6": AS4_3501_6, "aluminium": ALUMINIUM}
-)
+from beamenv.structure.walls.named import MATERIALS
 
 ON_EVERY_WALL = "all"
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.configuration import Number, configuration
+from beamenv.configuration import Number, Refused, configuration
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
 from beamenv.structure.walls.materials import Lamina, strain_rotation
@@ -26,6 +26,9 @@ Ceramics and Single Crystals for Multifunctional Load-Bearing Applications, IEEE
 FIBRE_ANGLE_DEG = 90.0
 """Fibres run along the span. The thesis prints θp = 0, which would leave −1.1 C/m² along the span and is not meant."""
 
+
+VACUUM = 8.8541878128e-12
+"""F/m."""
 
 FreeStrain = Number(ge=-1e-6, le=1e-6, unit="m/V")
 """Hundreds of times what single crystals do, and far below any number of pC/N or nm/V."""
@@ -46,6 +49,8 @@ class PatchMaterial:
     """m: between the fingers of an MFC's electrodes, the thickness of a PZT sheet."""
     failure_strain: Annotated[float, Number(gt=0.0, le=1.0, unit="m/m")] = MFC_STRAIN
     """At which it breaks, m/m; an MFC's unless said otherwise. The least of a blade's sheets ends its episodes."""
+    permittivity: Annotated[float | None, Number(ge=VACUUM, le=1e5 * VACUUM, unit="F/m")] = None
+    """F/m of a sheet free of stress, as its electrodes find it: its capacitance is that times volume over spacing²."""
 
     def piezoelectric_stress(self) -> Array:
         """E = d Q (2,): stress along and across the axis 1 per field under plane stress, C/m²."""
@@ -54,6 +59,12 @@ class PatchMaterial:
     def free_strain(self, voltage: float) -> float:
         """Strain along the span of an unloaded sheet."""
         return self.d11 * voltage / self.electrode_spacing
+
+    def capacitance(self, area: float) -> float:
+        """F of a sheet of so many m², free of stress; ``ValueError`` where its permittivity is unknown."""
+        if self.permittivity is None:
+            raise Refused("patch_material.permittivity", None, "known (F/m) where capacitances are asked for")
+        return self.permittivity * area * self.thickness / self.electrode_spacing**2
 
     def stress_in_wall(self, angle_deg: float = FIBRE_ANGLE_DEG) -> Array:
         """(3,): piezoelectric stress in the wall's (ss, zz, sz) per field, C/m², with axis 1 turned from s towards z."""
@@ -99,8 +110,10 @@ MFC = PatchMaterial(
     thickness=0.3e-3,
     electrode_spacing=0.5e-3,
     failure_strain=MFC_STRAIN,
+    permittivity=3.0e-6 * (0.5e-3) ** 2 / 0.3e-3,
 )
-"""M-8557-P1 (thesis Table 5.1; density from the data sheet, the thesis prints the part number)."""
+"""M-8557-P1 (thesis Table 5.1; density from the data sheet, the thesis prints the part number). Its poled capacitance is 0.30
+nF/cm² (Smart Material, MFC Engineering Properties): 14.5 nF."""
 
 PZT = PatchMaterial(
     lamina=Lamina(E1=124e9, E2=130e9, G12=70e9, G13=70e9, G23=74e9, nu12=0.25, density=8000.0),
@@ -109,9 +122,11 @@ PZT = PatchMaterial(
     thickness=0.3e-3,
     electrode_spacing=0.3e-3,
     failure_strain=CERAMIC_STRENGTH / 124e9,
+    permittivity=1700.0 * VACUUM,
 )
 """Monolithic sheet poled through its thickness: d31 in both directions (thesis Table 5.1). It breaks at 0.113 %, the strength of
-PZT-5A by its own modulus, which is twice that of PZT-5A."""
+PZT-5A by its own modulus, which is twice that of PZT-5A; the permittivity
+is that of PZT-5A, ε33/ε0 = 1700 free (Berlincourt, Krueger and Near, Properties of Piezoelectricity Ceramics, Morgan TP-226)."""
 
 PIC255 = PatchMaterial(
     lamina=Lamina.isotropic(E=1.0 / 16.1e-12, nu=0.34, density=7800.0),
@@ -120,8 +135,9 @@ PIC255 = PatchMaterial(
     thickness=0.5e-3,
     electrode_spacing=0.5e-3,
     failure_strain=CERAMIC_STRENGTH * 16.1e-12,
+    permittivity=1750.0 * VACUUM,
 )
-"""A soft piezoceramic, poled through a thickness of 0.5 mm: s11 = 16.1·10⁻¹² m²/N, d31 = −180 pm/V and density of PI Ceramic's
-data; Poisson's ratio is that of soft PZT. It breaks at 0.226 %, by the strength of PZT-5A, another soft one."""
+"""A soft piezoceramic, poled through a thickness of 0.5 mm: s11 = 16.1·10⁻¹² m²/N, d31 = −180 pm/V, ε33/ε0 = 1750 and density of PI
+Ceramic's data; Poisson's ratio is that of soft PZT. It breaks at 0.226 %, by the strength of PZT-5A, another soft one."""
 
 PATCH_MATERIALS: Mapping[str, PatchMaterial] = MappingProxyType({"MFC": MFC, "PZT": PZT, "PIC255": PIC255})

@@ -10,7 +10,8 @@ from beamenv.structure.section.section import Section
 from beamenv.structure.section.webs import Web
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Laminate, Layup, Ply
-from beamenv.structure.walls.materials import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, Lamina
+from beamenv.structure.walls.materials import Lamina
+from beamenv.structure.walls.named import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY
 
 __all__ = [
     "ALUMINIUM",

@@ -36,7 +36,7 @@ class BeamMatrices(ReadOnly):
         """Whether every number is finite, and mass and stiffness are positive definite by more than rounding."""
         if not all(np.isfinite(each).all() for each in (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic)):
             return False
-        return _definite(self.mass) and _definite(self.elastic_stiffness)
+        return definite(self.mass) and definite(self.elastic_stiffness)
 
     def stiffness(self, speed: float) -> Array:
         """K (N, N) at a speed in rad/s."""
@@ -48,7 +48,7 @@ class BeamMatrices(ReadOnly):
         return BeamMatrices(self.mass[pick], self.elastic_stiffness[pick], self.spin_stiffness[pick], self.gyroscopic[pick])
 
 
-def _definite(matrix: Array) -> bool:
+def definite(matrix: Array) -> bool:
     """Whether a symmetric matrix is positive definite by more than rounding, n ε of its diagonal, may make or take."""
     diagonal = np.diagonal(matrix)
     if not np.all(diagonal > 0.0):

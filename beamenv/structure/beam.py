@@ -20,6 +20,16 @@ from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEM
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
+from beamenv.structure.geometrically_exact.tip_springs import TipSprings
+from beamenv.structure.held_and_heated import (
+    DIFFERENCE,
+    KELVIN,
+    ROOM,
+    SPRINGS,
+    check_held_and_heated,
+    heat_of,
+    temperatures_of,
+)
 from beamenv.structure.inlays import SHORTEST, Room
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow, terms_of
 from beamenv.structure.modes import Modes, critical_speed, energy_participation, normal_modes, whirling_frequencies, whirling_modes
@@ -97,6 +107,16 @@ class RotatingBeam:
     """Ends of finite elements, shares of the span from 0 to 1; edges of inlays are ends as well. None: by ``elements``."""
     inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
+    temperature: Annotated[float | None, KELVIN] = None
+    """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained."""
+    temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
+    """Temperature along the span in place of one: pairs of the share of the span, from 0 to 1, and K."""
+    temperature_difference: Annotated[float, DIFFERENCE] = 0.0
+    """K: at the greatest y of each section less that at its least, straight in between; the mean is as said before."""
+    reference_temperature: Annotated[float, KELVIN] = ROOM
+    """K: at which the blade is free of thermal strain."""
+    tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
+    """What holds the tip: N/m along lag, flap and span, N m/rad about them. None: nothing does."""
 
     def __post_init__(self) -> None:
         self.layup.check_walls(self.section.wall_names)
@@ -112,7 +132,13 @@ class RotatingBeam:
                 if getattr(self, name) is not None:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
+        check_held_and_heated(self.model, self.temperatures, self.temperature_difference, self.tip_springs)
         self.room.check(self.inlays)
+
+    @property
+    def temperatures(self) -> Steps | None:
+        """Shares of the span and the temperature (K) there; None where there is none."""
+        return temperatures_of(self.temperature, self.temperature_table)
 
     @property
     def narrowest(self) -> float:
@@ -130,7 +156,7 @@ class RotatingBeam:
         twists = self.twist_table and tuple((share, float(np.radians(angle))) for share, angle in self.twist_table)
         even = float(np.radians(self.pretwist_deg)), float(np.radians(self.presetting_deg)), self.taper
         covered = max((inlay.start + inlay.length for inlay in self.inlays), default=0.0)
-        return Planform(self.length, *even, twists, self.chord_table, covered)
+        return Planform(self.length, *even, twists, self.chord_table, covered, self.temperatures)
 
     @cached_property
     def space(self) -> SpanSpace:
@@ -139,7 +165,9 @@ class RotatingBeam:
         plane, reach = not self.layup.walls and self.section.stays_plane, CLAMP_REACH * self.section.perimeter
         if self.discretisation == "finite-elements":
             edges = [*self._edges, *(piece.start for piece in self.planform.pieces)]
-            return element_space(self, edges, reach if warping else self.section.thickness, rigid=rigid, warping=warping, plane=plane)
+            return element_space(
+                self, edges, reach if warping else self.section.thickness, rigid=rigid, warping=warping, plane=plane
+            )
         return TrialSpace(
             length=self.length,
             terms=terms_of(self.model, self.terms),
@@ -162,6 +190,8 @@ class RotatingBeam:
             sections=SectionsAlong.build(self.section, self.layup, self.planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
+            heat=heat_of(self.temperatures, self.reference_temperature, self.temperature_difference),
+            springs=TipSprings.of(self.space, self.tip_springs) if self.tip_springs else None,
         )
 
     @cached_property
@@ -184,7 +214,9 @@ class RotatingBeam:
         except ValueError:
             return
         beside = f" beside two for each of {count} breaks along the span" if (count := len(space.breaks)) else ""
-        raise Refused("beam.terms", space.terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not")
+        raise Refused(
+            "beam.terms", space.terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not"
+        )
 
     def _wall_matrices(self) -> BeamMatrices:
         stations = self.space.stations(self.breakpoints(self._edges), self.stations_per_span)

@@ -13,7 +13,7 @@ from beamenv.configuration.read_only import Sealed
 Array = NDArray[np.float64]
 
 LOST = 1e-6
-"""Share of the lowest squared frequency that rounding of the highest may take: with short elements on a slender blade it takes all."""
+"""Share of the lowest squared frequency that rounding of the highest may take: short elements on a slender blade take all of it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +44,7 @@ def normal_modes(mass: Array, stiffness: Array, count: int | None = None) -> tup
 
 
 def _lowest_modes(mass: Array, stiffness: Array, count: int) -> tuple[Array, Array] | None:
-    """The same of M ψ = ψ/ω² K ψ, whose rounding is that of the lowest mode, not of the highest; None where K has no Cholesky factor."""
+    """The same of M ψ = K ψ/ω², whose rounding is that of the lowest mode and not of the highest; None where K is not positive."""
     try:
         inverses, shapes = eigh(mass, stiffness, subset_by_index=(len(mass) - count, len(mass) - 1))
     except np.linalg.LinAlgError:

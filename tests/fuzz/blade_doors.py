@@ -16,13 +16,15 @@ from beamenv.plant.modal_plant import SENSED, STATIC, ModalPlant
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.scenarios.tables import Acquisition, Drive, Failures, PlantVariation, Rotor
-from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
+from beamenv.structure import ALUMINIUM, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.section.section import Section
+from beamenv.structure.walls.curves import Touloukian
 from tests.fuzz import small
 from tests.fuzz.meaning import (
     ANYTHING,
     ARRAY,
     COUNT,
+    CURVES,
     FLAG,
     MATRIX,
     NOTHING,
@@ -61,6 +63,7 @@ CORNERS = Kind(
 )
 BOX = BoxSection(0.254, 0.0508, 0.01016)
 LAYUP = Layup.uniform(GRAPHITE_EPOXY, [30.0] * 6)
+METAL = Layup.uniform(ALUMINIUM, [0.0])
 
 
 def _rows(value):
@@ -111,10 +114,13 @@ DOORS = [
     Door(
         "Lamina.isotropic",
         Lamina.isotropic,
-        {"E": NUMBER, "nu": NUMBER, "density": NUMBER},
-        lambda: {"E": 7e10, "nu": 0.3, "density": 2700.0},
-        lambda made: {"E": made.E1, "nu": made.nu12, "density": made.density},
+        {"E": NUMBER, "nu": NUMBER, "density": NUMBER, "alpha": maybe(NUMBER), "curves": CURVES},
+        lambda: {"E": 7e10, "nu": 0.3, "density": 2700.0, "alpha": 2e-5, "curves": {"E1": [[200, 1.1], [300, 1.0]]}},
+        lambda made: {"E": made.E1, "nu": made.nu12, "density": made.density, "alpha": made.alpha1, "curves": made.curves},
     ),
+    constructor(Touloukian, {"least_K": 300.0, "most_K": 900.0, "P_minus1": 0.0, "P1": 3e-4, "P2": -6e-7, "P3": 0.0}),
+    Door("Lamina.at", ALUMINIUM.at, {"temperature_K": NUMBER}, lambda: {"temperature_K": 350.0}, told=("temperature",)),
+    Door("Layup.at", METAL.at, {"temperature_K": NUMBER}, lambda: {"temperature_K": 350.0}, told=("temperature",)),
     Door(
         "Layup.uniform",
         Layup.uniform,

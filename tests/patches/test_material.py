@@ -1,9 +1,11 @@
 """The sheets against their data sheets and hand values."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from beamenv.patches import MFC, PZT
+from beamenv.patches import MFC, PATCH_MATERIALS, PZT
 
 
 def test_mfc_strains_by_0_92_ppm_per_volt():
@@ -71,3 +73,12 @@ def test_hoop_stress_takes_its_share_since_the_wall_is_free_around():
     assert coupled[0] - free[0] == pytest.approx(gain)
     assert gain > 0.0
     assert coupled[1:] == pytest.approx(free[1:])
+
+
+def test_capacitance_is_the_data_sheets():
+    """14.5 nF of an M-8557-P1's 48.45 cm² at 0.30 nF/cm²; ε33 A/t of a plate of PIC255."""
+    assert MFC.capacitance(0.085 * 0.057) == pytest.approx(0.30e-9 * 48.45, rel=1e-12)
+    plate = PATCH_MATERIALS["PIC255"]
+    assert plate.capacitance(0.05 * 0.025) == pytest.approx(1750.0 * 8.854e-12 * 0.05 * 0.025 / 0.5e-3, rel=1e-4)
+    with pytest.raises(ValueError, match="permittivity is None, but must be known"):
+        replace(MFC, permittivity=None).capacitance(1e-3)

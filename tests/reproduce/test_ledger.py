@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from train.reproduce.catalogue import NAMES, STUDIES, chosen
+from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIES, chosen
 from train.reproduce.judging.ledger import ROWS
 from train.reproduce.judging.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Small, Substantial, Verdict
 
@@ -93,7 +93,14 @@ def test_keys_are_unique_and_every_table_and_figure_of_chapters_2_3_5_and_6_is_t
     wanted += (
         [f"figure-3.{n}" for n in range(2, 25)] + [f"figure-5.{n}" for n in range(1, 18)] + [f"figure-6.{n}" for n in range(4, 8)]
     )
-    assert sorted(NAMES) == sorted(wanted)
+    assert sorted(study.name for study in THESIS_STUDIES) == sorted(wanted)
+
+
+def test_own_work_decides_no_conclusion_and_names_no_table_or_figure_of_the_thesis():
+    own = {study.name for study in FUTURE_WORK[1]}
+    assert not own & {study for row in ROWS for study, _ in row.decided_by}
+    assert not any(name.startswith(("table-", "figure-")) for name in own)
+    assert len(set(NAMES)) == len(NAMES) == len(THESIS_STUDIES) + len(own)
 
 
 def test_an_unknown_name_lists_the_known_ones():

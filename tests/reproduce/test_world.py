@@ -3,11 +3,11 @@
 import pytest
 
 from beamenv.structure import RotatingBeam
-from train.reproduce.catalogue import NAMES, chosen
+from train.reproduce.catalogue import THESIS_STUDIES, chosen
 from train.reproduce.thesis import Model
 
 QUICK = ("table-2.2", "table-3.2", "table-3.4", "figure-3.8", "figure-5.3", "figure-5.8", "figure-5.11")
-SLOW = ("figure-6.7", *(name for name in NAMES if name not in QUICK and "-6." not in name))
+SLOW = ("figure-6.7", *(study.name for study in THESIS_STUDIES if study.name not in QUICK and "-6." not in study.name))
 """Of chapter 6 one, for all take the same blade; the others search for minutes."""
 
 

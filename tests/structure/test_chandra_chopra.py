@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import legvander
 
-from beamenv.structure import AS4_3501_6, BoxSection, Layup, RotatingBeam
-from beamenv.structure import trial_functions
+from beamenv.structure import AS4_3501_6, BoxSection, Layup, RotatingBeam, trial_functions
 from beamenv.structure.trial_functions import legendre_derivative
 
 INCH, RPM = 0.0254, 2.0 * np.pi / 60.0

@@ -1,4 +1,4 @@
-"""A blade of finite elements against itself of polynomials, against closed forms and published tables, and as its mesh grows finer."""
+"""A blade of finite elements against one of polynomials, against closed forms and published tables, and as its mesh grows finer."""
 
 from dataclasses import replace
 
@@ -197,11 +197,11 @@ def test_stepped_beam_has_the_frequencies_of_its_transcendental_equation():
 
 
 def test_mesh_does_not_matter():
-    """Of the default blade with its patches, at 200 rad/s: six frequencies of uneven meshes within 2e-6 of those of an even one."""
+    """Of the default blade with its patches, at 200 rad/s: six frequencies by an uneven mesh and an even one within 2e-6."""
     beam = Blade(BladeConfig()).beam
-    even = replace(beam, **FINE).natural_frequencies(200.0, 6)
+    even = replace(beam, **ELEMENTS).natural_frequencies(200.0, 6)
     rng = np.random.default_rng(0)
-    inside = np.sort(rng.uniform(0.02, 0.98, 24))
+    inside = np.sort(rng.uniform(0.02, 0.98, 12))
     uneven = replace(beam, **ELEMENTS, mesh=(0.0, 0.004, 0.012, *inside, 1.0), element_order=5)
     assert deviation(uneven.natural_frequencies(200.0, 6), even) < 2e-6
 
@@ -219,7 +219,7 @@ def test_elements_end_where_patches_do_and_tables_bend():
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"discretisation": "splines"}, "discretisation is 'splines', but must be galerkin or finite-elements."),
+        ({"discretisation": "splines"}, "discretisation is 'splines', but must be one of galerkin, finite-elements."),
         ({**ELEMENTS, "elements": 0}, "elements is 0, but must be None or a whole number from 1 to 100."),
         ({**ELEMENTS, "elements": 101}, "elements is 101, but must be None or a whole number from 1 to 100."),
         ({**ELEMENTS, "element_order": 1}, "element_order is 1, but must be None or a whole number from 2 to 6."),

@@ -9,10 +9,9 @@ from scipy.integrate import solve_bvp
 
 from beamenv.blade.config import BeamConfig
 from beamenv.patches import MFC
-from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, Ply, RotatingBeam
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, Ply, RotatingBeam, trial_functions
 from beamenv.structure.geometrically_exact import at_stations
 from beamenv.structure.modes import normal_modes
-from beamenv.structure import trial_functions
 from beamenv.structure.trial_functions import legendre_derivative
 
 SPEED = 200.0

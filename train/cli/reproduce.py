@@ -9,11 +9,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 
 from beamenv.configuration.writing import write_whole
 from train.cli.bars import Bars
-from train.reproduce.catalogue import NAMES, STUDIES, chosen
+from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIES, chosen
 from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
-from train.reproduce.report import html_page, markdown_page
+from train.reproduce.report import html_page, markdown_page, verdicts_of
 from train.reproduce.runner import Record, load, run
 from train.shared.files import check_folder
 from train.shared.lock import alone_in
@@ -100,11 +100,11 @@ def with_earlier(output: Path, records: list[Record]) -> list[Record]:
 
 def report(records: list[Record], output: Path) -> None:
     """What came out, in a few lines."""
-    by_name = {study.name: study for study in STUDIES}
-    verdicts = counts(
-        [verdict for record in records if not record.error for verdict in by_name[record.name].verdicts(record.judgements)]
-    )
-    typer.echo("Statements: " + ", ".join(f"{number} {verdict.value}" for verdict, number in verdicts.items()))
+    found = {record.name: record.judgements for record in records if not record.error}
+    for what, studies in (("Statements", THESIS_STUDIES), (f"Checks of {FUTURE_WORK[0]!r}", FUTURE_WORK[1])):
+        if any(record.name == study.name for record in records for study in studies):
+            verdicts = counts(verdicts_of(studies, found))
+            typer.echo(f"{what}: " + ", ".join(f"{number} {verdict.value}" for verdict, number in verdicts.items()))
     judgements = {record.name: record.judgements for record in with_earlier(output, records) if not record.error}
     rows = counts([row.verdict(judgements) for row in ROWS])
     if sum(rows.values()) > rows[Verdict.UNTESTABLE]:

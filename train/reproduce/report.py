@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from train.reproduce.catalogue import CHAPTERS, STUDIES
-from train.reproduce.judging.ledger import ROWS, counts
+from train.reproduce.catalogue import CHAPTERS, FUTURE_WORK, THESIS_STUDIES
+from train.reproduce.judging.ledger import ROWS, Judgements, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.runner import Record
@@ -25,6 +25,11 @@ INTRODUCTION = (
     "Questions of our own stand beside them and decide nothing. Step loads are 30 N/m, so that ±1500 V matters; the thesis prints "
     "no load for "
     "its figures. Where the thesis leaves a configuration open or misprints it, the one used is named."
+)
+FUTURE_WORK_INTRODUCTION = (
+    "What the thesis' section 7.2 left to others, and is there now (in words: docs/beyond-the-thesis.md). These statements are our "
+    "own, judged by the same rules: what is expected is a closed form, a published number or an independent computation. They "
+    "are counted apart."
 )
 SYMBOL = {Verdict.REPRODUCED: "●", Verdict.TREND: "◐", Verdict.NOT_REPRODUCED: "○", Verdict.UNTESTABLE: "–"}
 STYLE = """
@@ -89,6 +94,7 @@ def page(records: Sequence[Record], markup: Markup) -> list[str]:
         shown = [study for study in studies if study.name in known]
         if shown:
             parts.append(markup.heading(2, title))
+            parts += [markup.paragraph(FUTURE_WORK_INTRODUCTION)] if (title, studies) == FUTURE_WORK else []
         for study in shown:
             parts += section(study, known[study.name], markup)
     return parts
@@ -102,9 +108,10 @@ def shown_verdict(verdict: Verdict) -> str:
 def overview(records: Sequence[Record], markup: Markup) -> list[str]:
     """How many tables and figures, statements and conclusions have each verdict."""
     judgements = {record.name: record.judgements for record in records if not record.error}
-    judged = [(study, judgements[study.name]) for study in STUDIES if study.name in judgements]
+    judged = [(study, judgements[study.name]) for study in THESIS_STUDIES if study.name in judgements]
     studies = counts([study.verdict(found) for study, found in judged])
-    statements = counts([verdict for study, found in judged for verdict in study.verdicts(found)])
+    statements = counts(verdicts_of(THESIS_STUDIES, judgements))
+    checks = counts(verdicts_of(FUTURE_WORK[1], judgements))
     rows = counts([row.verdict(judgements) for row in ROWS])
     header = ["", *(shown_verdict(verdict) for verdict in Verdict)]
     body = [
@@ -112,9 +119,16 @@ def overview(records: Sequence[Record], markup: Markup) -> list[str]:
         ["their statements", *(str(number) for number in statements.values())],
         ["concluding statements", *(str(number) for number in rows.values())],
     ]
+    if sum(checks.values()):
+        body.append([f"checks of “{FUTURE_WORK[0]}”", *(str(number) for number in checks.values())])
     failed = [record.name for record in records if record.error]
     parts = [markup.table(header, body)]
     return [*parts, markup.paragraph(f"Failed: {', '.join(failed)}.")] if failed else parts
+
+
+def verdicts_of(studies: Sequence[Study], judgements: Judgements) -> list[Verdict]:
+    """Those of every statement of the studies that were run."""
+    return [verdict for study in studies if study.name in judgements for verdict in study.verdicts(judgements[study.name])]
 
 
 def ledger(records: Sequence[Record], markup: Markup) -> list[str]:
@@ -134,9 +148,8 @@ def ledger(records: Sequence[Record], markup: Markup) -> list[str]:
 
 def section(study: Study, record: Record, markup: Markup) -> list[str]:
     """One table or figure."""
-    kind, number = study.name.split("-")
     parts = [
-        markup.heading(3, f"{kind.capitalize()} {number}: {study.title}"),
+        markup.heading(3, study.heading),
         markup.paragraph(f"Configuration: {study.configuration}."),
     ]
     if record.error:
@@ -150,7 +163,8 @@ def section(study: Study, record: Record, markup: Markup) -> list[str]:
     verdicts = study.verdicts(record.judgements)
     share = f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements reproduced"
     parts.append(markup.paragraph(f"Verdict: {shown_verdict(study.verdict(record.judgements))} ({share})."))
-    parts.append(markup.table(["statement", "thesis", "ours", "deviation", "verdict", "rule"], rows))
+    source = "expected" if study in FUTURE_WORK[1] else "thesis"
+    parts.append(markup.table(["statement", source, "ours", "deviation", "verdict", "rule"], rows))
     remarks = dict.fromkeys(statement.remark for statement in study.statements if statement.remark)
     parts += [markup.paragraph(text) for text in (*remarks, *record.notes)]
     parts.append(markup.image(study.name))

@@ -172,18 +172,17 @@ def made_of(study: Study, model: Model, fingerprint: str, results: Mapping[Any, 
         check(results.values())
         outcome = study.compute(model, results)
         judgements = study.judge(outcome)
-        picture = draw(outcome, f"{study.name.capitalize().replace('-', ' ')}: {study.title}")
+        picture = draw(outcome, study.heading)
     except Exception as error:  # noqa: BLE001 - as above
         seconds, told = time.perf_counter() - start, f"{type(error).__name__}: {error}"
         return Made(Record(study.name, seconds, {}, error=told, fingerprint=fingerprint))
-    tabulated = study.name.startswith("table")
     record = Record(
         name=study.name,
         seconds=time.perf_counter() - start,
         judgements=judgements,
         notes=tuple(outcome.notes),
-        header=tuple(outcome.header) if tabulated else (),
-        rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if tabulated else (),
+        header=tuple(outcome.header) if study.tabulated else (),
+        rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if study.tabulated else (),
         fingerprint=fingerprint,
     )
     return Made(record, csv_text(outcome), picture)

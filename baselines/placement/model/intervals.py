@@ -13,65 +13,76 @@ from baselines.placement.model.contributions import BARE, COVERED
 Array = NDArray[np.float64]
 
 KINDS = len(COVERED)
+TOUCHING = 1e-9
+"""Share of the longest patch by which patches that touch may overlap."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PatchEdges:
-    """N layouts of patches ``length`` m long, with the Chebyshev polynomials at their edges."""
+    """N layouts of a + s patches, actuators first, with the Chebyshev polynomials at their edges; of a length of 0, it is none."""
 
     actuators: Array
     """(N, a): root-side edges, m."""
     sensors: Array
     """(N, s)."""
-    length: float
+    tips: Array
+    """(N, a + s): the other edges, m."""
     span: ChebyshevSpan
     starts: Array
     ends: Array
-    """(N, a + s, k) each, actuators first."""
+    """(N, a + s, k) each."""
 
     @classmethod
-    def of(cls, actuators: Array, sensors: Array, length: float, span: ChebyshevSpan) -> PatchEdges:
-        """Evaluate the polynomials."""
+    def of(cls, actuators: Array, sensors: Array, length: float | Array, span: ChebyshevSpan) -> PatchEdges:
+        """Evaluate the polynomials; ``length`` in m, of all patches or of each (N, a + s)."""
         root_side = np.concatenate([actuators, sensors], axis=1)
-        starts, ends = np.split(span.values(np.concatenate([root_side, root_side + length], axis=1)), 2, axis=1)
-        return cls(actuators, sensors, length, span, starts, ends)
+        tips = root_side + length
+        starts, ends = np.split(span.values(np.concatenate([root_side, tips], axis=1)), 2, axis=1)
+        return cls(actuators, sensors, tips, span, starts, ends)
 
     def force_shares(self) -> tuple[Array, Array]:
         """(N, a, 2, k) and (N, s, 2, k): how much of the two force series each actuator and each sensor takes."""
         count = self.actuators.shape[1]
-        first, second = self.actuators[:, :, None], self.sensors[:, None, :]
-        actuator_first = (first <= second)[..., None]
-        actuator_start, sensor_start = self.starts[:, :count, None], self.starts[:, None, count:]
-        actuator_end, sensor_end = self.ends[:, :count, None], self.ends[:, None, count:]
-        common = np.where(actuator_first, actuator_end - sensor_start, sensor_end - actuator_start)
-        common *= (np.abs(first - second) < self.length)[..., None]
+        ends_first, starts_last, overlap = self._common()
+        begin = np.where(starts_last, self.starts[:, None, count:], self.starts[:, :count, None])
+        end = np.where(ends_first, self.ends[:, :count, None], self.ends[:, None, count:])
+        common = (end - begin) * overlap
         covered = self.ends - self.starts
         own = np.stack([covered[:, :count], common.sum(axis=2)], axis=2)
         return own, np.stack([covered[:, count:], common.sum(axis=1)], axis=2)
 
+    def _common(self) -> tuple[NDArray[np.bool_], ...]:
+        """(N, a, s, 1) each: whether the actuator ends first, the sensor starts last, and the two overlap."""
+        count = self.actuators.shape[1]
+        first, second = self.actuators[:, :, None], self.sensors[:, None, :]
+        first_end, second_end = self.tips[:, :count, None], self.tips[:, None, count:]
+        overlap = (first < second_end) & (second < first_end)
+        starts_last = first <= second
+        ends_first = np.where(first_end == second_end, starts_last, first_end < second_end)
+        return ends_first[..., None], starts_last[..., None], overlap[..., None]
+
     def slopes(self) -> Array:
         """(N, 2 (a + s), k), 1/m: of the polynomials at the starts, then at the ends."""
         root_side = np.concatenate([self.actuators, self.sensors], axis=1)
-        return self.span.slopes(np.concatenate([root_side, root_side + self.length], axis=1))
+        return self.span.slopes(np.concatenate([root_side, self.tips], axis=1))
 
     def force_share_slopes(self, slopes: Array) -> tuple[Array, Array]:
-        """(N, a + s, a, 2, k) and (N, a + s, s, 2, k): derivatives of ``force_shares`` by every patch's position, 1/m."""
+        """(N, 2 (a + s), a, 2, k) and (N, 2 (a + s), s, 2, k): derivatives of ``force_shares`` by every edge, starts first, 1/m."""
         a, s = self.actuators.shape[1], self.sensors.shape[1]
         start, end = np.split(slopes, 2, axis=1)
-        first, second = self.actuators[:, :, None], self.sensors[:, None, :]
-        overlap = (np.abs(first - second) < self.length)[..., None]
-        actuator_first = (first <= second)[..., None]
-        by_actuator = overlap * np.where(actuator_first, end[:, :a, None], -start[:, :a, None])
-        by_sensor = overlap * np.where(actuator_first, -start[:, None, a:], end[:, None, a:])
-        top, below = (np.zeros((len(slopes), a + s, patches, 2, self.span.count)) for patches in (a, s))
+        ends_first, starts_last, overlap = self._common()
+        top, below = (np.zeros((len(slopes), 2, a + s, patches, 2, self.span.count)) for patches in (a, s))
         own_top, own_below = np.arange(a), np.arange(s)
-        top[:, own_top, own_top, 0] = (end - start)[:, :a]
-        below[:, a + own_below, own_below, 0] = (end - start)[:, a:]
-        top[:, own_top, own_top, 1] = by_actuator.sum(axis=2)
-        top[:, a:, :, 1] = by_sensor.swapaxes(1, 2)
-        below[:, :a, :, 1] = by_actuator
-        below[:, a + own_below, own_below, 1] = by_sensor.sum(axis=1)
-        return top, below
+        for edge, at, of_actuator in ((0, -start, ~starts_last), (1, end, ends_first)):
+            by_actuator = (overlap & of_actuator) * at[:, :a, None]
+            by_sensor = (overlap & ~of_actuator) * at[:, None, a:]
+            top[:, edge, own_top, own_top, 0] = at[:, :a]
+            below[:, edge, a + own_below, own_below, 0] = at[:, a:]
+            top[:, edge, own_top, own_top, 1] = by_actuator.sum(axis=2)
+            top[:, edge, a:, :, 1] = by_sensor.swapaxes(1, 2)
+            below[:, edge, :a, :, 1] = by_actuator
+            below[:, edge, a + own_below, own_below, 1] = by_sensor.sum(axis=1)
+        return tuple(each.reshape(len(each), -1, *each.shape[3:]) for each in (top, below))  # type: ignore[return-value]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,10 +104,12 @@ class Intervals:
         """Cut layouts at their patches' edges."""
         starts = np.concatenate([patches.actuators, patches.sensors], axis=1)
         count = starts.shape[1]
-        position = np.concatenate([starts, starts + patches.length], axis=1)
+        position = np.concatenate([starts, patches.tips], axis=1)
         step = np.repeat([1, -1], count) * np.ones(position.shape, dtype=int)
         on_top = np.tile(np.arange(count) < patches.actuators.shape[1], 2)
-        first_ends = np.where(step > 0, 1e-9 * patches.length, 0.0)  # touching patches: one ends before the next begins
+        first_ends = np.where(
+            step > 0, TOUCHING * (patches.tips - starts).max(), 0.0
+        )  # touching patches: one ends before the next begins
         order = np.argsort(position + first_ends, axis=1, kind="stable")
         event = np.take_along_axis(step, order, axis=1)
         above = np.where(on_top[order], event, 0).cumsum(axis=1) > 0
@@ -130,30 +143,28 @@ class Intervals:
         return at_start + beyond
 
     def share_slopes(self, slopes: Array) -> Array:
-        """(N, patches, 3 k): derivatives of ``share`` by the patches' positions, 1/m, from the polynomials' slopes."""
+        """(N, 2 patches, 3 k): derivatives of ``share`` by every edge, starts first, 1/m, from the polynomials' slopes."""
         change = self.covered - _beyond(self.covered)
-        return self._by_patch(change[..., BARE + 1 :, None] * self._in_order(slopes)[..., None, :])
+        return self._of_edges(change[..., BARE + 1 :, None] * self._in_order(slopes)[..., None, :])
 
     def pulled_share_slopes(self, tension: Array, slopes: Array) -> Array:
-        """(N, patches, 4 k): derivatives of ``pulled_share`` by the patches' positions, 1/m, likewise."""
+        """(N, 2 patches, 4 k): derivatives of ``pulled_share`` likewise."""
         pull, covered, slope = self._pull(tension), self.covered, self._in_order(slopes)
         weighted = pull[..., None] * covered
         change = weighted - _beyond(weighted)
         pull_slope = np.einsum("nek,nek->ne", covered - _beyond(covered), slope @ tension)  # of every c up to this edge
         steps = np.diff(self.values, axis=1)
         inboard = np.cumsum(covered[..., None] * steps[..., None, :], axis=1)
-        return self._by_patch(change[..., None] * slope[..., None, :] + pull_slope[..., None, None] * inboard)
+        return self._of_edges(change[..., None] * slope[..., None, :] + pull_slope[..., None, None] * inboard)
 
     def _in_order(self, slopes: Array) -> Array:
         """(N, E, k)."""
         return np.take_along_axis(slopes, self.order[..., None], axis=1)
 
-    def _by_patch(self, by_edge: Array) -> Array:
-        """Sum (N, E, kinds, k) over the two edges of every patch: (N, patches, kinds k)."""
-        patches = self.order.shape[1] // 2
-        belongs = (self.order[..., None] % patches == np.arange(patches)).astype(float)
-        flat = by_edge.reshape(*by_edge.shape[:2], -1)
-        return np.asarray(belongs.transpose(0, 2, 1) @ flat)
+    def _of_edges(self, by_edge: Array) -> Array:
+        """(N, E, kinds, k) in the order of the patches' starts and ends: (N, E, kinds k)."""
+        back = np.argsort(self.order, axis=1)
+        return np.take_along_axis(by_edge.reshape(*by_edge.shape[:2], -1), back[..., None], axis=1)
 
 
 def _beyond(of_intervals: Array) -> Array:

@@ -83,11 +83,11 @@ def matrix_slopes(parts: Contributions, cut: Intervals, passive: bool, moved: sl
     """Derivatives of one layout; by the positions of all patches, actuators first, or of those ``moved``."""
     n = len(parts.bare_frequencies)
     at_edges = cut.patches.slopes()
-    top, below = (each[0, moved] for each in cut.patches.force_share_slopes(at_edges))
+    top, below = (both_edges(each[0])[moved] for each in cut.patches.force_share_slopes(at_edges))
     stiffness = mass = gyroscopic = np.zeros((len(top), n, n))
     if passive:
-        share = cut.share_slopes(at_edges)[0, moved]
-        both = np.concatenate([share, cut.pulled_share_slopes(parts.tension, at_edges)[0, moved]], axis=1)
+        share = both_edges(cut.share_slopes(at_edges)[0])[moved]
+        both = np.concatenate([share, both_edges(cut.pulled_share_slopes(parts.tension, at_edges)[0])[moved]], axis=1)
         stiffness = symmetric_from(both @ parts.stiffness, n)
         mass, gyroscopic = symmetric_from(share @ parts.mass, n), skew_from(share @ parts.gyroscopic, n)
     return MatrixSlopes(
@@ -98,3 +98,9 @@ def matrix_slopes(parts: Contributions, cut: Intervals, passive: bool, moved: sl
         charges=along(below, parts.sensor_force),
         stored_energy=stored(top, parts.actuator_energy),
     )
+
+
+def both_edges(by_edge: Array) -> Array:
+    """Derivatives (patches, …) by patches that move whole, from those by their starts and their ends (2 patches, …)."""
+    start, end = np.split(by_edge, 2)
+    return np.asarray(start + end)

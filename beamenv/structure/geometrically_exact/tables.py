@@ -29,4 +29,3 @@ def field_tables(space: SpanSpace, z: Array) -> tuple[Array, Array]:
     """Values and slopes (S, terms) of the functions that every field has where sections shear."""
     value, slope, _ = space.table(z, space.kind("u"))
     return value, slope
-

@@ -111,7 +111,7 @@ def element_sums(mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.in
     """Those of V sections: the mesh's S sizes are V of them, and element k of section v has the wall ``laminates[which[v, k]]``."""
     sections, count = which.shape
     nodes = (mesh.order + 1) * (ACROSS + 1)
-    first, of_elements = _distinct(mesh, which)
+    first, of_elements = distinct_elements(mesh, which)
     totals = _Totals.zeros(len(first), nodes)
     for number, laminate in enumerate(laminates):
         members = np.flatnonzero(which.ravel()[first] == number)
@@ -135,7 +135,7 @@ class _Layer:
     ply: Ply
 
 
-def _distinct(mesh: Mesh, which: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def distinct_elements(mesh: Mesh, which: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Elements (flat indices into the mesh) of which no two are alike, and (V·K,) which of them each element is."""
     _, size = np.unique(mesh.points.reshape(len(which), -1), axis=0, return_inverse=True)
     place = np.arange(which.shape[1])

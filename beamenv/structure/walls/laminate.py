@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
@@ -34,6 +34,11 @@ class Ply:
 
     material: Lamina
     angle_deg: Annotated[float, DEGREES]
+
+    def at(self, temperature_K: float) -> Ply:
+        """The ply at a temperature; ``ValueError`` beyond its material's data."""
+        material = self.material.at(temperature_K)
+        return self if material is self.material else Ply(material, self.angle_deg)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +85,15 @@ class Layup:
 
     def mirrored(self) -> Layup:
         """Every ply angle with its sign changed."""
+        return self._each(lambda ply: Ply(ply.material, -ply.angle_deg))
 
-        def mirror(plies: tuple[Ply, ...]) -> tuple[Ply, ...]:
-            return tuple(Ply(ply.material, -ply.angle_deg) for ply in plies)
+    def at(self, temperature_K: float) -> Layup:
+        """Every ply at a temperature; ``ValueError`` beyond the data of a material."""
+        return self._each(lambda ply: ply.at(temperature_K))
 
-        default = None if self.default is None else mirror(self.default)
-        return Layup(default, {wall: mirror(plies) for wall, plies in self.walls.items()})
+    def _each(self, change: Callable[[Ply], Ply]) -> Layup:
+        default = None if self.default is None else tuple(map(change, self.default))
+        return Layup(default, {wall: tuple(map(change, plies)) for wall, plies in self.walls.items()})
 
 
 def _plies(name: str, given: Any) -> tuple[Ply, ...]:
@@ -140,6 +148,10 @@ class Laminate:
         thickness = checked("thickness", thickness, Number(gt=0.0, unit="m"))
         return Laminate((*self.interfaces, self.interfaces[-1] + thickness), (*self.plies, ply))
 
+    def at(self, temperature_K: float) -> Laminate:
+        """The same wall with its materials' constants at a temperature; ``ValueError`` beyond their data."""
+        return Laminate(self.interfaces, tuple(ply.at(temperature_K) for ply in self.plies))
+
     @property
     def turned_over(self) -> Laminate:
         """The same plies from the outer face to the inner."""
@@ -148,6 +160,11 @@ class Laminate:
     def moments(self, values: Array, highest: int = HIGHEST_MOMENT) -> Array:
         """∫ value(n) nʲ dn for j = 0 … highest, from one value (any shape) per ply: (highest + 1, …)."""
         return np.tensordot(power_integrals(np.array(self.interfaces), highest), values, axes=1)
+
+    def integrated(self, value: Callable[[Lamina, float], Any], highest: int = HIGHEST_MOMENT) -> Array:
+        """∫ value nʲ dn for j = 0 … highest, of what a material has at an angle (rad) from s towards z: (highest + 1, …)."""
+        angles = np.radians([ply.angle_deg for ply in self.plies])
+        return self.moments(np.array([value(ply.material, angle) for ply, angle in zip(self.plies, angles, strict=True)]), highest)
 
 
 def power_integrals(interfaces: Array, highest: int) -> Array:
@@ -174,15 +191,13 @@ class WallLaw(Sealed):
 @lru_cache(maxsize=64)
 def wall_law(laminate: Laminate) -> WallLaw:
     """Integrate a laminate through its thickness and condense out the hoop strain (N_ss = 0)."""
-    angles = np.radians([ply.angle_deg for ply in laminate.plies])
-    pairs = list(zip(laminate.plies, angles, strict=True))
-    q_bar = laminate.moments(np.stack([ply.material.transformed_stiffness(angle) for ply, angle in pairs]))
+    q_bar = laminate.integrated(Lamina.transformed_stiffness)
     full = q_bar[POWER[:, None] + POWER[None, :], COMPONENT[:, None], COMPONENT[None, :]]
     hoop_coupling = full[0, 1:] / full[0, 0]
     return WallLaw(
         thickness=laminate.thickness,
         stiffness=full[1:, 1:] - np.outer(full[0, 1:], hoop_coupling),
         hoop_coupling=hoop_coupling,
-        transverse_shear=laminate.moments(np.array([ply.material.transverse_shear_stiffness(angle) for ply, angle in pairs])),
-        density=laminate.moments(np.array([ply.material.density for ply in laminate.plies])),
+        transverse_shear=laminate.integrated(Lamina.transverse_shear_stiffness),
+        density=laminate.integrated(lambda material, _: material.density),
     )

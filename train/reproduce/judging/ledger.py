@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from train.reproduce.judging.verdicts import Judgement, Verdict, weakest
@@ -188,6 +188,6 @@ ROWS = (
 )
 
 
-def counts(verdicts: list[Verdict | None]) -> dict[Verdict, int]:
+def counts(verdicts: Sequence[Verdict | None]) -> dict[Verdict, int]:
     """How many of each, in the order of the verdicts."""
     return {verdict: verdicts.count(verdict) for verdict in Verdict}

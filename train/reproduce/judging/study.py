@@ -1,4 +1,4 @@
-"""A study: one table or figure of the thesis, what it states, how we compute it, and what came out."""
+"""A study: one table or figure, what is stated of it, how we compute it, and what came out."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Study:
     """One table or figure."""
 
     name: str
-    """ "table-3.4", "figure-5.7"."""
+    """ "table-3.4", "figure-5.7"; "graded-walls" of our own work."""
     title: str
     configuration: str
     """What was computed, where the thesis leaves it open or misprints it."""
@@ -98,6 +98,18 @@ class Study:
     outcome: Callable[..., Outcome]
     """From the model and, where it has parts, from what they came to."""
     parts: Callable[[Model], Parts] = no_parts
+    rows_on_page: bool = False
+    """Whether the page shows the outcome's rows, as it always does for a table of the thesis."""
+
+    @property
+    def heading(self) -> str:
+        """Name and title: "Table 3.4: …", "Graded walls: …"."""
+        return f"{self.name.capitalize().replace('-', ' ')}: {self.title}"
+
+    @property
+    def tabulated(self) -> bool:
+        """Whether its rows are shown on the page."""
+        return self.rows_on_page or self.name.startswith("table-")
 
     def compute(self, model: Model, results: Mapping[Any, Any] | None = None) -> Outcome:
         """The outcome, from its parts' results if these are there already."""

@@ -1,0 +1,52 @@
+"""Our own work in the page: shown and judged as the thesis' figures are, and counted apart."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from train.figures.figure import Curve, Panel
+from train.reproduce import report
+from train.reproduce.judging.study import Outcome, Statement, Study
+from train.reproduce.judging.verdicts import Matches
+from train.reproduce.report import html_page, markdown_page
+from train.reproduce.runner import run
+
+
+def outcome(model):
+    x = np.linspace(0.0, 1.0, 5)
+    panels = [Panel("one", "x (m)", "y (m)", [Curve(x, x, "a")])]
+    return Outcome({"limit": [2.0]}, panels, header=["x", "y"], rows=[[0.25, 0.5]])
+
+
+OWN = Study("graded-walls", "their stiffness", "a wall", (Statement("limit", "Of one metal", Matches((2.0,), 0.01, 0.1)),), outcome)
+FIGURE = replace(OWN, name="figure-3.2")
+
+
+@pytest.fixture
+def records(tmp_path, monkeypatch):
+    chapter = "7.2, done", (OWN, replace(OWN, name="heated-bar", rows_on_page=True))
+    monkeypatch.setattr(report, "FUTURE_WORK", chapter)
+    monkeypatch.setattr(report, "THESIS_STUDIES", (FIGURE,))
+    monkeypatch.setattr(report, "CHAPTERS", (("Chapter 3", (FIGURE,)), chapter))
+    return run([FIGURE, *chapter[1]], tmp_path)
+
+
+def test_own_work_is_counted_apart(records):
+    page = markdown_page(records)
+    assert "| tables and figures | 1 | 0 | 0 | 0 |" in page and "| their statements | 1 | 0 | 0 | 0 |" in page
+    assert "| checks of “7.2, done” | 2 | 0 | 0 | 0 |" in page
+    assert "checks of" not in markdown_page(records[:1])
+
+
+def test_own_work_has_a_heading_of_its_name_and_expectations_where_the_thesis_has_statements(records):
+    page = markdown_page(records)
+    thesis, own = page.split("## 7.2, done")
+    assert "### Figure 3.2: their stiffness" in thesis and "### Graded walls: their stiffness" in own
+    assert "| statement | thesis |" in thesis and "| statement | expected |" in own
+
+
+def test_own_work_shows_its_rows_on_the_page_where_it_asks_for_it(records, tmp_path):
+    shown = [record.rows for record in records]
+    assert shown == [(), (), (("0.25", "0.5"),)]
+    assert markdown_page(records).count("| 0.25 | 0.5 |") == 1 and "data:image/png" in html_page(records, tmp_path)
