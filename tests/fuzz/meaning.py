@@ -209,6 +209,10 @@ def _curve(value):
     if isinstance(value, Mapping):
         read = {str(name): _number(each) for name, each in value.items()}
         return NOTHING if NOTHING in read.values() or not set(read) <= set(_POLYNOMIAL) else read
+    return _points(value)
+
+
+def _points(value):
     points = np.asarray(value, dtype=object).tolist() if isinstance(value, np.ndarray) else value
     return _sequence(_sequence(_number, 2))(points)
 
@@ -244,6 +248,7 @@ _PLAIN = {
     tuple[str, ...]: Kind("texts", _sequence(_path), st.lists(st.text(max_size=3), max_size=2)),
     tuple[tuple[str, tuple[float, ...]], ...]: BY_WALL,
     tuple[tuple[str, Curve], ...]: CURVES,
+    tuple[tuple[float, float], ...]: Kind("points", _points, st.sampled_from([_LINE, [[0.0, 1.0], [1.0, 0.5]], [[0, "1"]], []])),
     Any: ANYTHING,
 }
 
