@@ -38,7 +38,9 @@ from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_stat
 from beamenv.structure.planform import TABLE, Steps
 from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
+from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.laminate import PLY_ANGLES
+from beamenv.structure.walls.materials import MODULI
 from beamenv.structure.walls.named import MATERIALS
 
 ON_EVERY_WALL = "all"
@@ -83,9 +85,17 @@ def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[
     return walls
 
 
-MODULI = ("E1", "E2", "G12", "G13", "G23")
 SOFTEST = 1e5
 """Pa: below that of rubber, and above any metal's in GPa or MPa."""
+
+
+def _laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lamina]]:
+    """Paths of the laminae that are given, and themselves."""
+    if isinstance(material, FunctionallyGraded):
+        parts = [("material.inner", material.inner), ("material.outer", material.outer)]
+    else:
+        parts = [("material", material)]
+    return [(path, each) for path, each in parts if isinstance(each, Lamina)]
 
 
 @configuration("blade.beam")
@@ -102,8 +112,11 @@ class BeamConfig:
     """m, of the walls."""
     hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.2023
     """m."""
-    material: Annotated[str | Lamina, Choice(MATERIALS, Lamina, dict.fromkeys(MODULI, SOFTEST))] = "graphite-epoxy"
-    """A name or a lamina; in a dictionary or file also a table of a lamina's fields, which completes from the material before."""
+    material: Annotated[
+        str | Lamina | FunctionallyGraded, Choice(MATERIALS, (Lamina, FunctionallyGraded), dict.fromkeys(MODULI, SOFTEST))
+    ] = "graphite-epoxy"
+    """A name, a lamina, or a FunctionallyGraded through the walls; in a dictionary or file also a table of a lamina's fields, which
+    completes from the material before, or of ``inner``, ``outer`` and ``exponent``."""
     ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
     """Degrees from the contour tangent, inner to outer face, for ("all", angles) or wall by wall; a list or a mapping will do."""
     pretwist_deg: Annotated[float, DEGREES] = 30.0
@@ -133,10 +146,10 @@ class BeamConfig:
 
     def __post_init__(self) -> None:
         check_discretisation(self)
-        if isinstance(self.material, Lamina):
+        for path, lamina in _laminae(self.material):
             for name in MODULI:
-                if getattr(self.material, name) < SOFTEST:
-                    raise Refused(f"material.{name}", getattr(self.material, name), f"at least {SOFTEST:g} (Pa)")
+                if getattr(lamina, name) < SOFTEST:
+                    raise Refused(f"{path}.{name}", getattr(lamina, name), f"at least {SOFTEST:g} (Pa)")
 
     @property
     def root_section(self) -> Section:

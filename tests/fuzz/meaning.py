@@ -209,12 +209,11 @@ def _curve(value):
     if isinstance(value, Mapping):
         read = {str(name): _number(each) for name, each in value.items()}
         return NOTHING if NOTHING in read.values() or not set(read) <= set(_POLYNOMIAL) else read
-    return _points(value)
+    return _pairs(value)
 
 
-def _points(value):
-    points = np.asarray(value, dtype=object).tolist() if isinstance(value, np.ndarray) else value
-    return _sequence(_sequence(_number, 2))(points)
+def _pairs(value):
+    return _sequence(_sequence(_number, 2))(list(value) if isinstance(value, np.ndarray) and value.ndim == 2 else value)
 
 
 def _by_property(value):
@@ -247,8 +246,8 @@ _PLAIN = {
     tuple[int, ...]: COUNTS,
     tuple[str, ...]: Kind("texts", _sequence(_path), st.lists(st.text(max_size=3), max_size=2)),
     tuple[tuple[str, tuple[float, ...]], ...]: BY_WALL,
+    tuple[tuple[float, float], ...]: Kind("pairs", _pairs, st.sampled_from([[[0, 1], [1, 0.5]], [[0, "1"]], [[1.0]], [], 0.5])),
     tuple[tuple[str, Curve], ...]: CURVES,
-    tuple[tuple[float, float], ...]: Kind("points", _points, st.sampled_from([_LINE, [[0.0, 1.0], [1.0, 0.5]], [[0, "1"]], []])),
     Any: ANYTHING,
 }
 
