@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.configuration import Refused
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
@@ -75,22 +75,30 @@ class Contributions(ReadOnly):
 
 
 def contributions(config: BladeConfig) -> Contributions:
-    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second. ``ValueError`` for a
-    blade that heat strains or springs hold.
+    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second.
+
+    A blade of finite elements, whose strains jump from one to the next, is taken by polynomials along the span. ``ValueError`` for
+    one that heat strains or springs hold.
     """
-    beam = config.beam
+    _check_free(config.beam)
+    if config.beam.discretisation != "galerkin":
+        beam = replace(config.beam, discretisation="galerkin", elements=None, element_order=None, mesh=None)
+        config = replace(config, beam=beam)
+    return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
+
+
+def _check_free(beam: BeamConfig) -> None:
     if beam.temperatures is not None:
         hot = beam.temperatures[0][1]
         raise Refused("blade.beam.temperature", hot, "None where patches are placed, at the temperature of their data (K)")
     if beam.tip_springs is not None and any(beam.tip_springs):
         raise Refused("blade.beam.tip_springs", list(beam.tip_springs), "None where patches are placed on a cantilever")
-    return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
 
 
 def of_solid_sections(config: BladeConfig) -> Contributions:
     """In the blade's model."""
     (actuators, sensors), bare = config.patches.pair(), config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     covering = Covering.of(config, bare, span)
     exact = covering.bare(bare.exact)
     point = exact.at(config.speed)
@@ -123,7 +131,7 @@ def of_walls(config: BladeConfig) -> Contributions:
     """In the thesis' model."""
     actuators, sensors = config.patches.pair()
     bare = config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / frequencies
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
@@ -203,7 +211,7 @@ def quadratic(rows: Array, section: Array) -> Array:
 
 def tension_of(bare: RotatingBeam, z: Array) -> Array:
     """T₀ (nodes,) = ∫_z^L m (R₀ + σ) dσ of the bare blade, N per (rad/s)²."""
-    whole = ChebyshevSpan(bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    whole = ChebyshevSpan(bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     mass = bare.walls_at(whole.nodes).inertia().mass_per_length
     pulled = whole.integral(mass * (bare.hub_radius + whole.nodes))
     return np.asarray((whole.values(np.array([bare.length])) - whole.values(z)) @ pulled)
