@@ -303,3 +303,17 @@ def test_a_material_of_unknown_expansion_is_refused_in_a_sentence():
     unknown = replace(ALUMINIUM, alpha1=None, alpha2=None)
     with pytest.raises(ValueError, match="alpha1"):
         blade(layup=Layup.uniform(unknown, [0.0]), temperature=310.0).at(0.0)
+
+
+def test_finite_elements_are_strained_alike():
+    options = {
+        "layup": Layup.uniform(GRAPHITE, [30.0] * 2),
+        "pretwist_deg": 20.0,
+        "temperature": 350.0,
+        "temperature_difference": 20.0,
+    }
+    either = [blade(**options, discretisation=name) for name in ("galerkin", "finite-elements")]
+    assert tip(either[1], "phi") == pytest.approx(tip(either[0], "phi"), rel=1e-5)
+    assert tip(either[1], "v") == pytest.approx(tip(either[0], "v"), rel=1e-5)
+    found, expected = (beam.natural_frequencies(80.0, 4) for beam in either)
+    assert found == pytest.approx(expected, rel=5e-4)  # as without heat
