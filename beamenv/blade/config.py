@@ -33,6 +33,7 @@ from beamenv.plant.limits import VOLTAGES
 from beamenv.sensors.kinds import SENSORS, Accelerometer, PatchCurrent, Sensor
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
+from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.planform import TABLE, Steps
 from beamenv.structure.section.section import THEORY, Metres, Section
@@ -128,6 +129,14 @@ class BeamConfig:
     """What the turning blade vibrates about; None: "nonlinear", or the blade at rest in the thesis' model, which has no other."""
     terms: Annotated[int | None, TERMS] = None
     """Trial functions of each field along the span; None: 16, or 10 in the thesis' model."""
+    discretisation: Annotated[str, DISCRETISATION] = "galerkin"
+    """What fields are made of along the span: "galerkin", polynomials over all of it, or "finite-elements"."""
+    elements: Annotated[int | None, ELEMENTS] = None
+    """Finite elements along the span, at least; None: 12."""
+    element_order: Annotated[int | None, ELEMENT_ORDER] = None
+    """Polynomial order of a finite element; None: 4."""
+    mesh: Annotated[tuple[float, ...] | None, MESH] = None
+    """Ends of finite elements, shares of the span from 0 to 1, beside the edges of patches; None: by ``elements``."""
     section: Annotated[AnySection | None, Variant("shape", SHAPES)] = None
     """A section of any shape, in a file a table with a ``shape`` and its fields; None: the box of width, depth and thickness."""
     twist_table: Annotated[Steps | None, TABLE, InsteadOf("pretwist_deg", 0.0)] = None
@@ -136,6 +145,7 @@ class BeamConfig:
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
 
     def __post_init__(self) -> None:
+        check_discretisation(self)
         for path, lamina in _laminae(self.material):
             for name in MODULI:
                 if getattr(lamina, name) < SOFTEST:
@@ -165,6 +175,10 @@ class BeamConfig:
             shear_flow=self.shear_flow,
             steady_state=self.steady_state,
             terms=self.terms,
+            discretisation=self.discretisation,
+            elements=self.elements,
+            element_order=self.element_order,
+            mesh=self.mesh,
             inlays=layout.inlays(self.length) if layout is not None else (),
         )
 

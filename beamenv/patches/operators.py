@@ -16,7 +16,7 @@ from beamenv.patches.material import PatchMaterial
 from beamenv.structure.assembly import generalised_strains
 from beamenv.structure.beam import EXTRA_STATIONS, RotatingBeam
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.trial_functions import LEAST, Stations
+from beamenv.structure.stations import LEAST, Stations
 from beamenv.structure.walls.inlay import Inlay, Strip
 
 Array = NDArray[np.float64]
@@ -83,8 +83,8 @@ def stations_under(beam: RotatingBeam, start: float, end: float) -> Stations:
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length) if start < edge < end]
     breakpoints = np.unique([start, *edges, end])  # a patch on the opposite wall changes the shear flow where it ends
     apart = np.append(True, np.diff(breakpoints) > 1e-9 * beam.length)
-    few = int(np.ceil(LEAST + (beam.space.terms + EXTRA_STATIONS) * (end - start) / beam.length))
-    return Stations.between(breakpoints[apart], few if beam.model == "blade" else beam.space.terms + EXTRA_STATIONS)
+    few = int(np.ceil(LEAST + (beam.space.order + EXTRA_STATIONS) * (end - start) / beam.length))
+    return beam.space.stations(breakpoints[apart], few if beam.model == "blade" else beam.space.order + EXTRA_STATIONS)
 
 
 def _check_parts(beam: RotatingBeam, layout: PatchLayout) -> None:

@@ -74,14 +74,20 @@ class Contributions(ReadOnly):
 
 
 def contributions(config: BladeConfig) -> Contributions:
-    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second."""
+    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second.
+
+    A blade of finite elements, whose strains jump from one to the next, is taken by polynomials along the span.
+    """
+    if config.beam.discretisation != "galerkin":
+        beam = replace(config.beam, discretisation="galerkin", elements=None, element_order=None, mesh=None)
+        config = replace(config, beam=beam)
     return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
 
 
 def of_solid_sections(config: BladeConfig) -> Contributions:
     """In the blade's model."""
     (actuators, sensors), bare = config.patches.pair(), config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     covering = Covering.of(config, bare, span)
     exact = covering.bare(bare.exact)
     point = exact.at(config.speed)
@@ -114,7 +120,7 @@ def of_walls(config: BladeConfig) -> Contributions:
     """In the thesis' model."""
     actuators, sensors = config.patches.pair()
     bare = config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     basis = shapes / frequencies
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
@@ -194,7 +200,7 @@ def quadratic(rows: Array, section: Array) -> Array:
 
 def tension_of(bare: RotatingBeam, z: Array) -> Array:
     """T₀ (nodes,) = ∫_z^L m (R₀ + σ) dσ of the bare blade, N per (rad/s)²."""
-    whole = ChebyshevSpan(bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    whole = ChebyshevSpan(bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     mass = bare.walls_at(whole.nodes).inertia().mass_per_length
     pulled = whole.integral(mass * (bare.hub_radius + whole.nodes))
     return np.asarray((whole.values(np.array([bare.length])) - whole.values(z)) @ pulled)

@@ -16,11 +16,12 @@ from beamenv.structure.geometrically_exact.heat import Heat
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.geometrically_exact.tables import increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.tables import increment_rows
 from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.section.amplitudes import AMPLITUDES
 from beamenv.structure.section.elements import RIGID
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 from beamenv.structure.walls.inlay import Strip
 
 Array = NDArray[np.float64]
@@ -46,7 +47,7 @@ CONVERGED_UNDER_HEAT = 1e-6
 class ExactBeam:
     """A blade, its sections along the span, and the stations at which it is integrated."""
 
-    space: TrialSpace
+    space: SpanSpace
     stations: Stations
     sections: SectionsAlong
     hub_radius: float
@@ -75,8 +76,8 @@ class ExactBeam:
         on_increments = placement.strain_rows.swapaxes(-1, -2) @ work[:, :RIGID]
         actions = work.shape[-1]
         force = rows.reshape(-1, self.space.size).T @ on_increments.reshape(-1, actions)
-        for table, part in zip(shape_tables(self.space, z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
-            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.terms, AMPLITUDES, actions)
+        for table, part in zip(self.space.amplitude_table(z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
+            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.amplitude_terms, AMPLITUDES, actions)
             force += point.following.T @ on_shapes.swapaxes(0, 1).reshape(-1, actions)
         return np.asarray(force)
 
@@ -111,8 +112,8 @@ class ExactBeam:
 
     def _with_shapes(self, z: Array, beam: Array, amplitudes: Array) -> Array:
         """(S, STRAINS, c) from beam strains (S, 6, c) and amplitudes (AMPLITUDES × terms, c)."""
-        value, slope = shape_tables(self.space, z)
-        by_shape = amplitudes.reshape(AMPLITUDES, self.space.terms, -1)
+        value, slope = self.space.amplitude_table(z)
+        by_shape = amplitudes.reshape(AMPLITUDES, self.space.amplitude_terms, -1)
         shapes = [np.einsum("st,jtc->sjc", table, by_shape, optimize=True) for table in (value, slope)]
         return np.concatenate([beam, *shapes], axis=1)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from beamenv.configuration.read_only import Sealed
 from beamenv.structure.section.elements import ACROSS, places
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.trial_functions import gauss_rule
+from beamenv.structure.stations import gauss_rule
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

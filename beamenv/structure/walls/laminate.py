@@ -230,7 +230,7 @@ class WallLaw(Sealed):
 @lru_cache(maxsize=64)
 def wall_law(laminate: Laminate) -> WallLaw:
     """Integrate a laminate through its thickness and condense out the hoop strain (N_ss = 0)."""
-    q_bar = laminate.integrated(Lamina.transformed_stiffness)
+    q_bar = laminate.integrated(lambda material, angle: material.transformed_stiffness(angle))
     full = q_bar[POWER[:, None] + POWER[None, :], COMPONENT[:, None], COMPONENT[None, :]]
     hoop_coupling = full[0, 1:] / full[0, 0]
     return WallLaw(
