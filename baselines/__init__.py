@@ -4,6 +4,7 @@ from baselines.analysis.frequency_response import h_infinity_norm
 from baselines.analysis.margins import StabilityMargins, stability_margins
 from baselines.analysis.small_gain import small_gain
 from baselines.analysis.stationary import closed_loop_poles, stationary_cost
+from baselines.design.adapting import AdaptiveNeural
 from baselines.design.controller import Controller
 from baselines.design.hypothesis import Hypothesis
 from baselines.design.instruments import Instruments
@@ -19,6 +20,7 @@ from baselines.identification.files import read_measurement
 from baselines.identification.identified import Identified
 from baselines.identification.identify import identify
 from baselines.identification.measurement import Measurement
+from baselines.laws.adaptive_neural import AdaptationSettings, adaptive_neural
 from baselines.laws.clairvoyant_lqg import ClairvoyantLQG, clairvoyant_lqg
 from baselines.laws.clipped_lqg import ClippedLQG, clipped_lqg
 from baselines.laws.detuned_lqg import Detuning, detuned_lqg
@@ -40,6 +42,8 @@ from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_
 from baselines.laws.velocity_feedback import velocity_feedback
 
 __all__ = [
+    "AdaptationSettings",
+    "AdaptiveNeural",
     "ClairvoyantLQG",
     "ClippedLQG",
     "Controller",
@@ -62,6 +66,7 @@ __all__ = [
     "RunUpLQG",
     "ScheduledLQG",
     "StabilityMargins",
+    "adaptive_neural",
     "clairvoyant_lqg",
     "clipped_lqg",
     "closed_loop_poles",

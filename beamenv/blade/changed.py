@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from beamenv.blade.config import MATERIALS, BladeConfig
+from beamenv.blade.config import BladeConfig
+from beamenv.structure.walls.named import MATERIALS
 
 
 def changed_blade(
@@ -12,10 +13,9 @@ def changed_blade(
 ) -> BladeConfig:
     """A blade whose speed, ply angles, moduli and density are those of another times a ratio, with a damping ratio of its own."""
     material = MATERIALS[config.beam.material] if isinstance(config.beam.material, str) else config.beam.material
-    stiffer = {name: modulus * getattr(material, name) for name in ("E1", "E2", "G12", "G13", "G23")}
     beam = replace(
         config.beam,
-        material=replace(material, density=mass * material.density, **stiffer),
+        material=material.scaled(modulus, mass),
         ply_angles_deg=tuple((wall, tuple(ply_angle * angle for angle in angles)) for wall, angles in config.beam.ply_angles_deg),
     )
     return replace(config, beam=beam, speed=speed * config.speed, damping_ratio=damping_ratio)

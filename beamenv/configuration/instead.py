@@ -15,7 +15,7 @@ class InsteadOf:
     """Annotation of a field that, unless it is None, stands for another one, which then is ``neutral``."""
 
     field: str
-    neutral: float
+    neutral: float | None
 
 
 def settled(cls: Any, given: Mapping[str, Any], path: str, usual: bool = False) -> dict[str, Any]:
@@ -26,7 +26,7 @@ def settled(cls: Any, given: Mapping[str, Any], path: str, usual: bool = False) 
     for name, rule in _rules(cls):
         stands = given.get(name) is not None
         if stands and rule.field in given and not _alike(given[rule.field], _allowed(cls, rule, usual)):
-            raise Refused(f"{path}.{rule.field}", given[rule.field], f"left out, or {rule.neutral:g}, beside {name}")
+            raise Refused(f"{path}.{rule.field}", given[rule.field], f"left out, or {_said(rule.neutral)}, beside {name}")
         if stands:
             values[rule.field] = rule.neutral
         elif rule.field in given:
@@ -39,10 +39,14 @@ def _rules(cls: Any) -> Iterator[tuple[str, InsteadOf]]:
         yield from ((name, each) for each in field.metadata if isinstance(each, InsteadOf))
 
 
-def _allowed(cls: Any, rule: InsteadOf, usual: bool) -> tuple[float, ...]:
+def _said(neutral: float | None) -> str:
+    return "None" if neutral is None else f"{neutral:g}"
+
+
+def _allowed(cls: Any, rule: InsteadOf, usual: bool) -> tuple[float | None, ...]:
     default = next(each.default for each in fields(cls) if each.name == rule.field)
     return (rule.neutral, default) if usual and default is not MISSING else (rule.neutral,)
 
 
-def _alike(value: Any, allowed: tuple[float, ...]) -> bool:
-    return isinstance(value, Real) and value in allowed
+def _alike(value: Any, allowed: tuple[float | None, ...]) -> bool:
+    return (value is None or isinstance(value, Real)) and value in allowed

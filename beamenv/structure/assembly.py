@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.structure.section.inertia import SectionInertia
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class BeamMatrices(ReadOnly):
         """Whether every number is finite, and mass and stiffness are positive definite by more than rounding."""
         if not all(np.isfinite(each).all() for each in (self.mass, self.elastic_stiffness, self.spin_stiffness, self.gyroscopic)):
             return False
-        return _definite(self.mass) and _definite(self.elastic_stiffness)
+        return definite(self.mass) and definite(self.elastic_stiffness)
 
     def stiffness(self, speed: float) -> Array:
         """K (N, N) at a speed in rad/s."""
@@ -47,7 +48,7 @@ class BeamMatrices(ReadOnly):
         return BeamMatrices(self.mass[pick], self.elastic_stiffness[pick], self.spin_stiffness[pick], self.gyroscopic[pick])
 
 
-def _definite(matrix: Array) -> bool:
+def definite(matrix: Array) -> bool:
     """Whether a symmetric matrix is positive definite by more than rounding, n ε of its diagonal, may make or take."""
     diagonal = np.diagonal(matrix)
     if not np.all(diagonal > 0.0):
@@ -92,7 +93,7 @@ def integrate(weight: Array, left: Array, section: Array, right: Array) -> Array
 
 
 def assemble(
-    space: TrialSpace, stations: Stations, section_stiffness: Array, inertia: SectionInertia, hub_radius: float
+    space: SpanSpace, stations: Stations, section_stiffness: Array, inertia: SectionInertia, hub_radius: float
 ) -> BeamMatrices:
     """Integrate section matrices (S, 9, 9) over the span."""
     rows = space.evaluate(stations.z)

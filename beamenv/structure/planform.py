@@ -1,4 +1,4 @@
-"""How a section is turned and scaled along the span: evenly, or by tables."""
+"""How a section is turned and scaled along the span, evenly or by tables, and how hot it is."""
 
 from __future__ import annotations
 
@@ -22,6 +22,9 @@ a polynomial."""
 SIZES_OF_PIECE = 7
 """The same of each of several pieces of the span."""
 
+TEMPERATURES = 4
+"""The same of a piece that is not equally hot all along, where it is not tapered: materials follow cubic curves within it."""
+
 LEAST_PIECE = 0.02
 """Of the span."""
 
@@ -39,6 +42,19 @@ class Piece(NamedTuple):
     """rad/m."""
     sizes: tuple[float, ...]
     """Of the sections that are worked out, over that of the root."""
+    temperatures: tuple[float, ...] | None = None
+    """K, of them; None: all as their data have it."""
+
+    @property
+    def nodes(self) -> Array:
+        """What tells the sections worked out apart, (n,): the size, or where they are not equally hot the temperature."""
+        temperatures = self.temperatures
+        return np.array(self.sizes if temperatures is None or len(set(temperatures)) == 1 else temperatures)
+
+    @property
+    def by_temperature(self) -> bool:
+        """Whether it is the temperature."""
+        return self.temperatures is not None and len(set(self.temperatures)) > 1
 
 
 @dataclass(frozen=True)
@@ -56,6 +72,8 @@ class Planform:
     """Shares of the span and the size there over that of the root, straight in between; None: evenly to 1/``taper``."""
     covered: float = 0.0
     """m: up to where inlays lie; a tapered blade is in two pieces there, for theirs need not fit further out."""
+    temperatures: Steps | None = None
+    """Shares of the span and the temperature (K) there, straight in between; None: that at which the blade's data hold."""
 
     def scale(self, z: Array) -> Array:
         """Size over that of the root (S,)."""
@@ -69,6 +87,11 @@ class Planform:
         if self.twists is not None:
             return self.presetting + _straight(self.twists, z / self.length)
         return self.presetting + self.pretwist * z / self.length
+
+    def temperature(self, z: Array) -> Array:
+        """K (S,), where there is one."""
+        assert self.temperatures is not None
+        return _straight(self.temperatures, z / self.length)
 
     def frames(self, z: Array) -> Array:
         """C₀ (S, 3, 3): the axes of the sections."""
@@ -88,7 +111,8 @@ class Planform:
     def pieces(self) -> tuple[Piece, ...]:
         """One where neither is by a table."""
         tapered = self.taper != 1.0 if self.chords is None else len({size for _, size in self.chords}) > 1
-        end, known = self.covered / self.length, {share for table in (self.twists, self.chords) for share, _ in table or ()}
+        tables = self.twists, self.chords, self.temperatures
+        end, known = self.covered / self.length, {share for table in tables for share, _ in table or ()}
         near = any(-1e-9 <= share - end <= LEAST_PIECE for share in {1.0, *known})
         split = {end} if tapered and end > LEAST_PIECE and not near else set()
         shares = sorted({0.0, 1.0, *split, *known})
@@ -99,7 +123,14 @@ class Planform:
         ends = self.length * np.array([low, high])
         rate = self.pretwist / self.length if self.twists is None else float(np.diff(self.angle(ends))[0] / np.diff(ends)[0])
         first, last = (1.0, 1.0 / self.taper) if self.chords is None and not several else self.scale(ends).tolist()
-        return Piece(float(ends[0]), float(ends[1]), rate, _between(first, last, SIZES_OF_PIECE if several else SIZES))
+        count = SIZES_OF_PIECE if several else SIZES
+        sizes, temperatures = _between(first, last, count), None
+        if self.temperatures is not None:
+            coldest, hottest = self.temperature(ends).tolist()
+            hot = _between(coldest, hottest, count if len(sizes) > 1 else TEMPERATURES)
+            most = max(len(sizes), len(hot))
+            sizes, temperatures = (each * most if len(each) == 1 else each for each in (sizes, hot))
+        return Piece(float(ends[0]), float(ends[1]), rate, sizes, temperatures)
 
 
 def _between(first: float, last: float, count: int) -> tuple[float, ...]:

@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 NODES = 8
 """Speeds at which steady states are worked out for a sweep of more."""
 
+NODES_UNDER_HEAT = 24
+"""The same where heat bends or twists the blade at rest: speed then straightens it, within some of its lowest frequency."""
+
 SLOWEST = 1e-3
 """rad/s: of the lowest node of steady states over Ω²."""
 
@@ -100,24 +103,30 @@ class SteadyFamily:
     nodes: Array
     """Ω² (n,)."""
     coefficients: Array
-    """Over Ω² (n, all)."""
+    """(n, all), over Ω² where nothing moves the blade at rest."""
+    heated: bool
+    """Whether heat does."""
 
     @classmethod
     def of(cls, beam: ExactBeam, columns: NDArray[np.intp], speeds: Array) -> SteadyFamily:
         """For speeds (S,) in any order; where they are few each is worked out itself."""
         moving = np.maximum(speeds, SLOWEST) ** 2
-        nodes = np.unique(moving) if len(np.unique(moving)) <= NODES else _chebyshev(moving.min(), moving.max())
+        heated = beam.heat is not None
+        count = NODES_UNDER_HEAT if heated else NODES
+        nodes = np.unique(moving) if len(np.unique(moving)) <= count else _chebyshev(moving.min(), moving.max(), count)
         coefficients: list[Array] = []
         near: SteadyState | None = None
         for square in nodes.tolist():
             near = beam.at(float(np.sqrt(square)), near).steady
             assert near is not None
-            coefficients.append(near.coefficients / square)
-        return cls(beam, columns, nodes, np.array(coefficients))
+            coefficients.append(near.coefficients if heated else near.coefficients / square)
+        return cls(beam, columns, nodes, np.array(coefficients), heated)
 
     def at(self, speeds: Array) -> tuple[Array, Array]:
         """(S, N, N) each."""
-        states = speeds[:, None] ** 2 * (between(self.nodes, speeds**2) @ self.coefficients)
+        states = between(self.nodes, speeds**2) @ self.coefficients
+        if not self.heated:
+            states = speeds[:, None] ** 2 * states
         stiffness, coupling = [], []
         for speed, state in zip(speeds.tolist(), states, strict=True):
             point = self.beam.at_stations.about(state, speed).restricted(self.columns)
@@ -127,8 +136,8 @@ class SteadyFamily:
         return np.array(stiffness), np.array(coupling)
 
 
-def _chebyshev(low: float, high: float) -> Array:
-    nodes = np.cos(np.pi * (np.arange(NODES)[::-1] + 0.5) / NODES)
+def _chebyshev(low: float, high: float, count: int) -> Array:
+    nodes = np.cos(np.pi * (np.arange(count)[::-1] + 0.5) / count)
     return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * nodes)
 
 

@@ -10,6 +10,7 @@ import beamenv
 from baselines import (
     Hypothesis,
     PersistentLoad,
+    adaptive_neural,
     clipped_lqg,
     inverse_hysteresis,
     lqg,
@@ -29,6 +30,7 @@ LAWS = {
     "mpc": mpc,
     "multiple model": lambda plant: multiple_model([Hypothesis(plant, delay=d) for d in (0, 1)], lqg(plant)),
     "inverse hysteresis": lambda plant: inverse_hysteresis(lqg(plant), 0.2),
+    "adaptive neural": adaptive_neural,
     "mpc with delay": lambda plant: mpc(plant, delay=2),
     "mpc with load": lambda plant: mpc(plant, PersistentLoad()),
 }

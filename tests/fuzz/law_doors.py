@@ -45,6 +45,11 @@ def family():
     return speed_family(small.config(), [180.0, 200.0])
 
 
+@cache
+def adaptive():
+    return baselines.adaptive_neural(small.plant(), settings=baselines.AdaptationSettings(hidden=3, forces=1, lags=1))
+
+
 def law(name, kinds=None, /, **valid):
     """A builder of laws from a plant."""
     function = getattr(baselines, name)
@@ -153,6 +158,36 @@ DOORS = [
         lambda: {"plant": small.plant(), "detuning": baselines.Detuning(), "load": baselines.PersistentLoad(), "name": "mine"},
         told=ABOUT,
         public="detuned_lqg",
+    ),
+    law(
+        "adaptive_neural",
+        {"base": maybe(instance(baselines.LinearController)), "settings": maybe(instance(baselines.AdaptationSettings))},
+        base=None,
+        settings=None,
+    ),
+    Door(
+        "AdaptationSettings",
+        lambda **given: baselines.AdaptationSettings(**given),
+        of_fields(baselines.AdaptationSettings),
+        dict,
+        lambda made: made,
+        public="AdaptationSettings",
+    ),
+    Door(
+        "AdaptiveNeural.predict",
+        lambda **given: adaptive().predict(**given),
+        {"observation": MATRIX, "state": maybe(MATRIX)},
+        lambda: {"observation": np.array([[0.1, -0.2]]), "state": np.zeros((1, adaptive().order))},
+        told=("state",),
+        check=finite,
+        public="AdaptiveNeural",
+    ),
+    Door(
+        "AdaptiveNeural.adaptation",
+        lambda memory: adaptive().adaptation(memory),
+        {"memory": ARRAY},
+        lambda: {"memory": np.zeros((2, adaptive().order))},
+        told=("memory",),
     ),
     Door(
         "PersistentLoad",

@@ -15,6 +15,8 @@ from typing import Any, Union, get_args, get_origin
 import numpy as np
 from hypothesis import strategies as st
 
+from beamenv.structure.walls.curves import Curve, Touloukian
+
 NOTHING = type("Nothing", (), {"__repr__": lambda self: "NOTHING"})()
 
 
@@ -198,6 +200,41 @@ def _by_wall(value):
 
 BY_WALL = Kind("ply angles", _by_wall, st.sampled_from([[30.0], {"top": [1.0]}, {"all": "30"}, [["all", [3]]], {"all": []}, {}]))
 
+_POLYNOMIAL = ("least_K", "most_K", "P_minus1", "P1", "P2", "P3")
+
+
+def _curve(value):
+    if isinstance(value, Touloukian):
+        return value
+    if isinstance(value, Mapping):
+        read = {str(name): _number(each) for name, each in value.items()}
+        return NOTHING if NOTHING in read.values() or not set(read) <= set(_POLYNOMIAL) else read
+    return _pairs(value)
+
+
+def _pairs(value):
+    return _sequence(_sequence(_number, 2))(list(value) if isinstance(value, np.ndarray) and value.ndim == 2 else value)
+
+
+def _by_property(value):
+    pairs = list(value.items()) if isinstance(value, Mapping) else _items(value)
+    if pairs is NOTHING or not all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in pairs):
+        return NOTHING
+    read = tuple((_text(name), _curve(curve)) for name, curve in pairs)
+    return NOTHING if any(each is NOTHING for pair in read for each in pair) or len({n for n, _ in read}) < len(read) else read
+
+
+_LINE = [[250.0, 1.0], [350, 0.9]]
+CURVES = Kind(
+    "curves",
+    _by_property,
+    st.sampled_from(
+        [{}, {"E1": _LINE}, {"E2": _LINE[::-1]}, {"G12": [[250.0, "1"], [300.0, 1.0]]}, {"rho": _LINE}, [["nu12", _LINE]] * 2]
+        + [{"E2": {"least_K": 200.0, "most_K": 400.0, "P1": -1e-4}}, {"E1": {"least_K": True, "most_K": 9}}]
+        + [{"alpha1": np.array(_LINE)}]
+    ),
+)
+
 _PLAIN = {
     float: NUMBER,
     int: COUNT,
@@ -209,6 +246,8 @@ _PLAIN = {
     tuple[int, ...]: COUNTS,
     tuple[str, ...]: Kind("texts", _sequence(_path), st.lists(st.text(max_size=3), max_size=2)),
     tuple[tuple[str, tuple[float, ...]], ...]: BY_WALL,
+    tuple[tuple[float, float], ...]: Kind("pairs", _pairs, st.sampled_from([[[0, 1], [1, 0.5]], [[0, "1"]], [[1.0]], [], 0.5])),
+    tuple[tuple[str, Curve], ...]: CURVES,
     Any: ANYTHING,
 }
 

@@ -13,6 +13,7 @@ from train.controllers.shipped import shipped
 from train.controllers.sources import Trained
 
 NOT_EXPORTED = {
+    "adaptive-neural": "learns at every instant",
     "clairvoyant": "what the truth of the episode is",
     "informed-mpc": "quadratic program",
     "lqr": "the blade's true state",

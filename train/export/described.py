@@ -7,7 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from baselines import ClippedLQG, InverseHysteresis, Law, LinearController, MultipleModel, PredictiveController, ScheduledLQG
+from baselines import (
+    AdaptiveNeural,
+    ClippedLQG,
+    InverseHysteresis,
+    Law,
+    LinearController,
+    MultipleModel,
+    PredictiveController,
+    ScheduledLQG,
+)
 from baselines.design.controller import name_of
 from baselines.design.instruments import Instruments, checked_plant
 from baselines.laws.time_varying_lqg import TimeVaryingLQG
@@ -34,6 +43,7 @@ HIDDEN = {"state": "the blade's true state", "observation and truth": "what the 
 
 REASONS: Mapping[type[Any], str] = {
     PredictiveController: "it solves a quadratic program at every instant, for which it needs a solver",
+    AdaptiveNeural: "its network learns at every instant, with a memory of some thousand numbers, which blocks have no words for",
     TimeVaryingLQG: "its gains are those of a run-up that is known beforehand, worked out on the way",
 }
 

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.configuration import Refused
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
 from beamenv.structure import RotatingBeam
@@ -87,19 +88,40 @@ class Frame:
 def contributions(config: BladeConfig, frame: Frame | None = None) -> Contributions:
     """The contributions of a configuration's patches, for any position of them; takes some tenths of a second.
 
-    Contributions of sheets of several sizes are in the same coordinates where they are given one ``frame``.
+    Contributions of sheets of several sizes are in the same coordinates where they are given one ``frame``. A blade of finite
+    elements, whose strains jump from one to the next, is taken by polynomials along the span. ``ValueError`` for one that heat
+    strains or springs hold.
     """
+    config = by_polynomials(config)
     return of_walls(config, frame) if config.model == "thesis" else of_solid_sections(config, frame)
 
 
 def frame_of(config: BladeConfig) -> Frame:
-    """The bare blade's own."""
+    """The bare blade's own; ``ValueError`` as ``contributions`` raises it."""
+    config = by_polynomials(config)
     bare = config.beam.build(model=config.model)
     if config.model == "thesis":
         frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
     else:
         frequencies, shapes = lowest_of(bare.at(config.speed), config.modes, bare.space.size)
     return Frame(frequencies, shapes / frequencies)
+
+
+def by_polynomials(config: BladeConfig) -> BladeConfig:
+    """The blade by polynomials along the span; ``ValueError`` for one that heat strains or springs hold."""
+    _check_free(config.beam)
+    if config.beam.discretisation == "galerkin":
+        return config
+    beam = replace(config.beam, discretisation="galerkin", elements=None, element_order=None, mesh=None)
+    return replace(config, beam=beam)
+
+
+def _check_free(beam: BeamConfig) -> None:
+    if beam.temperatures is not None:
+        hot = beam.temperatures[0][1]
+        raise Refused("blade.beam.temperature", hot, "None where patches are placed, at the temperature of their data (K)")
+    if beam.tip_springs is not None and any(beam.tip_springs):
+        raise Refused("blade.beam.tip_springs", list(beam.tip_springs), "None where patches are placed on a cantilever")
 
 
 def lowest_of(point: OperatingPoint, modes: int, size: int) -> tuple[Array, Array]:
@@ -110,7 +132,7 @@ def lowest_of(point: OperatingPoint, modes: int, size: int) -> tuple[Array, Arra
 def of_solid_sections(config: BladeConfig, frame: Frame | None = None) -> Contributions:
     """In the blade's model."""
     (actuators, sensors), bare = config.patches.pair(), config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     covering = Covering.of(config, bare, span)
     exact = covering.bare(bare.exact)
     point = exact.at(config.speed)
@@ -145,7 +167,7 @@ def of_walls(config: BladeConfig, frame: Frame | None = None) -> Contributions:
     """In the thesis' model."""
     actuators, sensors = config.patches.pair()
     bare = config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     frame = frame_of(config) if frame is None else frame
     frequencies, basis = frame.frequencies, frame.basis
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
@@ -225,7 +247,7 @@ def quadratic(rows: Array, section: Array) -> Array:
 
 def tension_of(bare: RotatingBeam, z: Array) -> Array:
     """T₀ (nodes,) = ∫_z^L m (R₀ + σ) dσ of the bare blade, N per (rad/s)²."""
-    whole = ChebyshevSpan(bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    whole = ChebyshevSpan(bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     mass = bare.walls_at(whole.nodes).inertia().mass_per_length
     pulled = whole.integral(mass * (bare.hub_radius + whole.nodes))
     return np.asarray((whole.values(np.array([bare.length])) - whole.values(z)) @ pulled)

@@ -15,23 +15,23 @@ from scipy.linalg import solve_triangular
 
 from beamenv.configuration.read_only import Sealed, sealed_property
 from beamenv.structure.assembly import symmetric
+from beamenv.structure.geometrically_exact.heat import FreeStrains, Heat
 from beamenv.structure.geometrically_exact.inertia import SpinningSections
-from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, FibreExtension, Placement
+from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, FibreExtension, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows
+from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.integrals import MONOMIALS
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 
 Array = NDArray[np.float64]
 
 BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), slice(RIGID + AMPLITUDES, STRAINS)
-
-HELD = 1e-10
-"""Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +59,26 @@ class BladeAtStations(Sealed):
     """(S, 6)"""
     shape_mass: Array
     """(S, AMPLITUDES, AMPLITUDES)"""
+    held: float
+    """Share of the stiffest shape's energy that every shape is given, so that one that does not warp has an amplitude too."""
+    free: FreeStrains | None = None
+    """Of a blade that is heated."""
+    springs: TipSprings | None = None
+    """Of one that is held at its tip."""
 
     @classmethod
-    def of(cls, space: TrialSpace, stations: Stations, sections: SectionsAlong, hub_radius: float) -> BladeAtStations:
+    def of(
+        cls,
+        space: SpanSpace,
+        stations: Stations,
+        sections: SectionsAlong,
+        hub_radius: float,
+        heat: Heat | None = None,
+        springs: TipSprings | None = None,
+    ) -> BladeAtStations:
         """Gather the sections and tabulate the trial functions."""
         z, solid = stations.z, sections.solid
-        value, slope = shape_tables(space, z)
+        value, slope = space.amplitude_table(z)
         energy, stress_moments = solid.energy, solid.stress_moments
         if space.rigid:
             energy, stress_moments = without_shear(energy), moments_without_shear(stress_moments, energy)
@@ -80,6 +94,9 @@ class BladeAtStations(Sealed):
             stress_moments=sections.at(z, stress_moments),
             section_inertia=sections.at(z, solid.inertia),
             shape_mass=sections.at(z, solid.shape_mass),
+            held=space.held,
+            free=None if heat is None else FreeStrains.of(z, sections, heat),
+            springs=springs,
         )
 
     @sealed_property
@@ -94,10 +111,13 @@ class BladeAtStations(Sealed):
 
     @sealed_property
     def elastic_at_rest(self) -> Array:
-        """∫ of the sections' energy (N, N) of the unloaded blade, with the shapes' amplitudes at their best."""
+        """∫ of the sections' energy (N, N) of the unloaded blade, with the shapes' amplitudes at their best, and the springs'."""
         rows = self.unloaded.strain_rows
         whole = self.form(rows.swapaxes(-1, -2) @ self.energy[:, BEAM, BEAM] @ rows)
-        return symmetric(whole - self._asked_at_rest.T @ self._asked_at_rest)
+        return symmetric(self._with_springs(whole - self._asked_at_rest.T @ self._asked_at_rest, np.zeros(len(whole))))
+
+    def _with_springs(self, stiffness: Array, q: Array) -> Array:
+        return stiffness if self.springs is None else stiffness + self.springs.tangent(q)
 
     @sealed_property
     def following_at_rest(self) -> Array:
@@ -116,7 +136,7 @@ class BladeAtStations(Sealed):
         mixed = self._shape_form(self.energy[:, SHAPE, SHAPE_SLOPE], self.value, self.slope)
         whole = whole + mixed + mixed.T + self._shape_form(self.energy[:, SHAPE_SLOPE, SHAPE_SLOPE], self.slope, self.slope)
         size = AMPLITUDES * terms
-        whole[np.arange(size), np.arange(size)] += HELD * np.diagonal(whole).max()
+        whole[np.arange(size), np.arange(size)] += self.held * np.diagonal(whole).max()
         return np.asarray(np.linalg.cholesky(whole))
 
     def _shape_form(self, section: Array, left: Array, right: Array) -> Array:
@@ -138,6 +158,40 @@ class BladeAtStations(Sealed):
     def asked(self, strain: Array) -> Array:
         """(AMPLITUDES × terms, …): Z e for strains e (S, 6, …); its square is the energy that the shapes save."""
         return np.asarray(self.onto_shapes @ strain.reshape(len(self.weight) * RIGID, *strain.shape[2:]))
+
+    @sealed_property
+    def _asked_by_heat(self) -> Array:
+        """Z e_T − g: what is taken off what strains ask of the shapes."""
+        assert self.free is not None
+        onward = np.einsum("s,st,sj->jt", self.weight, self.slope, self.free.onward).ravel()
+        return self.asked(self.free.strain) - solve_triangular(self.shape_stiffness, onward, lower=True, check_finite=False)
+
+    def stressing(self, strain: Array, asked: Array, share: float = 1.0) -> tuple[Array, Array]:
+        """Of strains (S, 6), which ask Z e of the shapes, those that make stress, beyond a share of what heat does, and theirs."""
+        if self.free is None:
+            return strain, asked
+        return strain - share * self.free.strain, asked - share * self._asked_by_heat
+
+    @sealed_property
+    def thermal_force(self) -> Array:
+        """(N,): what heat pushes the unloaded blade with."""
+        assert self.free is not None
+        resultants = self.resultants(self.free.strain, self._asked_by_heat)
+        return self.force(np.einsum("sfi,sf->si", self.unloaded.strain_rows, resultants))
+
+    def stress_stiffness(self, coefficients: Array, share: float = 1.0) -> Array:
+        """(N, N): what the stresses of small displacements and of heat add to the stiffness of the unloaded blade."""
+        placement, strain = self.unloaded, self.strain_rows @ coefficients
+        strain, asked = self.stressing(strain, self.asked(strain), share)
+        stressed = (
+            placement.strain_rows.swapaxes(-1, -2) @ under_stress(self._moments(strain, asked, share)) @ placement.strain_rows
+        )
+        return symmetric(self.form(placement.geometric(self.resultants(strain, asked)) + stressed))
+
+    def _moments(self, strain: Array, asked: Array, share: float) -> Array:
+        """With those that balance."""
+        moments = self.moments(strain, asked)
+        return moments if self.free is None else moments + share * self.free.moments
 
     def amplitudes(self, asked: Array) -> Array:
         """(AMPLITUDES × terms, …): those of least energy, −L⁻ᵀ Z e."""
@@ -196,20 +250,26 @@ class BladeAtStations(Sealed):
     def _shapes_mass(self) -> Array:
         return self._shape_form(self.shape_mass, self.value, self.value)
 
-    def newton_step(self, q: Array, speed: float) -> Array:
-        """Increment (N,) of displacements and spins towards the steady state from coefficients q."""
+    def newton_step(self, q: Array, speed: float, share: float = 1.0) -> Array:
+        """Increment (N,) of displacements and spins towards the steady state, under a share of the heat, from coefficients q."""
         placement = Placement.of(self.rows @ q, self.frames)
-        inertia, stressed = self.inertia(placement), self._stressed(placement, self.asked(placement.strain))
+        inertia, stressed = self.inertia(placement), self._stressed(placement, self.asked(placement.strain), share)
         pull = np.einsum("sfi,sf->si", placement.strain_rows, stressed.resultants)
         push = self.force(speed**2 * inertia.centrifugal - pull)
+        if self.springs is not None:
+            push = push - self.springs.force(q)
         rows = placement.strain_rows @ self.rows
-        tangent = self._tangent(placement, stressed, inertia, speed, rows, self.asked(rows))
+        tangent = self._with_springs(self._tangent(placement, stressed, inertia, speed, rows, self.asked(rows)), q)
         return np.asarray(np.linalg.solve(tangent, push))
 
-    def _stressed(self, placement: Placement, asked: Array) -> Stressed:
-        """The energy is ½ eᵀ E e − ½ |Z e|² + ½ ∫ m·s dz, with the moments m and the fibres' squares s of the strains e."""
-        strain, per_strain = placement.strain, self.stress_moments[:, :, BEAM]
-        moments, fibres = self.moments(strain, asked), FibreExtension.of(strain)
+    def _stressed(self, placement: Placement, asked: Array, share: float = 1.0) -> Stressed:
+        """The energy is ½ dᵀ E d − ½ |Z d + g|² + ½ ∫ m·s dz, with the strains d = e − e_T, the moments m of theirs and of heat,
+        and the fibres' squares s of the strains e less those of e_T: a blade that expands freely is not stressed.
+        """
+        (strain, asked), per_strain = self.stressing(placement.strain, asked, share), self.stress_moments[:, :, BEAM]
+        moments, fibres = self._moments(strain, asked, share), FibreExtension.of(placement.strain)
+        if self.free is not None:
+            fibres = fibres.beyond(share * self.free.strain)
         resultants = self.resultants(strain, asked - 0.5 * self._drawn(fibres.squares)) + fibres.resultants(moments, per_strain)
         return Stressed(resultants, self.energy[:, BEAM, BEAM] + fibres.stiffness(moments, per_strain), fibres)
 
@@ -246,12 +306,13 @@ class BladeAtStations(Sealed):
         strain_rows = placement.strain_rows @ self.rows
         steadily, asked = self.asked(placement.strain), self.asked(strain_rows)
         inertia, following = self.inertia(placement), self.amplitudes(asked)
+        stiffness = self._tangent(placement, self._stressed(placement, steadily), inertia, speed, strain_rows, asked)
         return OperatingPoint(
             speed=speed,
             mass=self.mass(inertia, following),
-            stiffness=self._tangent(placement, self._stressed(placement, steadily), inertia, speed, strain_rows, asked),
+            stiffness=self._with_springs(stiffness, q),
             gyroscopic=speed * self.form(inertia.gyroscopic),
-            steady=SteadyState(q, self.amplitudes(steadily)),
+            steady=SteadyState(q, self.amplitudes(self.stressing(placement.strain, steadily)[1])),
             following=following,
         )
 

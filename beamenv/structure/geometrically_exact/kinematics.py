@@ -95,6 +95,10 @@ class FibreExtension:
         slopes = np.einsum("fij,sj->sfi", CURVATURES, strain)
         return cls(0.5 * np.einsum("sfi,si->sf", slopes, strain), slopes)
 
+    def beyond(self, free: Array) -> FibreExtension:
+        """The same beside strains (S, 6) that make no stress: their squares make none either."""
+        return FibreExtension(self.squares - FibreExtension.of(free).squares, self.slopes)
+
     def resultants(self, moments: Array, per_strain: Array) -> Array:
         """(S, 6) of the energy ½ moments · squares, with moments (S, 6) = per_strain (S, 6, 6) strain."""
         return 0.5 * (np.einsum("sfi,sf->si", per_strain, self.squares) + np.einsum("sfi,sf->si", self.slopes, moments))

@@ -41,7 +41,7 @@ class SectionsAlong(Sealed):
     def build(
         cls, section: Section, layup: Layup, planform: Planform, inlays: Sequence[Inlay], cuts: Sequence[Strip] = ()
     ) -> SectionsAlong:
-        """Those of a blade whose inlays may lie anywhere."""
+        """Those of a blade whose inlays may lie anywhere; how they expand is known where the planform says how hot they are."""
         kinds = _kinds(inlays)
         codes = _combinations(inlays, kinds)
         strips = tuple(sorted({*cuts, *(inlay.strip for inlay in inlays)}, key=lambda each: (each.wall, each.width, each.offset)))
@@ -53,7 +53,7 @@ class SectionsAlong(Sealed):
             sheets,
             codes.tobytes(),
             strips,
-            tuple((piece.rate, piece.sizes) for piece in planform.pieces),
+            tuple((piece.rate, piece.sizes, piece.temperatures) for piece in planform.pieces),
         )
         solid = _ALIVE.get(key)
         if solid is None:
@@ -86,23 +86,24 @@ class SectionsAlong(Sealed):
 
     def _weights(self, z: Array) -> Array:
         """(S, sizes): of the sections known, for those at stations z (m)."""
-        pieces, scale = self.planform.pieces, self.planform.scale(z)
+        pieces = self.planform.pieces
         if len(pieces) == 1:
-            return self._within(0, scale)
+            return self._within(0, z)
         ends = np.array([piece.end for piece in pieces[:-1]])
         where, weights = np.searchsorted(ends, z, side="right"), []
         for k in range(len(pieces)):
             own = where == k
             part = np.zeros((len(z), len(pieces[k].sizes)))
-            part[own] = self._within(k, scale[own])
+            part[own] = self._within(k, z[own])
             weights.append(part)
         return np.concatenate(weights, axis=1)
 
-    def _within(self, piece: int, scale: Array) -> Array:
-        """(S, n): of the n sections of a piece, for those of other sizes."""
-        sizes = np.array(self.planform.pieces[piece].sizes)
+    def _within(self, piece: int, z: Array) -> Array:
+        """(S, n): of the n sections of a piece, for those of other sizes or temperatures."""
+        sizes = self.planform.pieces[piece].nodes
         if len(sizes) == 1:
-            return np.ones((len(scale), 1))
+            return np.ones((len(z), 1))
+        scale = self.planform.temperature(z) if self.planform.pieces[piece].by_temperature else self.planform.scale(z)
         if self._smooth[piece]:
             return between(sizes, scale)
         order = np.argsort(sizes)
@@ -118,7 +119,7 @@ class SectionsAlong(Sealed):
         size, first = energy.shape[-1], 0
         unit = 1.0 / np.sqrt(np.diagonal(self.solid.energy[0]))
         for piece in pieces:
-            sizes, count = np.array(piece.sizes), len(piece.sizes)
+            sizes, count = piece.nodes, len(piece.sizes)
             halfway = between(sizes, np.linspace(sizes.min(), sizes.max(), 4 * count)) if count > 1 else np.ones((1, 1))
             own = energy[:, first : first + count].reshape(len(self.codes), count, -1)
             every = np.einsum("sn,cne->cse", halfway, own).reshape(-1, size, size) * np.outer(unit, unit)
@@ -146,19 +147,24 @@ def _solid_sections(
     needed = fitting if fitting.any() else ~fitting
     every = tuple(np.tile(sizes, len(codes)).tolist()), tuple(strips), tuple(np.tile(needed, len(codes)).tolist())
     elements = mesh_of(section, *every)
+    hot = [temperature for piece in planform.pieces for temperature in piece.temperatures or (None,) * len(piece.sizes)]
     laminates = dict[Laminate, int]()
-    which = np.empty((len(codes), len(elements.edges)), dtype=np.intp)
+    which = np.empty((len(codes), len(sizes), len(elements.edges)), dtype=np.intp)
     under = [(edge.wall, tuple(edge.lies_under(kind) for kind in kinds)) for edge in elements.edges]
     for row, code in enumerate(codes.tolist()):
-        known: dict[tuple[str, tuple[bool, ...]], int] = {}
-        for k, (wall, lies) in enumerate(under):
-            if (wall, lies) not in known:
-                laminate = hosts[wall]
-                for bit, kind in enumerate(kinds):
-                    laminate = kind.let_into(laminate) if code >> bit & 1 and lies[bit] else laminate
-                known[wall, lies] = laminates.setdefault(laminate, len(laminates))
-            which[row, k] = known[wall, lies]
-    return SolidSections.build(elements, list(laminates), np.repeat(which, len(sizes), axis=0), np.tile(rates, len(codes)))
+        for temperature in dict.fromkeys(hot):
+            known: dict[tuple[str, tuple[bool, ...]], int] = {}
+            for k, (wall, lies) in enumerate(under):
+                if (wall, lies) not in known:
+                    laminate = hosts[wall]
+                    for bit, kind in enumerate(kinds):
+                        laminate = kind.let_into(laminate) if code >> bit & 1 and lies[bit] else laminate
+                    laminate = laminate if temperature is None else laminate.at(temperature)
+                    known[wall, lies] = laminates.setdefault(laminate, len(laminates))
+                which[row, [own == temperature for own in hot], k] = known[wall, lies]
+    every_one = which.reshape(-1, len(elements.edges))
+    heated = planform.temperatures is not None
+    return SolidSections.build(elements, list(laminates), every_one, np.tile(rates, len(codes)), heated)
 
 
 def between(nodes: Array, at: Array) -> Array:

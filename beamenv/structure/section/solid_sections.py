@@ -20,9 +20,10 @@ from beamenv.structure.section.central_solution import Factorised, central_solut
 from beamenv.structure.section.distortion import distortion_shapes
 from beamenv.structure.section.element_sums import ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
+from beamenv.structure.section.expansion import Expansion, ThermalSums, expansion_of
 from beamenv.structure.section.integrals import MONOMIALS
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.trial_functions import gauss_rule
+from beamenv.structure.stations import gauss_rule
 from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate
 
@@ -50,19 +51,23 @@ class SolidSections(Sealed):
     """∫σ_zz (1, x, y, x², xy, y²) dA (V, 6, STRAINS)."""
     saint_venant: Array
     """(V, STRAINS, 6): strains of the section per stress resultant, far from clamp and patches."""
+    expansion: Expansion | None = None
+    """What heat does; None where it was not asked for."""
     _forces: dict[tuple[Strip, float, float, tuple[float, float, float]], Array] = field(default_factory=dict)
 
     @classmethod
-    def build(cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float | Array) -> SolidSections:
+    def build(
+        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], pretwist: float | Array, heated: bool = False
+    ) -> SolidSections:
         """Sections whose element k has the wall ``laminates[which[v, k]]``; they twist by ``pretwist`` rad/m, all alike or
-        each (V,).
+        each (V,). Of ``heated`` ones it is known how they expand.
         """
         rates = np.broadcast_to(np.asarray(pretwist, dtype=np.float64), (len(which),))
         parts: list[SolidSections] = []
         places, meant = [], None
         for rate in dict.fromkeys(rates.tolist()):
             rows = np.flatnonzero(rates == rate)
-            part, meant = cls._of_rate(mesh.rows(rows), laminates, which[rows], rate, meant)
+            part, meant = cls._of_rate(mesh.rows(rows), laminates, which[rows], rate, meant, heated)
             parts.append(part)
             places.append(rows)
         if len(parts) == 1:
@@ -70,11 +75,12 @@ class SolidSections(Sealed):
         order = np.argsort(np.concatenate(places))
         by_section = ("shapes", "pretwist", "stiffness", "energy", "inertia", "shape_mass", "stress_moments", "saint_venant")
         whole: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts])[order] for name in by_section}
-        return cls(mesh=mesh, **whole)
+        grown = [part.expansion for part in parts if part.expansion is not None]
+        return cls(mesh=mesh, expansion=Expansion.joined(grown, order) if grown else None, **whole)
 
     @classmethod
     def _of_rate(
-        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: Meaning | None
+        cls, mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.intp], rate: float, meant: Meaning | None, heated: bool
     ) -> tuple[SolidSections, Meaning]:
         """Those of one pretwist, and what amplitudes of 1 mean in all. ``meant`` is that of other sections of the blade."""
         sums = element_sums(mesh, laminates, which, rate)
@@ -85,6 +91,7 @@ class SolidSections(Sealed):
         warping, amplitudes = meant.shapes(central)
         shapes = np.concatenate([warping, distortion_shapes(system, meant.loads)], axis=-1)
         here = sums.gather(shapes)
+        heat = ThermalSums.of(mesh, laminates, which, rate) if heated else None
         sections = cls(
             mesh=mesh,
             shapes=here,
@@ -95,6 +102,7 @@ class SolidSections(Sealed):
             shape_mass=(here.swapaxes(-1, -2) @ sums.inertial(here)).sum(axis=1),
             stress_moments=_stress_moments(sums, here),
             saint_venant=saint_venant_strains(central, amplitudes, rate),
+            expansion=None if heat is None else expansion_of(system, heat, here, rate),
         )
         return sections, meant
 
@@ -120,6 +128,7 @@ class SolidSections(Sealed):
             energy=strains.T @ self.energy @ strains,
             stress_moments=self.stress_moments @ strains,
             shape_mass=turn.T @ self.shape_mass @ turn,
+            expansion=None if self.expansion is None else self.expansion.turned(turn),
             _forces={},
         )
 
@@ -132,6 +141,15 @@ class SolidSections(Sealed):
     def saint_venant_moments(self) -> Array:
         """``stress_moments`` (V, 6, 6) per beam strain, far from clamp and patches."""
         return np.asarray(self.stress_moments @ self.saint_venant @ self.stiffness)
+
+    @property
+    def depths(self) -> Array:
+        """(V, 2), m: least and greatest y of the walls' faces."""
+        mesh = self.mesh
+        half = 0.5 * mesh.thickness[:, None]
+        ends = [(mesh.points, mesh.directions), (mesh.last_points, mesh.last_directions)]
+        faces = [(P + side * half * d)[..., 1] for P, d in ends for side in (1.0, -1.0)]
+        return np.stack([np.min(faces, axis=(0, 2)), np.max(faces, axis=(0, 2))], axis=-1)
 
     @property
     def tension_centre(self) -> Array:

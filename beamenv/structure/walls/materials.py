@@ -1,24 +1,35 @@
-"""Orthotropic laminae."""
+"""Orthotropic laminae, and what temperature makes of them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, Real, Refused, checked, configuration
+from beamenv.structure.walls.curves import KELVIN, Curve, Curves, range_of, share
 
 Modulus = Annotated[float, Number(gt=0.0, unit="Pa")]
 Density = Annotated[float, Number(gt=0.0, unit="kg/m³")]
+EXPANSION = Number(ge=-1e-2, le=1e-2, unit="1/K")
+Expansion = Annotated[float | None, EXPANSION]
+
+MODULI = ("E1", "E2", "G12", "G13", "G23")
+
+FOLLOWED = ("E1", "nu12", "alpha1")
+"""In an isotropic material: what all else follows from."""
 
 
 @configuration("lamina")
 class Lamina:
     """A unidirectional ply in its material axes: 1 along the fibres, 2 across them in the plane, 3 through the thickness.
 
-    Raises ``ValueError`` for a modulus or density that is not positive and for |ν12| ≥ √(E1/E2), where the ply would
-    store negative energy.
+    Raises ``ValueError`` for a modulus or density that is not positive, for |ν12| ≥ √(E1/E2), where the ply would store negative
+    energy, and for curves of what is unknown or, in an isotropic material, of what follows from others.
     """
 
     E1: Modulus
@@ -35,18 +46,78 @@ class Lamina:
     """Contraction along 2 per extension along 1."""
     density: Density
     """kg/m³."""
+    alpha1: Expansion = None
+    alpha2: Expansion = None
+    """1/K, along the fibres and across them, from the temperature at which nothing is strained to the one at hand: the mean between
+    the two. None: unknown, and refused where heat strains the blade."""
+    curves: Annotated[tuple[tuple[str, Curve], ...], Curves()] = ()
+    """Shares of the constants over temperature, for any of E1, E2, G12, G13, G23, nu12, alpha1, alpha2; a mapping will do. A
+    property without a curve keeps its constant. In an isotropic material those of E1, nu12 and alpha1 are of all directions."""
 
     def __post_init__(self) -> None:
         if not abs(self.nu12) < np.sqrt(self.E1 / self.E2):
             raise Refused("nu12", self.nu12, f"smaller in magnitude than sqrt(E1/E2) = {np.sqrt(self.E1 / self.E2):.4g}")
+        for name, _ in self.curves:
+            if getattr(self, name) is None:
+                raise Refused(name, None, "a number (1/K) where it has a curve over temperature")
+            if self.is_isotropic and name not in FOLLOWED:
+                raise Refused("curves", [name], f"of {', '.join(FOLLOWED)} alone in an isotropic material")
 
     @classmethod
-    def isotropic(cls, E: float, nu: float, density: float) -> Lamina:
-        """An isotropic sheet with Young's modulus E (Pa), Poisson's ratio nu and density (kg/m³)."""
+    def isotropic(
+        cls, E: float, nu: float, density: float, alpha: float | None = None, curves: Mapping[str, Curve] = MappingProxyType({})
+    ) -> Lamina:
+        """An isotropic sheet with Young's modulus E (Pa), Poisson's ratio nu, density (kg/m³), expansion alpha (1/K), if known, and
+        curves over temperature of E1, nu12 and alpha1.
+        """
         E = checked("E", E, Number(gt=0.0, unit="Pa"))
         nu = checked("nu", nu, Number(gt=-1.0, lt=0.5))
         shear_modulus = E / (2.0 * (1.0 + nu))
-        return cls(E1=E, E2=E, G12=shear_modulus, G13=shear_modulus, G23=shear_modulus, nu12=nu, density=density)
+        moduli = {"E1": E, "E2": E, "G12": shear_modulus, "G13": shear_modulus, "G23": shear_modulus}
+        return cls(**moduli, nu12=nu, density=density, alpha1=alpha, alpha2=alpha, curves=curves)  # type: ignore[arg-type]
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether all directions are alike, to nine digits."""
+        shear_modulus = self.E1 / (2.0 * (1.0 + self.nu12)) if self.nu12 > -1.0 else np.inf
+        alike = np.allclose([self.E2, self.G12, self.G13, self.G23], [self.E1, *[shear_modulus] * 3], rtol=1e-9, atol=0.0)
+        return bool(alike) and self.nu12 < 0.5 and self.alpha1 == self.alpha2
+
+    @property
+    def range_K(self) -> tuple[float, float] | None:
+        """Lowest and highest temperature at which all curves hold; None without curves."""
+        ranges = [range_of(curve) for _, curve in self.curves]
+        return (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
+
+    def at(self, temperature_K: float) -> Lamina:
+        """The material at a temperature: constants alone. Without curves it is this very object, whose constants hold at any.
+
+        Raises ``ValueError`` beyond the range of the curves.
+        """
+        temperature_K = checked("temperature", temperature_K, KELVIN)
+        if self.range_K is None:
+            return self
+        low, high = self.range_K
+        if not low <= temperature_K <= high:
+            raise Refused("temperature", temperature_K, f"a number from {low:g} to {high:g} (K), where data of the material hold")
+        values = {name: getattr(self, name) * share(curve, temperature_K) for name, curve in self.curves}
+        if not self.is_isotropic:
+            return replace(self, curves=(), **values)
+        E, nu, alpha = (values.get(name, getattr(self, name)) for name in FOLLOWED)
+        return Lamina.isotropic(E, nu, self.density, alpha)
+
+    def scaled(self, modulus: float, mass: float) -> Lamina:
+        """With moduli and density times ratios."""
+        stiffer = {name: modulus * getattr(self, name) for name in MODULI}
+        return replace(self, density=mass * self.density, **stiffer)
+
+    @property
+    def expansion(self) -> tuple[float, float]:
+        """alpha1, alpha2 (1/K); ``ValueError`` where one is unknown."""
+        for name in ("alpha1", "alpha2"):
+            if getattr(self, name) is None:
+                raise Refused(f"material.{name}", None, "a number (1/K) where temperature strains the blade")
+        return self.alpha1, self.alpha2  # type: ignore[return-value]
 
     def reduced_stiffness(self) -> NDArray[np.float64]:
         """Plane-stress stiffness Q (3, 3) in Pa for (ε1, ε2, γ12); Jones, Mechanics of Composite Materials, Eq. 2.70."""
@@ -97,13 +168,3 @@ def strain_rotation(angle: float) -> NDArray[np.float64]:
     """(3, 3): engineering strains (ε_ss, ε_zz, γ_sz) of the wall to (ε1, ε2, γ12) of a ply turned by ``angle`` (rad)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]])
-
-
-GRAPHITE_EPOXY = Lamina(E1=206.8e9, E2=5.17e9, G12=3.1e9, G13=3.1e9, G23=2.5511e9, nu12=0.25, density=1528.15)
-"""The thesis' blade (Table 5.1)."""
-
-AS4_3501_6 = Lamina(E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8)
-"""The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992)."""
-
-ALUMINIUM = Lamina.isotropic(E=68.9e9, nu=0.33, density=2700.0)
-"""6061-T6 (ASM Aerospace Specification Metals)."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from train.reproduce.judging.verdicts import Judgement, Verdict, weakest
+from train.reproduce.judging.verdicts import Judged, Verdict, weakest
 
-Judgements = Mapping[str, Mapping[str, Judgement]]
-"""By study and key."""
+Judgements = Mapping[str, Mapping[str, Judged]]
+"""By study and key: in nature, or by the thesis' own equations."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,9 @@ from train.reproduce.studies.parameter_studies import (
 )
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import bending_stiffness
+from train.reproduce.thesis.equations import HOST, TURNING, UNIFORM_TENSION
 
+TAPERED = (*HOST, UNIFORM_TENSION)
 TAPERS = (1.0, 2.0, 3.0, 4.0)
 PRINTED_PEAKS = (1.0 - 0.2587, 1.0 - 0.4149, 1.0 - 0.5219)
 TURN_DEG = 45.0
@@ -134,8 +136,8 @@ WHY_TURN = (
 UNNAMED = f"θ = 30°, untwisted, 200 rad/s (the thesis names none); {BENT}"
 
 STUDIES = (
-    Study("figure-3.11", "Lag mode shapes over taper", UNNAMED, SHAPE_STATEMENTS, shapes("lag")),
-    Study("figure-3.12", "Flap mode shapes over taper", UNNAMED, SHAPE_STATEMENTS, shapes("flap")),
+    Study("figure-3.11", "Lag mode shapes over taper", UNNAMED, SHAPE_STATEMENTS, shapes("lag"), rests_on=TAPERED),
+    Study("figure-3.12", "Flap mode shapes over taper", UNNAMED, SHAPE_STATEMENTS, shapes("flap"), rests_on=TAPERED),
     Study(
         "figure-3.13",
         "First four frequencies over speed and taper",
@@ -152,6 +154,7 @@ STUDIES = (
             ),
         ),
         over_speed,
+        rests_on=TAPERED,
     ),
     Study(
         "figure-3.14",
@@ -162,6 +165,7 @@ STUDIES = (
             Statement("turn", "Frequencies fall up to a ply angle of about 45° and rise beyond", Holds(), WHY_TURN),
         ),
         over_ply_angle,
+        rests_on=(*TURNING, UNIFORM_TENSION),
     ),
     Study(
         "figure-3.15",
@@ -172,6 +176,7 @@ STUDIES = (
             Statement("turn", "The bending stiffness falls up to about 45° and rises beyond", Holds(), WHY_TURN),
         ),
         stiffness,
+        rests_on=TURNING,
     ),
     Study(
         "figure-3.16",
@@ -200,5 +205,6 @@ STUDIES = (
             ),
         ),
         forced,
+        rests_on=TAPERED,
     ),
 )

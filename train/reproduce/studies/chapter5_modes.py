@@ -16,8 +16,9 @@ from beamenv.plant.plant import Plant, drive_limit
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Small
-from train.reproduce.studies.closed_loop import Response, blade, patches, simulate
+from train.reproduce.studies.closed_loop import Response, blade, patches, simulate, weighed
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import CONTROLLED, HOST
 from train.reproduce.thesis.response import free_motion
 
 Array = NDArray[np.float64]
@@ -39,7 +40,7 @@ def lqr_responses(model: Model, pretwist_deg: float, presetting_deg: float) -> d
     config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
     whole, responses = Blade(config), {}
     for modes in (*MODES, REFERENCE_MODES):
-        plant = whole.changed(with_modes(config, modes)).plant
+        plant = weighed(model, whole.changed(with_modes(config, modes)).plant)
         responses[modes] = simulate(plant, lqr(plant), model.load, DURATION)
     return responses
 
@@ -179,6 +180,7 @@ def study(name: str, title: str, configuration: str, enough: int, pretwist_deg: 
             Statement("voltage", f"The actuator voltage has converged {within}", Small(ENOUGH, LOOSE), VOLTAGE),
         ),
         convergence(enough, pretwist_deg, presetting_deg),
+        rests_on=(*HOST, *CONTROLLED),
     )
 
 

@@ -23,10 +23,12 @@ from train.reproduce.studies.closed_loop import (
 )
 from train.reproduce.studies.study_patches import FIELD_OVER_THICKNESS, covering
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import CONTROLLED, HOST, UNIFORM_TENSION
 
 Array = NDArray[np.float64]
 Compute = Callable[[Model], Outcome]
 
+LOOP = (*HOST, *CONTROLLED)
 COVERAGES = (0.10, 0.25, 0.50, 1.00)
 
 
@@ -144,6 +146,7 @@ def mfc_study(name: str, angle_deg: float) -> Study:
             Statement("control", "Control shortens the settling time (MFC against none)", Changes(-1)),
         ),
         mfc_or_pzt(angle_deg),
+        rests_on=LOOP,
     )
 
 
@@ -158,6 +161,7 @@ def plies_study(name: str, speed: float) -> Study:
             Statement("voltage", "60° plies take the smaller voltage", Changes(-1), WHY_PLIES),
         ),
         two_plies(speed),
+        rests_on=LOOP,
     )
 
 
@@ -175,6 +179,7 @@ STUDIES = (
             Statement("whole-settling", "With 100 % coverage the settling time increases (against 50 %)", Changes(+1)),
         ),
         coverage,
+        rests_on=LOOP,
     ),
     plies_study("figure-5.10", 100.0),
     plies_study("figure-5.11", 200.0),
@@ -188,6 +193,7 @@ STUDIES = (
             Statement("settling", "Taper lengthens the settling time", Changes(+1)),
         ),
         ganged_taper,
+        rests_on=(*LOOP, UNIFORM_TENSION),
     ),
     Study(
         "figure-5.13",
@@ -203,5 +209,6 @@ STUDIES = (
             Statement("voltage", "The untwisted blade takes the higher peak voltage", Holds()),
         ),
         ganged_pretwist,
+        rests_on=LOOP,
     ),
 )

@@ -1,0 +1,12 @@
+"""The reference LQG and a neural network that learns, within each episode, what moves the blade and is not in the design."""
+
+from baselines import Controller, adaptive_neural
+from beamenv import Design
+
+KIND = "adaptive"
+TIER = 0
+
+
+def build(design: Design) -> Controller:
+    """Told what LQG is; the network starts every episode knowing nothing."""
+    return adaptive_neural(design.full_plant)
