@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from baselines.placement.cost.joint_problem import JointProblem
+from baselines.placement.cost.problem import PlacementProblem
 from baselines.placement.search.placement import BATCH
 from baselines.placement.search.search import place
 from beamenv.blade.layouts import SIDES, Side
@@ -68,13 +69,12 @@ def place_jointly(
             best, least = found, cost
         if progress is not None:
             progress((k + 1) / len(starts), least)
-    return JointPlacement(*_by_side(problem, best).values(), least, _by_side(problem, begin), in_turn_cost)
+    placed = _by_side(problem, best)
+    return JointPlacement(placed["actuators"], placed["sensors"], least, _by_side(problem, begin), in_turn_cost)
 
 
 def one_after_the_other(problem: JointProblem, seed: int = 0, leave_unreached: bool = False) -> Array:
     """(a + s,), m: actuators by tr(P) beside equally spaced sensors, then sensors by tr(S), as ``optimal_layout`` has them."""
-    from baselines.placement.cost.problem import PlacementProblem
-
     above = place(problem.actuators, "multistart", seed, leave_unreached=leave_unreached)
     placed = problem.actuators.configuration(above.positions)
     below = place(PlacementProblem.of(placed, "sensors"), "multistart", seed, leave_unreached=leave_unreached)
@@ -103,14 +103,14 @@ def descended(problem: JointProblem, start: Array) -> Array:
     )
     sides = np.split(result.x * length, [problem.bounds[0].count])
     repaired = [bounds.repaired(side) for bounds, side in zip(problem.bounds, sides, strict=True)]
-    return np.round(np.concatenate(repaired), 12)
+    return np.array(np.round(np.concatenate(repaired), 12), dtype=np.float64)
 
 
 def _apart(problem: JointProblem) -> Array:
     """Rows of distances between neighbours of each side."""
     counts, total = [each.count for each in problem.bounds], sum(each.count for each in problem.bounds)
     every = np.eye(total, k=1)[:-1] - np.eye(total)[:-1]
-    return np.delete(every, counts[0] - 1, axis=0)
+    return np.asarray(np.delete(every, counts[0] - 1, axis=0), dtype=np.float64)
 
 
 def _promising(problem: JointProblem, generator: np.random.Generator) -> list[Array]:

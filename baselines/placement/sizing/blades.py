@@ -15,6 +15,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Instance, checked
 from beamenv.patches import PatchGroup
+from beamenv.sensors.kinds import PatchCharge, PatchCurrent
 
 
 def sized_blade(problem: SizingProblem, point: FrontPoint) -> BladeConfig:
@@ -31,9 +32,11 @@ def sized_blade(problem: SizingProblem, point: FrontPoint) -> BladeConfig:
     patches = replace(config.patches, actuators=groups_of(above, point.actuators), sensors=groups_of(below, point.sensors))
     low, high = (drive * limit for limit in config.voltage_limits)
     sized = replace(config, patches=patches, voltage_limits=(low, high), sensors=())
-    if config.sensors:
-        return replace(sized, sensors=tuple(replace(config.sensors[0], group=k) for k in range(len(patches.groups("sensors")))))
-    return within_range(sized)
+    if not config.sensors:
+        return within_range(sized)
+    listed = config.sensors[0]
+    assert isinstance(listed, (PatchCurrent, PatchCharge))  # nothing else is read where patches are sized
+    return replace(sized, sensors=tuple(replace(listed, group=k) for k in range(len(patches.groups("sensors")))))
 
 
 def groups_of(group: PatchGroup, sized: SizedPatches) -> tuple[PatchGroup, ...]:
