@@ -11,7 +11,7 @@ from beamenv.blade.config import BeamConfig
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import BeamMatrices
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.stations import Stations
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
