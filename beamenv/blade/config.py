@@ -34,6 +34,14 @@ from beamenv.sensors.kinds import SENSORS, Accelerometer, PatchCurrent, Sensor
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation
+from beamenv.structure.held_and_heated import (
+    DIFFERENCE,
+    KELVIN,
+    ROOM,
+    SPRINGS,
+    check_held_and_heated,
+    temperatures_of,
+)
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.planform import TABLE, Steps
 from beamenv.structure.section.section import THEORY, Metres, Section
@@ -143,6 +151,17 @@ class BeamConfig:
     """Pretwist along the span in place of ``pretwist_deg``: pairs of the share of the span, from 0 to 1, and degrees."""
     chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
+    temperature: Annotated[float | None, KELVIN] = None
+    """K, of the blade and its patches. None: that at which all data hold, and nothing is strained; beside a difference that of
+    reference."""
+    temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
+    """Temperature along the span in place of ``temperature``: pairs of the share of the span, from 0 to 1, and K."""
+    temperature_difference: Annotated[float, DIFFERENCE] = 0.0
+    """K: at the greatest y of each section (the top wall) less that at its least, straight in between."""
+    reference_temperature: Annotated[float, KELVIN] = ROOM
+    """K: at which the blade is free of thermal strain."""
+    tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
+    """What holds the tip: N/m along lag, flap and span, N m/rad about them. None: nothing does."""
 
     def __post_init__(self) -> None:
         check_discretisation(self)
@@ -150,6 +169,12 @@ class BeamConfig:
             for name in MODULI:
                 if getattr(lamina, name) < SOFTEST:
                     raise Refused(f"{path}.{name}", getattr(lamina, name), f"at least {SOFTEST:g} (Pa)")
+        check_held_and_heated("blade", self.temperatures, self.tip_springs, "blade.beam")
+
+    @property
+    def temperatures(self) -> Steps | None:
+        """Shares of the span and the temperature (K) there; None where there is none."""
+        return temperatures_of(self.temperature, self.temperature_table, self.temperature_difference, self.reference_temperature)
 
     @property
     def root_section(self) -> Section:
@@ -170,6 +195,11 @@ class BeamConfig:
             taper=self.taper,
             twist_table=self.twist_table,
             chord_table=self.chord_table,
+            temperature=self.temperature,
+            temperature_table=self.temperature_table,
+            temperature_difference=self.temperature_difference,
+            reference_temperature=self.reference_temperature,
+            tip_springs=self.tip_springs,
             model=model,
             shear=self.shear,
             shear_flow=self.shear_flow,
@@ -239,6 +269,7 @@ class BladeConfig:
 
     def __post_init__(self) -> None:
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
+        check_held_and_heated(self.model, self.beam.temperatures, self.beam.tip_springs, "blade.beam")
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

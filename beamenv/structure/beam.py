@@ -18,6 +18,7 @@ from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strai
 from beamenv.structure.breaks import breakpoints, breaks
 from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation, element_space
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
+from beamenv.structure.geometrically_exact.heat import Heat
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.geometrically_exact.tip_springs import TipSprings
@@ -27,7 +28,6 @@ from beamenv.structure.held_and_heated import (
     ROOM,
     SPRINGS,
     check_held_and_heated,
-    heat_of,
     temperatures_of,
 )
 from beamenv.structure.inlays import SHORTEST, Room
@@ -108,11 +108,12 @@ class RotatingBeam:
     inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
     temperature: Annotated[float | None, KELVIN] = None
-    """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained."""
+    """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained; beside a difference that of
+    reference."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of one: pairs of the share of the span, from 0 to 1, and K."""
     temperature_difference: Annotated[float, DIFFERENCE] = 0.0
-    """K: at the greatest y of each section less that at its least, straight in between; the mean is as said before."""
+    """K: at the greatest y of each section less that at its least, straight in between."""
     reference_temperature: Annotated[float, KELVIN] = ROOM
     """K: at which the blade is free of thermal strain."""
     tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
@@ -132,13 +133,13 @@ class RotatingBeam:
                 if getattr(self, name) is not None:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
-        check_held_and_heated(self.model, self.temperatures, self.temperature_difference, self.tip_springs)
+        check_held_and_heated(self.model, self.temperatures, self.tip_springs)
         self.room.check(self.inlays)
 
     @property
     def temperatures(self) -> Steps | None:
         """Shares of the span and the temperature (K) there; None where there is none."""
-        return temperatures_of(self.temperature, self.temperature_table)
+        return temperatures_of(self.temperature, self.temperature_table, self.temperature_difference, self.reference_temperature)
 
     @property
     def narrowest(self) -> float:
@@ -190,7 +191,7 @@ class RotatingBeam:
             sections=SectionsAlong.build(self.section, self.layup, self.planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
-            heat=heat_of(self.temperatures, self.reference_temperature, self.temperature_difference),
+            heat=None if self.temperatures is None else Heat(self.reference_temperature, self.temperature_difference),
             springs=TipSprings.of(self.space, self.tip_springs) if self.tip_springs else None,
         )
 

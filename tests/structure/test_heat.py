@@ -278,7 +278,7 @@ def test_without_a_temperature_nothing_changes():
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"temperature_difference": 5.0}, "beam.temperature_difference"),
+        ({"temperature_difference": 5.0, "model": "thesis"}, "beam.temperature"),
         ({"temperature": 310.0, "temperature_table": ((0.0, 300.0), (1.0, 310.0))}, "beam.temperature"),
         ({"temperature_table": ((0.0, 300.0), (0.9, 310.0))}, "beam.temperature_table"),
         ({"temperature": 310.0, "model": "thesis"}, "beam.temperature"),
@@ -303,3 +303,17 @@ def test_a_material_of_unknown_expansion_is_refused_in_a_sentence():
     unknown = replace(ALUMINIUM, alpha1=None, alpha2=None)
     with pytest.raises(ValueError, match="alpha1"):
         blade(layup=Layup.uniform(unknown, [0.0]), temperature=310.0).at(0.0)
+
+
+def test_finite_elements_are_strained_alike():
+    options = {
+        "layup": Layup.uniform(GRAPHITE, [30.0] * 2),
+        "pretwist_deg": 20.0,
+        "temperature": 350.0,
+        "temperature_difference": 20.0,
+    }
+    either = [blade(**options, discretisation=name) for name in ("galerkin", "finite-elements")]
+    assert tip(either[1], "phi") == pytest.approx(tip(either[0], "phi"), rel=1e-5)
+    assert tip(either[1], "v") == pytest.approx(tip(either[0], "v"), rel=1e-5)
+    found, expected = (beam.natural_frequencies(80.0, 4) for beam in either)
+    assert found == pytest.approx(expected, rel=5e-4)  # as without heat

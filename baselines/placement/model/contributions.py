@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.configuration import Refused
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
 from beamenv.structure import RotatingBeam
@@ -76,12 +77,22 @@ class Contributions(ReadOnly):
 def contributions(config: BladeConfig) -> Contributions:
     """The contributions of a configuration's patches, for any position of them; takes some tenths of a second.
 
-    A blade of finite elements, whose strains jump from one to the next, is taken by polynomials along the span.
+    A blade of finite elements, whose strains jump from one to the next, is taken by polynomials along the span. ``ValueError`` for
+    one that heat strains or springs hold.
     """
+    _check_free(config.beam)
     if config.beam.discretisation != "galerkin":
         beam = replace(config.beam, discretisation="galerkin", elements=None, element_order=None, mesh=None)
         config = replace(config, beam=beam)
     return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
+
+
+def _check_free(beam: BeamConfig) -> None:
+    if beam.temperatures is not None:
+        hot = beam.temperatures[0][1]
+        raise Refused("blade.beam.temperature", hot, "None where patches are placed, at the temperature of their data (K)")
+    if beam.tip_springs is not None and any(beam.tip_springs):
+        raise Refused("blade.beam.tip_springs", list(beam.tip_springs), "None where patches are placed on a cantilever")
 
 
 def of_solid_sections(config: BladeConfig) -> Contributions:

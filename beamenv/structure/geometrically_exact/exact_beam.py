@@ -32,6 +32,9 @@ ITERATIONS = 30
 FREE = 2
 """Newton steps that may grow; where later ones do, no steady state is near."""
 
+FREE_UNDER_HEAT = 8
+"""The same of a heated blade, of which bending stretches the linear steady state at first."""
+
 HALVINGS = 5
 """Most halvings of a step in Ω² towards a steady state that Newton's method does not find from the linear one."""
 
@@ -56,6 +59,11 @@ class ExactBeam:
     heat: Heat | None = None
     springs: TipSprings | None = None
     """What strains it and holds its tip beside the rotation."""
+
+    @property
+    def loaded_at_rest(self) -> bool:
+        """Whether anything strains it or holds its tip when it does not turn."""
+        return self.heat is not None or self.springs is not None
 
     def placement(self, z: Array, coefficients: Array) -> Placement:
         """Where the blade is at stations z."""
@@ -224,11 +232,11 @@ class ExactBeam:
     def _newton(self, q: Array, load: Load) -> Array | None:
         """Coefficients of the steady state, or None where it is not found."""
         at, before = self.at_stations, np.inf
-        enough = CONVERGED if self.heat is None else CONVERGED_UNDER_HEAT
+        free, enough = (FREE, CONVERGED) if self.heat is None else (FREE_UNDER_HEAT, CONVERGED_UNDER_HEAT)
         for count in range(ITERATIONS):
             step = at.newton_step(q, load.speed, load.heat)
             largest = np.abs(at.rows[:, : SPIN.stop] @ step).max()
-            if not np.isfinite(largest) or (count >= FREE and largest > before):
+            if not np.isfinite(largest) or (count >= free and largest > before):
                 return None
             q, before = at.moved(q, step), largest
             if largest <= enough:
