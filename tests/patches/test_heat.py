@@ -81,7 +81,7 @@ def test_a_sheet_that_expands_less_bends_a_strip_as_two_layers():
 def test_a_blade_hotter_than_its_patches_may_be_is_refused_in_a_sentence(name, warmest):
     layout = PatchLayout(material=name)
     with pytest.raises(ValueError, match=rf"temperature is 500.0, but must be a number from 173.15 to {warmest} \(K\)"):
-        _ = Blade(BladeConfig(beam=BeamConfig(temperature=500.0), patches=layout)).plant
+        _ = Blade(BladeConfig(beam=BeamConfig(temperature=500.0, material="as4-3501-6"), patches=layout)).plant
 
 
 def test_a_sheet_without_data_is_the_same_at_any_temperature():
