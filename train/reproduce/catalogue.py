@@ -22,6 +22,7 @@ from train.reproduce.studies import (
     chapter6_tables,
     chapter7_equations,
     chapter7_graded,
+    chapter7_heat,
 )
 
 Chapter = tuple[str, tuple[Study, ...]]
@@ -50,6 +51,7 @@ FUTURE_WORK: Chapter = (
     "7.2, done",
     (
         *chapter7_graded.STUDIES,
+        *chapter7_heat.STUDIES,
         *chapter7_equations.STUDIES,
     ),
 )
