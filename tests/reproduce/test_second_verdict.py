@@ -162,6 +162,19 @@ def test_a_statement_that_the_thesis_equations_bear_out_names_the_first_equation
     assert second.reading == (SHEAR_FLOW, UNIFORM_TENSION) and second.enough == (UNIFORM_TENSION,)
 
 
+def test_a_question_of_our_own_is_answered_twice_where_the_equations_bear_on_it_and_decides_nothing():
+    study = taper_study(falls_with(UNIFORM_TENSION))
+
+    def silent_outcome(model):
+        return Outcome(study.compute(model).evidence | {"ours": [True] * (not model.reading)}, [])
+
+    silent = replace(study, outcome=silent_outcome)
+    first = study.judge(study.compute(Model()))
+    assert judged_again(study, Model(), first, {})["ours"].verdict is Verdict.REPRODUCED
+    found = judged_again(silent, Model(), first, {})
+    assert "ours" not in found and study.verdict(found) is Verdict.REPRODUCED
+
+
 def test_a_statement_that_needs_several_equations_names_all():
     _, second = again(taper_study(falls_with(SHEAR_FLOW, UNIFORM_TENSION)))
     assert second.verdict is Verdict.REPRODUCED and second.enough == (SHEAR_FLOW, UNIFORM_TENSION)

@@ -105,14 +105,14 @@ def why(records: Sequence[Record]) -> str:
     partly = sum(Verdict.NOT_REPRODUCED in each and Verdict.REPRODUCED in each for each in fallen)
     none = sum(Verdict.NOT_REPRODUCED in each for each in fallen)
     return (
-        f"Why so many are negative. Of {len(first)} statements {len(missed)} are not so in nature, or in trend only. The thesis' "
-        f"model accounts for {found[Verdict.REPRODUCED]} of these: by its own equations they are right. {found[Verdict.TREND]} "
+        f"Why so many are negative. Of {len(first)} statements {len(missed)} are not so in nature, {first.count(Verdict.TREND)} of "
+        "them only not quite. "
+        f"The thesis' model accounts for {found[Verdict.REPRODUCED]}: by its own equations they are right. {found[Verdict.TREND]} "
         f"keep a trend by them, {found[Verdict.NOT_REPRODUCED]} do not: there it is the thesis' arithmetic, values read off plots, "
         "loads, weights or lay-ups that it does not print, and what it saw in four curves and stated of all. "
         f"{found[Verdict.UNTESTABLE]} cannot be evaluated. {lost} that are so in nature do not follow from its equations or cannot "
         "be evaluated. The rest is the strict rule: one step in hundreds that goes the other way leaves a trend, and one statement "
-        f"that fails makes a table or figure fail, as in {partly} of the {none} that fail although others of their statements are "
-        "reproduced."
+        f"that fails makes a table or figure fail: of the {none} that fail in nature, {partly} have other statements that hold."
     )
 
 
@@ -134,4 +134,4 @@ def ledger_row(row: Row, first: Judgements, second: Judgements) -> list[str]:
     verdict, again = row.verdict(first), row.verdict(second)
     deciding = ", ".join(dict.fromkeys(study for study, _ in row.decided_by)) or "nothing"
     shown = [shown_verdict(verdict) if verdict else "not run", shown_second(again) if again else "not run"]
-    return [row.section, row.text, *shown, deciding, row.remark if verdict is not Verdict.REPRODUCED else ""]
+    return [row.section, row.text, *shown, deciding, row.remark if {verdict, again} != {Verdict.REPRODUCED} else ""]

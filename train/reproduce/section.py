@@ -71,11 +71,11 @@ def taken_as_printed(study: Study) -> str:
 
 
 def statement_table(study: Study, record: Record, markup: Markup) -> str:
-    """Every statement of the thesis with both verdicts, our own questions with one."""
+    """Every statement with both verdicts, where there are two."""
     rows = []
     for statement in study.statements:
         found = record.judgements[statement.key]
-        again = "" if statement.aside else second_cell(record.second[statement.key], found)
+        again = second_cell(record.second[statement.key], found) if statement.key in record.second else ""
         rows.append([worded(statement), *numbers(found), shown_verdict(found.verdict), again, statement.rule.words])
     return markup.table(["statement", "thesis", "ours", "deviation", IN_NATURE, BY_EQUATIONS, "rule"], rows)
 
@@ -102,17 +102,16 @@ def numbers(found: Judgement) -> tuple[str, str, str]:
 def second_cell(second: Second, first: Judgement) -> str:
     """The second verdict with the numbers of the thesis' equations, where they differ from ours, and which of them it needs."""
     text = shown_second(second.verdict)
-    if second.reason:
-        return f"{text}: {second.reason}"
-    if (second.ours, second.deviation) != (first.ours, first.deviation):
+    if not second.reason and (second.ours, second.deviation) != (first.ours, first.deviation):
         text += f": {second.ours}, {second.deviation}" if second.deviation != second.ours else f": {second.ours}"
     return f"{text}; with its {', '.join(second.enough)}" if second.enough else text
 
 
 def tellings(study: Study, record: Record) -> list[str]:
-    """What refuted misprints would make of statements."""
+    """Why some cannot be evaluated by the thesis' equations, and what misprints that it refutes would make of others."""
+    seconds = [(statement.text, record.second[statement.key]) for statement in study.own_statements]
+    reasons = dict.fromkeys(second.reason for _, second in seconds if second.reason)
     return [
-        f"“{statement.text}” would be, {sentence}."
-        for statement in study.own_statements
-        for sentence in record.second[statement.key].told
+        *(f"Not evaluated by the thesis' equations: {reason.rstrip('.')}." for reason in reasons),
+        *(f"“{text}” would be, {sentence}." for text, second in seconds for sentence in second.told),
     ]

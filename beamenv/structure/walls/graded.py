@@ -47,7 +47,7 @@ class Mixture:
 @configuration("graded")
 class FunctionallyGraded:
     """A material that changes from the ply's inner face to its outer one: at the share ξ of the thickness from the inner face,
-    ξ to the power ``exponent`` of the volume is the outer material.
+    ξ to the power ``exponent`` of the volume is the outer material. Of a web and of an open wall the faces are as those of inlays.
 
     "voigt" mixes E, ν, density and expansion by volume (the rule of mixtures of Reddy and Chin, Journal of Thermal Stresses 21,
     1998). "mori-tanaka" takes the outer material for spheres in a matrix of the inner one: bulk and shear modulus by Mori and

@@ -44,13 +44,16 @@ class Second:
 
 
 def judged_again(study: Study, model: Model, first: Mapping[str, Judgement], results: Results) -> dict[str, Second]:
-    """The second verdict of every statement of the thesis, by the best of the readings that the study rests on."""
+    """The second verdict of every statement, by the best of the readings that the study rests on.
+
+    Of questions of our own too, but those that the thesis' equations do not bear on.
+    """
     if study.printed is not None or study.unprinted:
         return from_print(study, model)
     whole, *misprinted = readings(study.rests_on)
     tries: Tries = {whole: attempt(study, model, whole, results) if whole else dict(first)}
     for reading in misprinted:
-        if any(second.verdict is not Verdict.REPRODUCED for second in best(study, tries).values()):
+        if any(verdict is not Verdict.REPRODUCED for verdict in study.verdicts(best(study, tries))):
             tries[reading] = attempt(study, model, reading, results)
     found = best(study, {reading: judged for reading, judged in tries.items() if not refutation(reading)})
     better = [key for key, second in found.items() if rank(second.verdict) > rank(first[key].verdict)]
@@ -86,22 +89,27 @@ def attempt(study: Study, model: Model, reading: Reading, results: Results) -> d
     try:
         for failure in (each for each in parts.values() if isinstance(each, Exception)):
             raise failure
-        return judged(study.own_statements, study.compute(read_by(model, reading), parts or None).evidence)
+        evidence = study.compute(read_by(model, reading), parts or None).evidence
+        return judged([each for each in study.statements if not each.aside or np.size(evidence[each.key])], evidence)
     except (ValueError, np.linalg.LinAlgError) as error:
         return str(error)
 
 
 def best(study: Study, tries: Tries) -> dict[str, Second]:
     """The best verdict of each statement, by the first reading that gives it."""
-    return {statement.key: _best(statement.key, tries) for statement in study.own_statements}
+    found = {statement.key: _best(statement.key, tries) for statement in study.statements}
+    return {key: second for key, second in found.items() if second is not None}
 
 
-def _best(key: str, tries: Tries) -> Second:
+def _best(key: str, tries: Tries) -> Second | None:
+    judgements = {reading: found for reading, found in tries.items() if not isinstance(found, str)}
     known = [
         Second(found[key].verdict, found[key].ours, found[key].deviation, reading)
-        for reading, found in tries.items()
-        if not isinstance(found, str)
+        for reading, found in judgements.items()
+        if key in found
     ]
+    if judgements and not known:
+        return None
     if not known:
         return Second(Verdict.UNTESTABLE, reason=next(str(why) for why in tries.values()))
     return max(known, key=lambda second: rank(second.verdict))

@@ -117,7 +117,10 @@ def turning_time(times: Array, tip: Array, turn: int = 3) -> float:
     return float(times[at + 1] + (times[1] - times[0]) * (slope[at] / (slope[at] - slope[at + 1]) - 0.5))
 
 
-WHY_PULSE = "The thesis names neither pulse nor weights; most of what differs, differs by 10 to 20 %."
+WHY_PULSE = (
+    "The thesis names neither pulse nor weights; most of what differs, differs by 10 to 20 %. The order of its voltages comes of "
+    "Eq. 5.9, which weighs volts by stiffness."
+)
 
 STUDIES = (
     Study(

@@ -114,7 +114,10 @@ ASKED = "voltages compared as asked for, drawn as limited to ±1500 V"
 LQG = f"sampled LQG from summed sensors, step of 30 N/m in flap; {ASKED}"
 GANGED = f"one voltage on four MFC actuators of 80 mm × 57 mm; {LQG}"
 EACH = f"four MFC actuators with a voltage each; sampled LQG, step of 30 N/m in flap; {ASKED}"
-WHY_TAPER = "The load per metre is the same while the blade gets thinner and lighter: see Figure 3.16."
+WHY_TAPER = (
+    "The load per metre is the same while the blade gets thinner and lighter. By the thesis' equations, too, the tip would go less "
+    "far only under a load that falls with the chord: see Figure 3.16."
+)
 WHY_COVERAGE = (
     "The input weight is the energy the sheets can store, so larger ones are driven with less voltage to about the same effect; "
     "with the whole span covered, their stiffness lowers the peak."
@@ -124,7 +127,10 @@ WHY_PZT = (
     "acts 2.5 times as much. "
     "With one Q, R rule it therefore takes less voltage. Eq. 5.2 divides the MFC's voltage by its thickness too."
 )
-WHY_PLIES = "The input weight is the energy the actuators store, less in a stiffer blade: the same rule then asks for more voltage."
+WHY_PLIES = (
+    "The input weight is the energy the actuators store, less in a stiffer blade: the same rule then asks for more voltage. Eq. "
+    "5.9 has K where K⁻¹ belongs, so that volts on a stiffer blade weigh more: that turns the order of 30° and 60° round."
+)
 
 
 def mfc_study(name: str, angle_deg: float) -> Study:

@@ -11,7 +11,6 @@ from beamenv.blade.config import BeamConfig
 from beamenv.patches import PatchLayout
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import BeamMatrices
-from beamenv.structure.stations import Stations
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -27,7 +26,7 @@ class UniformTensionBeam(RotatingBeam):
 
     def _wall_matrices(self) -> BeamMatrices:
         true = super()._wall_matrices()
-        stations = Stations.between(self.breakpoints(self._edges), self.stations_per_span)
+        stations = self.space.stations(self.breakpoints(self._edges), self.stations_per_span)
         inertia, rows = self.walls_at(stations.z).inertia(), self.space.evaluate(stations.z)
         mass = inertia.mass_per_length
         excess = uniform_tension(mass, self.hub_radius, self.length, stations.z)
