@@ -59,8 +59,8 @@ def excess(motion: str, order: int) -> Array:
     found = []
     for count in COUNTS:
         mesh = tuple(np.linspace(0.0, 1.0, count + 1))
-        ways = {"discretisation": "finite-elements", "mesh": mesh, "element_order": order}
-        beam = RotatingBeam(BOX, layup, length, shear="rigid", model="thesis", **ways)
+        bare = RotatingBeam(BOX, layup, length, shear="rigid", model="thesis")
+        beam = replace(bare, discretisation="finite-elements", mesh=mesh, element_order=order)
         found.append(beam.natural_frequencies(0.0, MODE, (motion,))[MODE - 1] ** 2)
     return np.array(found) / (wave / mass) * (1.0 + inertia) - 1.0
 
@@ -106,7 +106,7 @@ def converging(model: Model) -> Outcome:
         "polynomials": [worst(replace(BeamConfig(), terms=terms)) for terms in POLYNOMIALS],
         **{f"order {p}": [worst(elements(BeamConfig(), count, p)) for count in MESHES] for p in ORDERS},
     }
-    curves = [Curve(*np.array(found).T, label) for label, found in by.items()]
+    curves = [Curve(np.array(found)[:, 0], np.array(found)[:, 1], label) for label, found in by.items()]
     label = "coefficients", "worst of 8 frequencies"
     panels.append(Panel("the thesis' blade at rest, bare", *label, curves, logarithmic=True))
     falling = np.array([[found for _, found in by[f"order {p}"]] for p in ORDERS])
@@ -131,9 +131,9 @@ def agreement(model: Model) -> Outcome:
         ], logarithmic=True),
     ]  # fmt: skip
     evidence = {"smooth": np.array(list(apart.values())), **dict(zip(("elements", "polynomials"), edges.values(), strict=True))}
-    rows = [[name, f"{MODES} frequencies, elements and polynomials", each] for name, each in apart.items()]
-    rows += [["default blade at rest", f"tip per volt, {name}", each] for name, each in edges.items()]
-    rows = [[*row[:2], f"{np.abs(row[2]).max():.1e}"] for row in rows]
+    compared = [(name, f"{MODES} frequencies, elements and polynomials", each) for name, each in apart.items()]
+    compared += [("default blade at rest", f"tip per volt, {name}", each) for name, each in edges.items()]
+    rows = [[blade, of, f"{np.abs(each).max():.1e}"] for blade, of, each in compared]
     return Outcome(evidence, panels, header=["blade", "of", "largest deviation"], rows=rows)
 
 
