@@ -172,7 +172,8 @@ class Laminate:
 
     def at(self, temperature_K: float) -> Laminate:
         """The same wall with its materials' constants at a temperature; ``ValueError`` beyond their data."""
-        return Laminate(self.interfaces, tuple(ply.at(temperature_K) for ply in self.plies))
+        warm = {ply: ply.at(temperature_K) for ply in dict.fromkeys(self.plies)}
+        return Laminate(self.interfaces, tuple(warm[ply] for ply in self.plies))
 
     @property
     def turned_over(self) -> Laminate:
