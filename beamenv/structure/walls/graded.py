@@ -127,11 +127,13 @@ def mixture_through(material: FunctionallyGraded) -> tuple[DepthRule, Mixture]:
     return rule, material.mixture(rule.volume)
 
 
-def laminae(mixture: Mixture) -> list[Lamina]:
+@lru_cache(maxsize=64)
+def laminae_through(material: FunctionallyGraded) -> tuple[Lamina, ...]:
     """What a wall's law asks for at each place; isotropic as its constituents are, and not checked again."""
+    _, mixture = mixture_through(material)
     alphas = np.full_like(mixture.E, np.nan) if mixture.alpha is None else mixture.alpha
     columns = (mixture.E, mixture.nu, mixture.shear, mixture.density, alphas)
-    return [_lamina(*row) for row in np.stack(columns, axis=1).tolist()]
+    return tuple(_lamina(*row) for row in np.stack(columns, axis=1).tolist())
 
 
 def _lamina(E: float, nu: float, G: float, density: float, alpha: float) -> Lamina:
