@@ -184,7 +184,7 @@ def test_a_statement_that_needs_several_equations_names_those():
 def test_a_misprint_that_the_thesis_refutes_is_told_and_does_not_count():
     _, second = again(taper_study(falls_with(PRINTED_Q12), (SHEAR_FLOW, PRINTED_Q12)))
     assert second.verdict is Verdict.NOT_REPRODUCED and second.reading == (SHEAR_FLOW,)
-    assert second.told == ("with printed Q̄12 (Tables 3.3 and 3.4 refute it) reproduced (1 of 1 steps fall)",)
+    assert second.told == ("with printed Q̄12 (Tables 3.3 and 3.4 refute it): reproduced (1 of 1 steps fall)",)
     _, counted = again(taper_study(falls_with(SIX_TERMS), (SHEAR_FLOW, SIX_TERMS)))
     assert counted.verdict is Verdict.REPRODUCED and not counted.told
 

@@ -106,7 +106,7 @@ def why(records: Sequence[Record]) -> str:
     none = sum(Verdict.NOT_REPRODUCED in each for each in fallen)
     return (
         f"Why so many are negative. Of {len(first)} statements {len(missed)} are not so in nature, {first.count(Verdict.TREND)} of "
-        "them only not quite. "
+        "which hold in trend. "
         f"The thesis' model accounts for {found[Verdict.REPRODUCED]}: by its own equations they are right. {found[Verdict.TREND]} "
         f"keep a trend by them, {found[Verdict.NOT_REPRODUCED]} do not: there it is the thesis' arithmetic, values read off plots, "
         "loads, weights or lay-ups that it does not print, and what it saw in four curves and stated of all. "

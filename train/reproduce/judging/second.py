@@ -74,7 +74,7 @@ def told(key: str, verdict: Verdict, tries: Tries) -> tuple[str, ...]:
     for reading, found in tries.items():
         refuted = refutation(reading)
         if refuted and not isinstance(found, str) and rank(found[key].verdict) > rank(verdict):
-            sentences.append(f"with {reading[-1]} ({refuted}) {outcome_in_words(found[key])}")
+            sentences.append(f"with {reading[-1]} ({refuted}): {outcome_in_words(found[key])}")
     return tuple(sentences)
 
 
