@@ -11,10 +11,9 @@ from scipy.optimize import brentq
 
 from baselines import no_control, reference_lqg, robust_lqg
 from baselines.analysis.stationary import stationary_cost
-from beamenv import RotatingBeamEnv
+from beamenv import Design, RotatingBeamEnv
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
-from beamenv.knowledge import Design
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam, StripSection
 from beamenv.structure.walls.laminate import Ply
 from train.figures.figure import Curve, Panel
@@ -211,7 +210,7 @@ def pyroelectric(model: Model) -> Outcome:
         reading, _, _, _, info = env.step(action)
         shown.append(reading)
         tips.append(info["tip_displacement"])
-    times = env.task.config.control_interval * np.arange(len(tips))
+    times: Array = env.task.config.control_interval * np.arange(len(tips), dtype=np.float64)
     truth = at_room().truth
     step = simulate(truth, no_control(truth), model.load, SHOWN).peak
     moved = np.linalg.norm(tips, axis=1)
