@@ -125,7 +125,7 @@ def test_heat_and_springs_act_on_elements_as_on_polynomials(held):
 
 
 def test_what_moves_may_be_of_elements_and_what_is_known_of_polynomials(tmp_path):
-    """By a plant file, as the solid blade is: the law for polynomials leaves as much of J as the one that is told the truth, + 1 %."""
+    """By a plant file, as the solid blade is: the law for polynomials is within 1 % of the one that is told the truth."""
     elements = BladeConfig(beam=BeamConfig(**ELEMENTS), modes=21)
     save_plant(beamenv.modal_plant_of(elements), tmp_path / "elements.npz")
     task = gym.make(beamenv.ENV_ID, scenario={"plants": {"truth": str(tmp_path / "elements.npz")}}).unwrapped.task
