@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from beamenv.plant.modal_plant import ModalPlant
     from beamenv.plant.plant import Plant, SampledPlant, sample
     from beamenv.scenarios.scenario import SCENARIOS, Scenario, scenario
-    from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
+    from beamenv.structure import BoxSection, FunctionallyGraded, Lamina, Layup, RotatingBeam
 
 __version__ = "0.1.0"
 
@@ -46,6 +46,7 @@ _HOMES = {
     "BeamConfig": "blade.config",
     "PatchLayout": "patches",
     "RotatingBeam": "structure",
+    "FunctionallyGraded": "structure",
     "Lamina": "structure",
     "Layup": "structure",
     "BoxSection": "structure",
@@ -88,6 +89,7 @@ __all__ = [
     "BladeVecEnv",
     "BoxSection",
     "Design",
+    "FunctionallyGraded",
     "Lamina",
     "Layup",
     "ModalPlant",

@@ -64,13 +64,7 @@ class Bounds:
         max-min formula), then the bounds.
         """
         steps = self.length * np.arange(self.count)
-        wanted = np.sort(np.asarray(positions, dtype=float), axis=-1) - steps
-        sums = np.concatenate([np.zeros((*wanted.shape[:-1], 1)), np.cumsum(wanted, axis=-1)], axis=-1)
-        start, end = np.meshgrid(np.arange(self.count), np.arange(self.count), indexing="ij")
-        means = (sums[..., end + 1] - sums[..., start]) / np.maximum(end - start + 1, 1)
-        means = np.where(end >= start, means, np.inf)
-        least_beyond = np.minimum.accumulate(means[..., ::-1], axis=-1)[..., ::-1]
-        level = np.where(start <= end, least_beyond, -np.inf).max(axis=-2)
+        level = ascending(np.sort(np.asarray(positions, dtype=float), axis=-1) - steps)
         return np.clip(level, self.low, self.low + self.slack) + steps
 
     def checked(self, positions: ArrayLike) -> Array:
@@ -85,6 +79,17 @@ class Bounds:
         if self.count > 1 and np.diff(ordered).min() < self.length - TOLERANCE:
             raise Refused(self.name, given.tolist(), f"at least a patch, {self.length:g} m, apart")
         return ordered
+
+
+def ascending(wanted: Array) -> Array:
+    """The nearest ascending numbers to any (…, count), in the least sum of squares: isotonic regression by its max-min formula."""
+    count = wanted.shape[-1]
+    sums = np.concatenate([np.zeros((*wanted.shape[:-1], 1)), np.cumsum(wanted, axis=-1)], axis=-1)
+    start, end = np.meshgrid(np.arange(count), np.arange(count), indexing="ij")
+    means = (sums[..., end + 1] - sums[..., start]) / np.maximum(end - start + 1, 1)
+    means = np.where(end >= start, means, np.inf)
+    least_beyond = np.minimum.accumulate(means[..., ::-1], axis=-1)[..., ::-1]
+    return np.asarray(np.where(start <= end, least_beyond, -np.inf).max(axis=-2))
 
 
 def checked_bounds(bounds: Sequence[float] | None, last: float, outermost: float) -> tuple[float, float]:

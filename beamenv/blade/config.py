@@ -33,11 +33,22 @@ from beamenv.plant.limits import VOLTAGES
 from beamenv.sensors.kinds import SENSORS, Accelerometer, PatchCurrent, Sensor
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
+from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation
+from beamenv.structure.held_and_heated import (
+    DIFFERENCE,
+    KELVIN,
+    SPRINGS,
+    check_held_and_heated,
+    temperatures_of,
+)
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.planform import TABLE, Steps
 from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
+from beamenv.structure.walls.curves import ROOM
+from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.laminate import PLY_ANGLES
+from beamenv.structure.walls.materials import MODULI
 from beamenv.structure.walls.named import MATERIALS
 
 ON_EVERY_WALL = "all"
@@ -82,9 +93,17 @@ def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[
     return walls
 
 
-MODULI = ("E1", "E2", "G12", "G13", "G23")
 SOFTEST = 1e5
 """Pa: below that of rubber, and above any metal's in GPa or MPa."""
+
+
+def _laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lamina]]:
+    """Paths of the laminae that are given, and themselves."""
+    if isinstance(material, FunctionallyGraded):
+        parts = [("material.inner", material.inner), ("material.outer", material.outer)]
+    else:
+        parts = [("material", material)]
+    return [(path, each) for path, each in parts if isinstance(each, Lamina)]
 
 
 @configuration("blade.beam")
@@ -101,8 +120,11 @@ class BeamConfig:
     """m, of the walls."""
     hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.2023
     """m."""
-    material: Annotated[str | Lamina, Choice(MATERIALS, Lamina, dict.fromkeys(MODULI, SOFTEST))] = "graphite-epoxy"
-    """A name or a lamina; in a dictionary or file also a table of a lamina's fields, which completes from the material before."""
+    material: Annotated[
+        str | Lamina | FunctionallyGraded, Choice(MATERIALS, (Lamina, FunctionallyGraded), dict.fromkeys(MODULI, SOFTEST))
+    ] = "graphite-epoxy"
+    """A name, a lamina, or a FunctionallyGraded through the walls; in a dictionary or file also a table of a lamina's fields, which
+    completes from the material before, or of ``inner``, ``outer`` and ``exponent``."""
     ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
     """Degrees from the contour tangent, inner to outer face, for ("all", angles) or wall by wall; a list or a mapping will do."""
     pretwist_deg: Annotated[float, DEGREES] = 30.0
@@ -115,18 +137,44 @@ class BeamConfig:
     """What the turning blade vibrates about; None: "nonlinear", or the blade at rest in the thesis' model, which has no other."""
     terms: Annotated[int | None, TERMS] = None
     """Trial functions of each field along the span; None: 16, or 10 in the thesis' model."""
+    discretisation: Annotated[str, DISCRETISATION] = "galerkin"
+    """What fields are made of along the span: "galerkin", polynomials over all of it, or "finite-elements"."""
+    elements: Annotated[int | None, ELEMENTS] = None
+    """Finite elements along the span, at least; None: 12."""
+    element_order: Annotated[int | None, ELEMENT_ORDER] = None
+    """Polynomial order of a finite element; None: 4."""
+    mesh: Annotated[tuple[float, ...] | None, MESH] = None
+    """Ends of finite elements, shares of the span from 0 to 1, beside the edges of patches; None: by ``elements``."""
     section: Annotated[AnySection | None, Variant("shape", SHAPES)] = None
     """A section of any shape, in a file a table with a ``shape`` and its fields; None: the box of width, depth and thickness."""
     twist_table: Annotated[Steps | None, TABLE, InsteadOf("pretwist_deg", 0.0)] = None
     """Pretwist along the span in place of ``pretwist_deg``: pairs of the share of the span, from 0 to 1, and degrees."""
     chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
+    temperature: Annotated[float | None, KELVIN] = None
+    """K, of the blade and its patches. None: that at which all data hold, and nothing is strained; beside a difference that of
+    reference."""
+    temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
+    """Temperature along the span in place of ``temperature``: pairs of the share of the span, from 0 to 1, and K."""
+    temperature_difference: Annotated[float, DIFFERENCE] = 0.0
+    """K: at the greatest y of each section (the top wall) less that at its least, straight in between."""
+    reference_temperature: Annotated[float, KELVIN] = ROOM
+    """K: at which the blade is free of thermal strain."""
+    tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
+    """What holds the tip: N/m along lag, flap and span, N m/rad about them. None: nothing does."""
 
     def __post_init__(self) -> None:
-        if isinstance(self.material, Lamina):
+        check_discretisation(self)
+        for path, lamina in _laminae(self.material):
             for name in MODULI:
-                if getattr(self.material, name) < SOFTEST:
-                    raise Refused(f"material.{name}", getattr(self.material, name), f"at least {SOFTEST:g} (Pa)")
+                if getattr(lamina, name) < SOFTEST:
+                    raise Refused(f"{path}.{name}", getattr(lamina, name), f"at least {SOFTEST:g} (Pa)")
+        check_held_and_heated("blade", self.temperatures, self.tip_springs, "blade.beam")
+
+    @property
+    def temperatures(self) -> Steps | None:
+        """Shares of the span and the temperature (K) there; None where there is none."""
+        return temperatures_of(self.temperature, self.temperature_table, self.temperature_difference, self.reference_temperature)
 
     @property
     def root_section(self) -> Section:
@@ -147,11 +195,20 @@ class BeamConfig:
             taper=self.taper,
             twist_table=self.twist_table,
             chord_table=self.chord_table,
+            temperature=self.temperature,
+            temperature_table=self.temperature_table,
+            temperature_difference=self.temperature_difference,
+            reference_temperature=self.reference_temperature,
+            tip_springs=self.tip_springs,
             model=model,
             shear=self.shear,
             shear_flow=self.shear_flow,
             steady_state=self.steady_state,
             terms=self.terms,
+            discretisation=self.discretisation,
+            elements=self.elements,
+            element_order=self.element_order,
+            mesh=self.mesh,
             inlays=layout.inlays(self.length) if layout is not None else (),
         )
 
@@ -212,6 +269,7 @@ class BladeConfig:
 
     def __post_init__(self) -> None:
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
+        check_held_and_heated(self.model, self.beam.temperatures, self.beam.tip_springs, "blade.beam")
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

@@ -15,7 +15,6 @@ from beamenv.sensors.points import along, point_rows
 from beamenv.structure import RotatingBeam
 from beamenv.structure.beam import EXTRA_STATIONS
 from beamenv.structure.geometrically_exact.kinematics import INCREMENT, MOVE, SPIN
-from beamenv.structure.trial_functions import Stations
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
@@ -80,7 +79,7 @@ def shape_force(beam: RotatingBeam, shape: LoadShape, name: str) -> Array:
     low, high = (0.0, beam.length) if shape.span is None else shape.span
     if high > beam.length * (1.0 + 1e-9):
         raise Refused(f"{name}.span", [low, high], f"within 0 and {beam.length:g} m, the span")
-    stations = Stations.between(np.array([low, min(high, beam.length)]), beam.space.terms + EXTRA_STATIONS)
+    stations = beam.space.stations(np.array([low, min(high, beam.length)]), beam.space.order + EXTRA_STATIONS)
     first, last = shape.profile
     size = first + (last - first) * (stations.z - low) / (high - low)
     each = [direction @ point_rows(beam, z, shape.point, name).moved for z in stations.z.tolist()]

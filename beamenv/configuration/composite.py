@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import dataclass
 from typing import Any, get_args
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.configuration.kinds import JsonSchema, Kind
+from beamenv.configuration.kinds import JsonSchema, Kind, needed
 from beamenv.configuration.sentence import an
 
 
@@ -90,7 +90,7 @@ def _whole(name: str, cls: type[Any], key: str, handler: GetJsonSchemaHandler) -
     """The table of one class, whose fields without a default are needed, as is the key."""
     # apart from the table itself, of which ``json_schema`` makes every field optional
     return {
-        "allOf": [handler(cls.__pydantic_core_schema__), {"required": [key, *_needed(cls)]}, {"properties": {key: {"const": name}}}]
+        "allOf": [handler(cls.__pydantic_core_schema__), {"required": [key, *needed(cls)]}, {"properties": {key: {"const": name}}}]
     }
 
 
@@ -100,11 +100,7 @@ def _listed(item: JsonSchema) -> JsonSchema:
 
 
 def _items(cls: type[Any], handler: GetJsonSchemaHandler) -> JsonSchema:
-    return {"allOf": [handler(cls.__pydantic_core_schema__), {"required": _needed(cls)}]}
-
-
-def _needed(cls: type[Any]) -> list[str]:
-    return [each.name for each in fields(cls) if each.default is MISSING and each.default_factory is MISSING]
+    return {"allOf": [handler(cls.__pydantic_core_schema__), {"required": needed(cls)}]}
 
 
 def _as_tuple(value: Any) -> Any:

@@ -9,7 +9,7 @@ import os
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 from typing import Any, get_args
 
 import numpy as np
@@ -138,37 +138,42 @@ class FileName(Kind):
 class Choice(Kind):
     """One of several names; where they are those of a mapping's objects, a table in its place departs from the object named.
 
-    ``own`` is the class of objects that may be given instead of a name, and ``least`` what an editor is told of their fields here:
-    the least values, which the table that has the field sees to.
+    ``own`` is the class of objects that may be given instead of a name, or several: a table with fields that the object named does
+    not have is of the class that has them. ``least`` is what an editor is told of the first one's fields here: the least values,
+    which the table that has the field sees to.
     """
 
     names: Sequence[str] | Mapping[str, Any]
-    own: type[Any] | None = None
+    own: type[Any] | tuple[type[Any], ...] = ()
     least: Mapping[str, float] | None = None
+
+    @property
+    def classes(self) -> tuple[type[Any], ...]:
+        """Of objects that may be given."""
+        return self.own if isinstance(self.own, tuple) else (self.own,)
 
     @property
     def allowed(self) -> str:
         """The names."""
-        return f"one of {', '.join(self.names)}" + (f", or {an(self.own.__name__)}" if self.own else "")
+        return f"one of {', '.join(self.names)}" + "".join(f", or {an(each.__name__)}" for each in self.classes)
 
     def core(self) -> CoreSchema:
         """A string, or an object."""
         name = core_schema.literal_schema(list(self.names))
-        if self.own is None:
-            return name
-        return core_schema.union_schema([core_schema.is_instance_schema(self.own), name])
+        return core_schema.union_schema([*map(core_schema.is_instance_schema, self.classes), name]) if self.classes else name
 
     def json(self) -> JsonSchema:
         """An enumeration."""
         return {"enum": list(self.names)}
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
-        if self.own is None:
+        if not self.classes:
             return Kind.__get_pydantic_json_schema__(self, schema, handler)
-        own = handler(self.own.__pydantic_core_schema__)
+        first, *others = (handler(each.__pydantic_core_schema__) for each in self.classes)
+        others = [{"allOf": [other, {"required": needed(each)}]} for other, each in zip(others, self.classes[1:], strict=True)]
         if self.least:
-            own = {"allOf": [own, {"properties": {name: {"minimum": value} for name, value in self.least.items()}}]}
-        return {"anyOf": [self.json(), own]}
+            first = {"allOf": [first, {"properties": {name: {"minimum": value} for name, value in self.least.items()}}]}
+        return {"anyOf": [self.json(), first, *others]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,6 +259,11 @@ class Table(Kind):
     def json(self) -> JsonSchema:
         """An object."""
         return {"type": "object"}
+
+
+def needed(cls: type[Any]) -> list[str]:
+    """Fields without a default."""
+    return [each.name for each in fields(cls) if each.default is MISSING and each.default_factory is MISSING]
 
 
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}

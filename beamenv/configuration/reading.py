@@ -101,9 +101,24 @@ def _read_field(cls: Any, name: str, before: Any, value: Any, path: str) -> Any:
         return _items(kind, value, path)
     if isinstance(kind, Variant):
         return _variant(kind, before, value, path) if isinstance(value, Mapping) else value
-    table = isinstance(value, Mapping) or _choice(cls, name) is None
-    stood = _stood(cls, name, before)
+    choice, stood = _choice(cls, name), _stood(cls, name, before)
+    if choice is not None and isinstance(value, Mapping) and (other := _told_by(choice, stood, value)):
+        return made(other, value, path)
+    table = isinstance(value, Mapping) or choice is None
     return read(stood, value, path) if table and is_dataclass(stood) else value
+
+
+def _told_by(choice: Choice, stood: Any, table: Mapping[str, Any]) -> type[Any] | None:
+    """The class that a table of fields is of, where nothing of it stood there: the first that has them all."""
+    if isinstance(stood, choice.classes) and set(table) <= _names(type(stood)):
+        return None
+    others = [each for each in choice.classes if not isinstance(stood, each)]
+    found = next((each for each in others if set(table) <= _names(each)), None)
+    return others[0] if found is None and not isinstance(stood, choice.classes) and others else found
+
+
+def _names(cls: type[Any]) -> set[str]:
+    return {each.name for each in fields(cls)}
 
 
 def _items(kind: Items | Variants, value: Any, path: str) -> Any:

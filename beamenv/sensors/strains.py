@@ -11,7 +11,7 @@ from beamenv.patches.operators import CLASSICAL, LOCAL_STATIONS, stations_under,
 from beamenv.sensors.kinds import StrainGauge
 from beamenv.structure import Lamina, RotatingBeam
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.stations import Stations
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply
 

@@ -8,6 +8,7 @@ from beamenv.structure.section.open_sections import CSection, ISection, StripSec
 from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.section.section import Section
 from beamenv.structure.section.webs import Web
+from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Laminate, Layup, Ply
 from beamenv.structure.walls.materials import Lamina
@@ -20,6 +21,7 @@ __all__ = [
     "AirfoilSection",
     "BoxSection",
     "CSection",
+    "FunctionallyGraded",
     "ISection",
     "Inlay",
     "Lamina",

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.structure.section.inertia import SectionInertia
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 
 Array = NDArray[np.float64]
 
@@ -92,7 +93,7 @@ def integrate(weight: Array, left: Array, section: Array, right: Array) -> Array
 
 
 def assemble(
-    space: TrialSpace, stations: Stations, section_stiffness: Array, inertia: SectionInertia, hub_radius: float
+    space: SpanSpace, stations: Stations, section_stiffness: Array, inertia: SectionInertia, hub_radius: float
 ) -> BeamMatrices:
     """Integrate section matrices (S, 9, 9) over the span."""
     rows = space.evaluate(stations.z)

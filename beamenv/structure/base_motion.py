@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from beamenv.configuration.read_only import Sealed
 from beamenv.structure.assembly import generalised_displacements
 from beamenv.structure.beam import RotatingBeam
-from beamenv.structure.trial_functions import Stations
 from beamenv.structure.walls.wall_kinematics import DS, DTY, DU, DU1
 
 Array = NDArray[np.float64]
@@ -41,7 +40,7 @@ def base_loads(beam: RotatingBeam, speed: float = 0.0) -> BaseLoads:
     if beam.model == "blade":
         return BaseLoads(*beam.exact.base_forces(beam.at(speed)))
     edges = [edge for inlay in beam.inlays for edge in (inlay.start, inlay.start + inlay.length)]
-    stations = Stations.between(beam.breakpoints(edges), beam.stations_per_span)
+    stations = beam.space.stations(beam.breakpoints(edges), beam.stations_per_span)
     inertia = beam.walls_at(stations.z).inertia()
     rows = generalised_displacements(beam.space.evaluate(stations.z))
     arm = (beam.hub_radius + stations.z)[:, None]

@@ -16,17 +16,17 @@ from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.numbers import DEGREES
 from beamenv.structure.assembly import BeamMatrices, assemble, generalised_strains
 from beamenv.structure.breaks import breakpoints, breaks
+from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation, element_space
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
+from beamenv.structure.geometrically_exact.heat import Heat
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.held_and_heated import (
     DIFFERENCE,
     KELVIN,
-    ROOM,
     SPRINGS,
     check_held_and_heated,
-    heat_of,
     temperatures_of,
 )
 from beamenv.structure.inlays import SHORTEST, Room
@@ -36,7 +36,9 @@ from beamenv.structure.planform import TABLE, Planform, Steps, check_table
 from beamenv.structure.scale import OUT_OF_SCALE, in_scale
 from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.span_walls import SpanWalls
-from beamenv.structure.trial_functions import MOTIONS, Stations, TrialSpace
+from beamenv.structure.span_space import MOTIONS, SpanSpace
+from beamenv.structure.trial_functions import TrialSpace
+from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Layup
 
@@ -94,14 +96,24 @@ class RotatingBeam:
     """What the blade vibrates about when it turns, "nonlinear" or "linear". None: "nonlinear", the blade at rest in the thesis."""
     terms: Annotated[int | None, TERMS] = None
     """Trial functions of each field. None: 16, or 10 in the thesis' model."""
+    discretisation: Annotated[str, DISCRETISATION] = "galerkin"
+    """What fields are made of along the span: "galerkin", polynomials over all of it, or "finite-elements"."""
+    elements: Annotated[int | None, ELEMENTS] = None
+    """Finite elements along the span, at least: each piece between edges of inlays has whole ones, and beside the clamp they are
+    short. None: 12."""
+    element_order: Annotated[int | None, ELEMENT_ORDER] = None
+    """Polynomial order of a finite element, of one more where the energies have second derivatives. None: 4."""
+    mesh: Annotated[tuple[float, ...] | None, MESH] = None
+    """Ends of finite elements, shares of the span from 0 to 1; edges of inlays are ends as well. None: by ``elements``."""
     inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
     temperature: Annotated[float | None, KELVIN] = None
-    """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained."""
+    """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained; beside a difference that of
+    reference."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of one: pairs of the share of the span, from 0 to 1, and K."""
     temperature_difference: Annotated[float, DIFFERENCE] = 0.0
-    """K: at the greatest y of each section less that at its least, straight in between; the mean is as said before."""
+    """K: at the greatest y of each section less that at its least, straight in between."""
     reference_temperature: Annotated[float, KELVIN] = ROOM
     """K: at which the blade is free of thermal strain."""
     tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
@@ -109,6 +121,7 @@ class RotatingBeam:
 
     def __post_init__(self) -> None:
         self.layup.check_walls(self.section.wall_names)
+        check_discretisation(self)
         check_table("beam.twist_table", self.twist_table)
         check_table("beam.chord_table", self.chord_table, least=0.0)
         self.section.check_thickness(self.narrowest, "section.thickness")
@@ -120,13 +133,13 @@ class RotatingBeam:
                 if getattr(self, name) is not None:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
-        check_held_and_heated(self.model, self.temperatures, self.temperature_difference, self.tip_springs)
+        check_held_and_heated(self.model, self.temperatures, self.tip_springs)
         self.room.check(self.inlays)
 
     @property
     def temperatures(self) -> Steps | None:
         """Shares of the span and the temperature (K) there; None where there is none."""
-        return temperatures_of(self.temperature, self.temperature_table)
+        return temperatures_of(self.temperature, self.temperature_table, self.temperature_difference, self.reference_temperature)
 
     @property
     def narrowest(self) -> float:
@@ -147,30 +160,38 @@ class RotatingBeam:
         return Planform(self.length, *even, twists, self.chord_table, covered, self.temperatures)
 
     @cached_property
-    def space(self) -> TrialSpace:
-        """The trial functions."""
+    def space(self) -> SpanSpace:
+        """What the fields are made of along the span."""
+        rigid, warping = self.shear == "rigid", self.model == "blade"
+        plane, reach = not self.layup.walls and self.section.stays_plane, CLAMP_REACH * self.section.perimeter
+        if self.discretisation == "finite-elements":
+            edges = [*self._edges, *(piece.start for piece in self.planform.pieces)]
+            return element_space(
+                self, edges, reach if warping else self.section.thickness, rigid=rigid, warping=warping, plane=plane
+            )
         return TrialSpace(
             length=self.length,
             terms=terms_of(self.model, self.terms),
-            rigid=self.shear == "rigid",
-            warping=self.model == "blade",
-            plane=not self.layup.walls and self.section.stays_plane,
-            clamp_reach=CLAMP_REACH * self.section.perimeter,
-            breaks=breaks(self.section, self.length, self.inlays) if self.model == "blade" and self.shear != "rigid" else (),
+            rigid=rigid,
+            warping=warping,
+            plane=plane,
+            clamp_reach=reach,
+            breaks=breaks(self.section, self.length, self.inlays) if warping and not rigid else (),
         )
 
     @cached_property
     def exact(self) -> ExactBeam:
         """The geometrically exact beam on solid sections: what the blade's model computes with."""
-        beside_clamp = CLAMP_PIECE * self.space.clamp_reach
+        beside_clamp = CLAMP_PIECE * CLAMP_REACH * self.section.perimeter
         changes = [piece.start for piece in self.planform.pieces]
+        ends = self.breakpoints([*self._edges, *changes, beside_clamp])
         return ExactBeam(
             space=self.space,
-            stations=Stations.graded(self.breakpoints([*self._edges, *changes, beside_clamp]), self.stations_per_span),
+            stations=self.space.stations(ends, self.stations_per_span, graded=True),
             sections=SectionsAlong.build(self.section, self.layup, self.planform, self.inlays),
             hub_radius=self.hub_radius,
             nonlinear=self.steady_state == "nonlinear" or (self.steady_state is None and self.shear != "rigid"),
-            heat=heat_of(self.temperatures, self.reference_temperature, self.temperature_difference),
+            heat=None if self.temperatures is None else Heat(self.reference_temperature, self.temperature_difference),
             springs=TipSprings.of(self.space, self.tip_springs) if self.tip_springs else None,
         )
 
@@ -186,18 +207,20 @@ class RotatingBeam:
 
     def _check_terms(self) -> None:
         """``ValueError`` names the trial functions where they are why there are no matrices: with as many as usual there are."""
-        terms, usual = self.space.terms, terms_of(self.model, None)
-        if terms <= usual:
+        space, usual = self.space, terms_of(self.model, None)
+        if not isinstance(space, TrialSpace) or space.terms <= usual:
             return
         try:
             _ = replace(self, terms=usual).matrices
         except ValueError:
             return
-        beside = f" beside two for each of {count} breaks along the span" if (count := len(self.space.breaks)) else ""
-        raise Refused("beam.terms", terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not")
+        beside = f" beside two for each of {count} breaks along the span" if (count := len(space.breaks)) else ""
+        raise Refused(
+            "beam.terms", space.terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not"
+        )
 
     def _wall_matrices(self) -> BeamMatrices:
-        stations = Stations.between(self.breakpoints(self._edges), self.stations_per_span)
+        stations = self.space.stations(self.breakpoints(self._edges), self.stations_per_span)
         walls = self.walls_at(stations.z)
         return assemble(self.space, stations, walls.stiffness(), walls.inertia(), self.hub_radius)
 
@@ -205,7 +228,7 @@ class RotatingBeam:
     def stations_per_span(self) -> int:
         """Gauss stations on a piece as long as the span: for the trial functions, and for pretwist beyond a quarter of a turn."""
         turned = self.planform.turned - 0.5 * np.pi
-        return self.space.terms + EXTRA_STATIONS + max(0, int(np.ceil(turned)))
+        return self.space.order + EXTRA_STATIONS + max(0, int(np.ceil(turned)))
 
     @property
     def _edges(self) -> list[float]:
@@ -333,6 +356,6 @@ class RotatingBeam:
 
     def line_load(self) -> Array:
         """Generalised force (N, 2) per N/m of uniform line load in lag and in flap."""
-        stations = Stations.between(np.array([0.0, self.length]), self.space.terms + EXTRA_STATIONS)
+        stations = self.space.stations(np.array([0.0, self.length]), self.space.order + EXTRA_STATIONS)
         rows = self.space.evaluate(stations.z)
         return np.column_stack([stations.weight @ rows["u", 0], stations.weight @ rows["v", 0]])

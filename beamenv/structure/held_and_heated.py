@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 from beamenv.configuration import Number, Numbers, Refused
-from beamenv.structure.geometrically_exact.heat import Heat
 from beamenv.structure.planform import Steps, check_table
-
-ROOM = 293.15
-"""K, 20 °C: at which blades are free of thermal strain unless said otherwise."""
 
 KELVIN = Number(gt=0.0, le=5000.0, unit="K")
 DIFFERENCE = Number(ge=-5000.0, le=5000.0, unit="K")
@@ -16,30 +12,21 @@ SPRINGS = Numbers(
 )
 
 
-def temperatures_of(temperature: float | None, table: Steps | None) -> Steps | None:
-    """Shares of the span and the temperature (K) there; None where there is none."""
+def temperatures_of(temperature: float | None, table: Steps | None, difference: float, reference: float) -> Steps | None:
+    """Shares of the span and the temperature (K) there, beside a difference that of the reference unless it is said; None: none."""
     if table is not None:
         return table
-    return None if temperature is None else ((0.0, temperature), (1.0, temperature))
+    hot = reference if temperature is None and difference else temperature
+    return None if hot is None else ((0.0, hot), (1.0, hot))
 
 
-def heat_of(temperatures: Steps | None, reference: float, difference: float) -> Heat | None:
-    """What heats a blade, or None."""
-    return None if temperatures is None else Heat(reference, difference)
-
-
-def check_held_and_heated(
-    model: str, temperatures: Steps | None, difference: float, springs: tuple[float, ...] | None, path: str = "beam"
-) -> None:
-    """``ValueError`` for a difference of temperature beside no temperature, and for either or springs in the thesis' model."""
+def check_held_and_heated(model: str, temperatures: Steps | None, springs: tuple[float, ...] | None, path: str = "beam") -> None:
+    """``ValueError`` for a table that is none, and for heat or springs in the thesis' model."""
     if temperatures is not None:
         check_table(f"{path}.temperature_table", temperatures, least=0.0)
-    if difference and temperatures is None:
-        raise Refused(f"{path}.temperature_difference", difference, "0 where the blade has no temperature (K)")
     if model != "thesis":
         return
     if temperatures is not None:
-        hot = [list(each) for each in temperatures]
-        raise Refused(f"{path}.temperature", hot[0][1], "None with model = 'thesis', which knows no heat")
+        raise Refused(f"{path}.temperature", temperatures[0][1], "None with model = 'thesis', which knows no heat")
     if springs is not None and any(springs):
         raise Refused(f"{path}.tip_springs", list(springs), "None with model = 'thesis', whose tip is free")

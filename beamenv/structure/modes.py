@@ -12,6 +12,9 @@ from beamenv.configuration.read_only import Sealed
 
 Array = NDArray[np.float64]
 
+LOST = 1e-6
+"""Share of the lowest squared frequency that rounding of the highest may take: short elements on a slender blade take all of it."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Modes(Sealed):
@@ -35,7 +38,19 @@ def normal_modes(mass: Array, stiffness: Array, count: int | None = None) -> tup
     """
     subset = None if count is None else (0, min(count, len(mass)) - 1)
     squares, shapes = eigh(stiffness, mass, subset_by_index=subset)
+    if np.finfo(np.float64).eps * np.max(np.diagonal(stiffness) / np.diagonal(mass)) > LOST * squares[0]:
+        return _lowest_modes(mass, stiffness, len(squares)) or (np.sqrt(np.maximum(squares, 0.0)), shapes)
     return np.sqrt(np.maximum(squares, 0.0)), shapes
+
+
+def _lowest_modes(mass: Array, stiffness: Array, count: int) -> tuple[Array, Array] | None:
+    """The same of M ψ = K ψ/ω², whose rounding is that of the lowest mode and not of the highest; None where K is not positive."""
+    try:
+        inverses, shapes = eigh(mass, stiffness, subset_by_index=(len(mass) - count, len(mass) - 1))
+    except np.linalg.LinAlgError:
+        return None
+    frequencies = 1.0 / np.sqrt(np.maximum(inverses, np.finfo(np.float64).eps * inverses[-1]))[::-1]
+    return frequencies, np.asarray(shapes[:, ::-1] * frequencies)
 
 
 def whirling_modes(

@@ -1,96 +1,71 @@
-"""Trial functions along the span and Gauss stations to integrate them."""
+"""Galerkin's trial functions: polynomials over the whole span."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from beamenv.configuration import Refused, Texts, checked
-from beamenv.configuration.read_only import Sealed, sealed
+from beamenv.structure.span_space import SpanSpace, Table
+from beamenv.structure.stations import Stations
 
 Array = NDArray[np.float64]
 
-FIELDS = ("u", "v", "s", "theta_x", "theta_y", "phi")
-"""Lag, flap, arc-length stretch, section rotations about x and y, twist."""
-
-MOTIONS = {"lag": ("u", "theta_y"), "flap": ("v", "theta_x"), "extension": ("s",), "twist": ("phi",)}
-"""The fields of each family of motion: a bending displacement with its section rotation."""
-
-ROOT_ORDER = {"u": 2, "v": 2, "phi": 2, "s": 1, "theta_x": 1, "theta_y": 1}
-"""The power of z with which a field leaves the clamp: 2 where its slope vanishes there too."""
-
 
 @dataclass(frozen=True, slots=True)
-class TrialSpace:
-    """(z/L)ᵏ times Legendre polynomials: the span of the thesis' monomials (Eq. 3.12), but well conditioned.
-
-    In rigid theory the section rotations are no fields of their own: θy = u', θx = −v'.
-    """
+class TrialSpace(SpanSpace):
+    """(z/L)ᵏ times Legendre polynomials: the span of the thesis' monomials (Eq. 3.12), but well conditioned."""
 
     length: float
     terms: int
     rigid: bool
     warping: bool = False
-    """Whether sections warp at will and shear, so that no slope need vanish at the clamp."""
     plane: bool = False
-    """Whether sections stay plane in torsion, so that the clamp holds no warping back."""
     clamp_reach: float = 1.0
     """m: distance from the clamp over which sections come to warp at will."""
     breaks: tuple[float, ...] = ()
     """m: where the blade's stiffness jumps, and strains with it. Every field has a ramp and a parabola that begin there."""
 
-    def root_order(self, field: str) -> int:
-        """The power of z with which a field leaves the clamp."""
-        bends = field in ("u", "v") and self.rigid
-        free = self.warping or (field == "phi" and self.plane)
-        return ROOT_ORDER[field] if bends or not free else 1
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """Fields that have coefficients of their own, in the order of the coefficient vector."""
-        return tuple(name for name in FIELDS if not (self.rigid and name.startswith("theta")))
-
-    @property
-    def size(self) -> int:
-        """Number of coefficients."""
-        return self.each * len(self.fields)
+    held: ClassVar[float] = 1e-10
 
     @property
     def each(self) -> int:
         """Number of coefficients of each field."""
         return self.terms + 2 * len(self.breaks)
 
-    def columns(self, motions: tuple[str, ...] | None) -> NDArray[np.intp]:
-        """Indices of the coefficients that belong to ``motions`` (None: all)."""
-        if motions is not None and not set(checked("motions", motions, Texts()) or ("none",)) <= set(MOTIONS):
-            raise Refused("motions", motions, f"a list of one or more of {', '.join(MOTIONS)}")
-        wanted = FIELDS if motions is None else [name for motion in motions for name in MOTIONS[motion]]
-        blocks = [np.arange(self.each) + self.each * k for k, name in enumerate(self.fields) if name in wanted]
-        return np.concatenate(blocks)
+    @property
+    def order(self) -> int:
+        """As many stations as terms."""
+        return self.terms
 
-    def evaluate(self, z: Array) -> dict[tuple[str, int], Array]:
-        """Rows (stations, size) that give each field's derivative: keys (field, order), orders 0, 1, 2."""
-        tables = {power: self.table(z, power) for power in (1, 2)}
-        rows: dict[tuple[str, int], Array] = {}
-        for index, name in enumerate(self.fields):
-            block = slice(index * self.each, (index + 1) * self.each)
-            for order in range(3):
-                row = np.zeros((len(z), self.size))
-                row[:, block] = tables[self.root_order(name)][order]
-                rows[name, order] = row
-        if self.rigid:
-            for order in range(2):
-                rows["theta_y", order] = rows["u", order + 1]
-                rows["theta_x", order] = -rows["v", order + 1]
-        return rows
+    @property
+    def amplitude_terms(self) -> int:
+        """Those without breaks."""
+        return self.terms
 
-    def table(self, z: Array, power: int) -> tuple[Array, Array, Array]:
+    def kind(self, field: str) -> int:
+        """The power of z with which the functions leave the clamp."""
+        return self.root_order(field)
+
+    def count(self, kind: int) -> int:
+        """The same of every kind."""
+        return self.each
+
+    def stations(self, breakpoints: Array, points: int, graded: bool = False) -> Stations:
+        """As many on every piece, or ``graded``: the fewer the shorter it is."""
+        return Stations.graded(breakpoints, points) if graded else Stations.between(breakpoints, points)
+
+    def amplitude_table(self, z: Array) -> tuple[Array, Array]:
+        """Polynomials less what their value at the clamp decays to within its reach."""
+        return clamped_table(z / self.length, self.terms, self.length, self.clamp_reach)
+
+    def table(self, z: Array, kind: int) -> Table:
         """Values and first two derivatives (stations, each) of a field's functions, that leave the clamp with a power of z."""
-        smooth = polynomial_table(z / self.length, power, self.terms, self.length)
+        smooth = polynomial_table(z / self.length, kind, self.terms, self.length)
         if not self.breaks:
             return smooth
         beyond = np.maximum(z[:, None] - np.array(self.breaks), 0.0) / self.length
@@ -135,65 +110,3 @@ def legendre_derivative(terms: int) -> Array:
     padded[: len(derived)] = derived
     padded.setflags(write=False)
     return padded
-
-
-@lru_cache
-def gauss_rule(points: int) -> tuple[Array, Array]:
-    """Nodes and weights (points,) of Gauss's rule on −1 … 1."""
-    rule = legendre.leggauss(points)
-    for values in rule:
-        values.setflags(write=False)
-    return rule
-
-
-LEAST = 4
-"""Stations on the shortest piece, between whose ends trial functions hardly bend."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Stations(Sealed):
-    """Gauss stations along the span: ``per_piece`` on each piece between breakpoints, where the blade may change abruptly."""
-
-    z: Array
-    weight: Array
-    breakpoints: Array
-    per_piece: int
-
-    @classmethod
-    def between(cls, breakpoints: Array, per_piece: int) -> Stations:
-        """Stations on every piece between ascending breakpoints (m)."""
-        nodes, weights = gauss_rule(per_piece)
-        half = 0.5 * np.diff(breakpoints)
-        z = (breakpoints[:-1] + half)[:, None] + half[:, None] * nodes
-        return cls(z.ravel(), (half[:, None] * weights).ravel(), breakpoints, per_piece)
-
-    @classmethod
-    def graded(cls, breakpoints: Array, order: int) -> Stations:
-        """Stations for functions of ``order`` on the whole span: the fewer the shorter a piece is."""
-        share = np.diff(breakpoints) / (breakpoints[-1] - breakpoints[0])
-        pieces = [cls.between(breakpoints[k : k + 2], int(np.ceil(LEAST + order * part))) for k, part in enumerate(share)]
-        z, weight = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("z", "weight"))
-        return cls(z, weight, breakpoints, 0)
-
-    def integral_to_tip(self, values: Array) -> Array:
-        """∫_z^L f dσ at every station, exact for f polynomial (degree < per_piece) on each piece."""
-        per_piece = values.reshape(-1, self.per_piece)
-        half = 0.5 * np.diff(self.breakpoints)
-        whole = (self.weight * values).reshape(per_piece.shape).sum(axis=1)
-        beyond = np.append(np.cumsum(whole[::-1])[::-1][1:], 0.0)
-        return (half[:, None] * (per_piece @ remaining_integrals(self.per_piece).T) + beyond[:, None]).ravel()
-
-
-@lru_cache
-def remaining_integrals(points: int) -> Array:
-    """(points, points): ∫ from Gauss node q to 1 of the Lagrange polynomial of node j."""
-    nodes, weights = gauss_rule(points)
-    values = legendre.legvander(nodes, points)
-    degree = np.arange(1, points)
-    tail = np.column_stack([1.0 - nodes, (values[:, degree - 1] - values[:, degree + 1]) / (2 * degree + 1)])
-    return sealed(np.asarray(tail @ (degree_norms(points)[:, None] * values[:, :points].T * weights)))
-
-
-def degree_norms(points: int) -> Array:
-    """(2k + 1)/2, the inverse squared norms of the Legendre polynomials k = 0 … points − 1."""
-    return np.arange(points, dtype=np.float64) + 0.5

@@ -86,6 +86,9 @@ def test_every_preset_keeps_to_the_schema(name):
         ({"beam": {"material": "steel"}}, blade_schema),
         ({"beam": {"material": {"E1": 0.0}}}, blade_schema),
         ({"beam": {"material": {"G23": 99_999.0}}}, blade_schema),
+        ({"beam": {"material": {"inner": "sus304", "outer": "alumina"}}}, blade_schema),
+        ({"beam": {"material": {"inner": "sus304", "outer": "alumina", "exponent": -1.0}}}, blade_schema),
+        ({"beam": {"material": {"curves": {"E3": [[200, 1.0], [300, 1.0]]}}}}, blade_schema),
         ({"beam": {"ply_angles_deg": []}}, blade_schema),
         ({"patches": {"passive": "no"}}, blade_schema),
         ({"modes": 1.5}, blade_schema),
@@ -106,6 +109,11 @@ def test_what_is_refused_is_marked(content, schema):
     [
         ({"$schema": "blade.json", "beam": {"material": {"E1": 1e11}, "ply_angles_deg": [30, 30]}}, blade_schema),
         ({"beam": {"ply_angles_deg": {"top": [0], "bottom": [0], "left": [0], "right": [0]}}}, blade_schema),
+        ({"beam": {"material": {"inner": "sus304", "outer": "alumina", "exponent": 1, "scheme": "mori-tanaka"}}}, blade_schema),
+        (
+            {"beam": {"material": {"curves": {"E2": [[200, 1.1], [300, 1.0]], "G12": {"least_K": 200, "most_K": 400}}}}},
+            blade_schema,
+        ),
         ({"patches": {"actuators": [0.1, 0.5], "sensors": 3}}, blade_schema),
         ({"preset": "rotor", "plants": {"speed_ratio": 1.1}}, scenario_schema),
     ],
@@ -173,7 +181,7 @@ def test_editor_and_reader_agree_on_every_value_of_every_field_alone(cls, schema
     """Both refuse it or neither, but for what ties numbers together, which a schema cannot say: then the sentence names both."""
     root = schema()
     tied = "that do not add up", "smaller in magnitude than sqrt", "None where other plants are drawn", "where no patches are"
-    tied = *tied, "two speeds of which one is above 0"
+    tied = *tied, "two speeds of which one is above 0", "left out where discretisation is", "that ascend from 0 to 1"
     for path in places(cls):
         for value in VALUES:
             table = value

@@ -14,7 +14,8 @@ from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
 from beamenv.patches.operators import actuation, sensing
 from beamenv.structure.section.elements import inverse_vandermonde, lobatto_nodes
-from beamenv.structure.trial_functions import gauss_rule, legendre_derivative, remaining_integrals
+from beamenv.structure.stations import gauss_rule, remaining_integrals
+from beamenv.structure.trial_functions import legendre_derivative
 from beamenv.structure.walls.laminate import wall_law
 from beamenv.task import resolve_task
 

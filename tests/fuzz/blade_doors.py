@@ -16,7 +16,7 @@ from beamenv.plant.modal_plant import SENSED, STATIC, ModalPlant
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.scenarios.scenario import Scenario, scenario
 from beamenv.scenarios.tables import Acquisition, Drive, Failures, PlantVariation, Rotor
-from beamenv.structure import ALUMINIUM, GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam
+from beamenv.structure import ALUMINIUM, GRAPHITE_EPOXY, BoxSection, FunctionallyGraded, Lamina, Layup, RotatingBeam
 from beamenv.structure.section.section import Section
 from beamenv.structure.walls.curves import Touloukian
 from tests.fuzz import small
@@ -63,6 +63,7 @@ CORNERS = Kind(
 )
 BOX = BoxSection(0.254, 0.0508, 0.01016)
 LAYUP = Layup.uniform(GRAPHITE_EPOXY, [30.0] * 6)
+GRADED = FunctionallyGraded("sus304", "silicon-nitride", 1.0)
 METAL = Layup.uniform(ALUMINIUM, [0.0])
 
 
@@ -85,8 +86,8 @@ def modal():
 def material_parts():
     parts = of_fields(BladeConfig)
     beam = dict(parts["beam"].parts)
-    beam["material"] = either(TEXT, table(of_fields(Lamina), Lamina))
-    beam["material"] = dataclasses.replace(beam["material"], parts=of_fields(Lamina))
+    lamina, graded = table(of_fields(Lamina), Lamina), table(of_fields(FunctionallyGraded), FunctionallyGraded)
+    beam["material"] = dataclasses.replace(either(TEXT, lamina, graded), parts={**lamina.parts, **graded.parts})
     patches = dict(parts["patches"].parts)
     return {
         **parts,
@@ -118,13 +119,15 @@ DOORS = [
         lambda: {"E": 7e10, "nu": 0.3, "density": 2700.0, "alpha": 2e-5, "curves": {"E1": [[200, 1.1], [300, 1.0]]}},
         lambda made: {"E": made.E1, "nu": made.nu12, "density": made.density, "alpha": made.alpha1, "curves": made.curves},
     ),
+    constructor(FunctionallyGraded, {"inner": "sus304", "outer": ALUMINIUM, "exponent": 0.5, "scheme": "mori-tanaka"}),
+    Door("FunctionallyGraded.at", GRADED.at, {"temperature_K": NUMBER}, lambda: {"temperature_K": 350.0}, told=("temperature",)),
     constructor(Touloukian, {"least_K": 300.0, "most_K": 900.0, "P_minus1": 0.0, "P1": 3e-4, "P2": -6e-7, "P3": 0.0}),
     Door("Lamina.at", ALUMINIUM.at, {"temperature_K": NUMBER}, lambda: {"temperature_K": 350.0}, told=("temperature",)),
     Door("Layup.at", METAL.at, {"temperature_K": NUMBER}, lambda: {"temperature_K": 350.0}, told=("temperature",)),
     Door(
         "Layup.uniform",
         Layup.uniform,
-        {"material": instance(Lamina), "angles_deg": NUMBERS},
+        {"material": instance(Lamina, FunctionallyGraded), "angles_deg": NUMBERS},
         lambda: {"material": GRAPHITE_EPOXY, "angles_deg": [30.0, -30.0]},
         lambda made: {"angles_deg": [ply.angle_deg for ply in made.default]},
         public="Layup",
@@ -132,7 +135,7 @@ DOORS = [
     Door(
         "Layup.by_wall",
         lambda material, **walls: Layup.by_wall(material, **walls),
-        {"material": instance(Lamina), "top": NUMBERS, "bottom": NUMBERS},
+        {"material": instance(Lamina, FunctionallyGraded), "top": NUMBERS, "bottom": NUMBERS},
         lambda: {"material": GRAPHITE_EPOXY, "top": [1.0], "bottom": [2.0, 3.0]},
         lambda made: {wall: [ply.angle_deg for ply in plies] for wall, plies in made.walls.items()},
     ),
@@ -182,7 +185,7 @@ DOORS = [
         lambda: {"layup": LAYUP, "shear": "first_order", "shear_flow": "thesis", "model": "thesis"},
     ),
     Door("Section.properties", lambda **given: BOX.properties(**given), {"layup": instance(Layup)}, lambda: {"layup": LAYUP}),
-    constructor(BeamConfig, {}, material=either(TEXT, instance(Lamina))),
+    constructor(BeamConfig, {}, material=either(TEXT, instance(Lamina, FunctionallyGraded))),
     constructor(PatchLayout, {}, material=either(TEXT, instance(PatchMaterial))),
     constructor(PatchMaterial, {each.name: getattr(MFC, each.name) for each in dataclasses.fields(MFC)}),
     constructor(ElectronicsConfig, {}),

@@ -208,9 +208,14 @@ def _curve(value):
         return value
     if isinstance(value, Mapping):
         read = {str(name): _number(each) for name, each in value.items()}
-        return NOTHING if NOTHING in read.values() or not set(read) <= set(_POLYNOMIAL) else read
-    points = np.asarray(value, dtype=object).tolist() if isinstance(value, np.ndarray) else value
-    return _sequence(_sequence(_number, 2))(points)
+        if NOTHING in read.values() or not {"least_K", "most_K"} <= set(read) <= set(_POLYNOMIAL):
+            return NOTHING
+        return Touloukian(**read) if 0.0 < read["least_K"] < read["most_K"] <= 1e4 else NOTHING
+    return _pairs(value)
+
+
+def _pairs(value):
+    return _sequence(_sequence(_number, 2))(list(value) if isinstance(value, np.ndarray) and value.ndim == 2 else value)
 
 
 def _by_property(value):
@@ -243,6 +248,7 @@ _PLAIN = {
     tuple[int, ...]: COUNTS,
     tuple[str, ...]: Kind("texts", _sequence(_path), st.lists(st.text(max_size=3), max_size=2)),
     tuple[tuple[str, tuple[float, ...]], ...]: BY_WALL,
+    tuple[tuple[float, float], ...]: Kind("pairs", _pairs, st.sampled_from([[[0, 1], [1, 0.5]], [[0, "1"]], [[1.0]], [], 0.5])),
     tuple[tuple[str, Curve], ...]: CURVES,
     Any: ANYTHING,
 }

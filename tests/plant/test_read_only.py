@@ -20,7 +20,8 @@ from beamenv.simulation.kernel import Operators
 from beamenv.simulation.plants.speed_family import speed_family
 from beamenv.structure import GRAPHITE_EPOXY
 from beamenv.structure.section.elements import inverse_vandermonde, lobatto_nodes
-from beamenv.structure.trial_functions import gauss_rule, legendre_derivative, remaining_integrals
+from beamenv.structure.stations import gauss_rule, remaining_integrals
+from beamenv.structure.trial_functions import legendre_derivative
 from beamenv.structure.walls.laminate import Laminate, Ply, wall_law
 from beamenv.task import resolve_task
 

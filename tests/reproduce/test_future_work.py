@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from train.figures.figure import Curve, Panel
-from train.reproduce import report
+from train.reproduce import catalogue
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Matches
 from train.reproduce.report import html_page, markdown_page
@@ -26,15 +26,15 @@ FIGURE = replace(OWN, name="figure-3.2")
 @pytest.fixture
 def records(tmp_path, monkeypatch):
     chapter = "7.2, done", (OWN, replace(OWN, name="heated-bar", rows_on_page=True))
-    monkeypatch.setattr(report, "FUTURE_WORK", chapter)
-    monkeypatch.setattr(report, "THESIS_STUDIES", (FIGURE,))
-    monkeypatch.setattr(report, "CHAPTERS", (("Chapter 3", (FIGURE,)), chapter))
+    monkeypatch.setattr(catalogue, "FUTURE_WORK", chapter)
+    monkeypatch.setattr(catalogue, "THESIS_STUDIES", (FIGURE,))
+    monkeypatch.setattr(catalogue, "CHAPTERS", (("Chapter 3", (FIGURE,)), chapter))
     return run([FIGURE, *chapter[1]], tmp_path)
 
 
 def test_own_work_is_counted_apart(records):
     page = markdown_page(records)
-    assert "| tables and figures | 1 | 0 | 0 | 0 |" in page and "| their statements | 1 | 0 | 0 | 0 |" in page
+    assert "| tables and figures, in nature | 1 | 0 | 0 | 0 |" in page and "| their statements, in nature | 1 | 0 | 0 | 0 |" in page
     assert "| checks of “7.2, done” | 2 | 0 | 0 | 0 |" in page
     assert "checks of" not in markdown_page(records[:1])
 

@@ -10,7 +10,7 @@ BY_NAME = {study.name: study for study in STUDIES}
 AS_JUDGED = {
     "table-2.1": {"couplings": Verdict.REPRODUCED, "decoupling": Verdict.REPRODUCED},
     "table-2.2": {"couplings": Verdict.REPRODUCED, "pretwist": Verdict.REPRODUCED, "coupled": Verdict.REPRODUCED},
-    "table-3.1": {"from-above": Verdict.REPRODUCED, "first-mode": Verdict.REPRODUCED, "values": Verdict.UNTESTABLE},
+    "table-3.1": {"from-above": Verdict.REPRODUCED, "first-mode": Verdict.REPRODUCED, "values": Verdict.NOT_REPRODUCED},
     "table-3.2": {"theory": Verdict.REPRODUCED, "experiment": Verdict.REPRODUCED, "thesis": Verdict.TREND},
     "table-3.3": {"six-terms": Verdict.REPRODUCED, "oh": Verdict.REPRODUCED, "third-at-200": Verdict.NOT_REPRODUCED},
     "table-3.4": {"thesis": Verdict.REPRODUCED, "chandiramani": Verdict.REPRODUCED, "ratio": Verdict.REPRODUCED},

@@ -6,7 +6,7 @@ import pytest
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.assembly import generalised_displacements
 from beamenv.structure.base_motion import base_loads
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.stations import Stations
 from beamenv.structure.walls.wall_kinematics import motion_rows
 
 DENSITY, WIDTH, DEPTH, WALL, LENGTH, HUB = 2700.0, 0.2, 0.05, 0.01, 2.0, 0.3

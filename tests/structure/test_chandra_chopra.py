@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import legvander
 
-from beamenv.structure import AS4_3501_6, BoxSection, Layup, RotatingBeam
-from beamenv.structure.geometrically_exact import tables
+from beamenv.structure import AS4_3501_6, BoxSection, Layup, RotatingBeam, trial_functions
 from beamenv.structure.trial_functions import legendre_derivative
 
 INCH, RPM = 0.0254, 2.0 * np.pi / 60.0
@@ -51,7 +50,7 @@ def test_cas_beam_agrees_with_finite_elements_but_for_its_clamp(finite_elements,
         value = legvander(2.0 * xi - 1.0, terms - 1)
         return value, value @ (2.0 * legendre_derivative(terms)) / length
 
-    monkeypatch.setattr(tables, "clamped_table", unclamped)
+    monkeypatch.setattr(trial_functions, "clamped_table", unclamped)
     assert np.abs(deviation(hertz(blade(graphite_of_the_elements)), finite_elements)).max() < 0.4
 
 

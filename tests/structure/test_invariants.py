@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, RotatingBeam, assembly
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.stations import Stations
 from beamenv.structure.walls.wall_kinematics import motion_rows
 
 ANGLES = st.lists(st.floats(-90.0, 90.0), min_size=1, max_size=4)

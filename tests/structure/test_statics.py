@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
-from beamenv.structure.trial_functions import Stations
+from beamenv.structure.stations import Stations
 
 ALUMINIUM = Lamina.isotropic(E=70e9, nu=0.3, density=2700.0)
 ISOTROPIC = Layup.uniform(ALUMINIUM, angles_deg=[0])

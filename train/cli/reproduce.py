@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import typer
@@ -13,7 +14,8 @@ from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIE
 from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
-from train.reproduce.report import html_page, markdown_page, verdicts_of
+from train.reproduce.overview import first_verdicts, second_verdicts, verdicts_of
+from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import Record, load, run
 from train.shared.files import check_folder
 from train.shared.lock import alone_in
@@ -100,16 +102,20 @@ def with_earlier(output: Path, records: list[Record]) -> list[Record]:
 
 def report(records: list[Record], output: Path) -> None:
     """What came out, in a few lines."""
-    found = {record.name: record.judgements for record in records if not record.error}
-    for what, studies in (("Statements", THESIS_STUDIES), (f"Checks of {FUTURE_WORK[0]!r}", FUTURE_WORK[1])):
-        if any(record.name == study.name for record in records for study in studies):
-            verdicts = counts(verdicts_of(studies, found))
-            typer.echo(f"{what}: " + ", ".join(f"{number} {verdict.value}" for verdict, number in verdicts.items()))
-    judgements = {record.name: record.judgements for record in with_earlier(output, records) if not record.error}
-    rows = counts([row.verdict(judgements) for row in ROWS])
-    if sum(rows.values()) > rows[Verdict.UNTESTABLE]:
-        typer.echo("Conclusions: " + ", ".join(f"{number} {verdict.value}" for verdict, number in rows.items()))
+    everything = with_earlier(output, records)
+    told("Statements", verdicts_of(THESIS_STUDIES, first_verdicts(records)))
+    told("By the thesis' equations", verdicts_of(THESIS_STUDIES, second_verdicts(records)))
+    told(f"Checks of {FUTURE_WORK[0]!r}", verdicts_of(FUTURE_WORK[1], first_verdicts(records)))
+    rows = [row.verdict(first_verdicts(everything)) for row in ROWS if row.decided_by]
+    if any(rows):
+        told("Conclusions", [*rows, *(Verdict.UNTESTABLE for row in ROWS if not row.decided_by)])
     for record in records:
         if record.error:
             typer.echo(f"{record.name} failed: {record.error}", err=True)
     typer.echo(f"{output / 'report.html'}")
+
+
+def told(what: str, verdicts: Sequence[Verdict | None]) -> None:
+    """How many of each, if there are any."""
+    if verdicts:
+        typer.echo(f"{what}: " + ", ".join(f"{number} {verdict.value}" for verdict, number in counts(verdicts).items()))

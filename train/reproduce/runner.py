@@ -7,15 +7,17 @@ import io
 import json
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from beamenv.configuration.writing import write_whole
 from train.reproduce.drawing import curve_rows, draw
-from train.reproduce.judging.study import Outcome, Part, Parts, Study
+from train.reproduce.judging.second import Results, Second, judged_again
+from train.reproduce.judging.study import Outcome, Part, Study
 from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import Reading
 from train.shared.digests import digest, source_digest
 from train.shared.files import read_json
 from train.workers.workers import Workers
@@ -32,6 +34,8 @@ class Record:
     seconds: float
     """Its parts' not included."""
     judgements: dict[str, Judgement]
+    second: dict[str, Second] = field(default_factory=dict)
+    """By the thesis' own equations."""
     notes: tuple[str, ...] = ()
     header: tuple[str, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
@@ -99,7 +103,7 @@ class Waiting:
     def __init__(self, studies: Sequence[Study], model: Model, fingerprint: str) -> None:
         self.found: dict[Part, Any] = {}
         """What parts came to, exceptions included."""
-        self._studies = [(study, study.parts(model)) for study in studies]
+        self._studies = [(study, study.parts_by_reading(model)) for study in studies]
         self._given = model, fingerprint
         self._parts = list(with_theirs(part for _, parts in self._studies for part in parts.values()))
 
@@ -128,7 +132,7 @@ class Waiting:
     def _are_found(self, parts: Iterable[Part]) -> bool:
         return all(part in self.found for part in parts)
 
-    def _made(self, study: Study, parts: Parts) -> Piece:
+    def _made(self, study: Study, parts: Mapping[tuple[Reading, Any], Part]) -> Piece:
         made = Part(made_of, (study, *self._given, {key: self.found[part] for key, part in parts.items()}))
         return Piece(made, made.arguments)
 
@@ -165,13 +169,15 @@ class Made:
     picture: bytes = b""
 
 
-def made_of(study: Study, model: Model, fingerprint: str, results: Mapping[Any, Any]) -> Made:
-    """Compute, judge and draw one study from what its parts came to."""
+def made_of(study: Study, model: Model, fingerprint: str, results: Results) -> Made:
+    """Compute, judge twice and draw one study from what its parts came to."""
     start = time.perf_counter()
     try:
-        check(results.values())
-        outcome = study.compute(model, results)
+        own = {key: result for (reading, key), result in results.items() if not reading}
+        check(own.values())
+        outcome = study.compute(model, own)
         judgements = study.judge(outcome)
+        second = judged_again(study, model, judgements, results)
         picture = draw(outcome, study.heading)
     except Exception as error:  # noqa: BLE001 - as above
         seconds, told = time.perf_counter() - start, f"{type(error).__name__}: {error}"
@@ -180,6 +186,7 @@ def made_of(study: Study, model: Model, fingerprint: str, results: Mapping[Any, 
         name=study.name,
         seconds=time.perf_counter() - start,
         judgements=judgements,
+        second=second,
         notes=tuple(outcome.notes),
         header=tuple(outcome.header) if study.tabulated else (),
         rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if study.tabulated else (),
@@ -210,12 +217,23 @@ def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | No
     try:
         if fingerprint is not None and kept["fingerprint"] != fingerprint:
             return None
-        judged = {key: Judgement(**(value | {"verdict": Verdict(value["verdict"])})) for key, value in kept["judgements"].items()}
-        record = Record(**(kept | {"judgements": judged}))
+        judged = {key: Judgement(**with_verdict(value)) for key, value in kept["judgements"].items()}
+        second = {key: second_of(value) for key, value in kept["second"].items()}
+        record = Record(**(kept | {"judgements": judged, "second": second}))
         rows = tuple(tuple(row) for row in record.rows)
         return replace(record, notes=tuple(record.notes), header=tuple(record.header), rows=rows)
     except (KeyError, TypeError, ValueError, AttributeError):
         raise ValueError(f"file {str(path)!r} must hold the record of a study: remove it, and the study is run again.") from None
+
+
+def with_verdict(kept: dict[str, Any]) -> dict[str, Any]:
+    """The fields of a judgement as they were before they were written."""
+    return kept | {"verdict": Verdict(kept["verdict"])}
+
+
+def second_of(kept: dict[str, Any]) -> Second:
+    """A second judgement likewise."""
+    return Second(**(with_verdict(kept) | {name: tuple(kept[name]) for name in ("reading", "enough", "told")}))
 
 
 def source_fingerprint(model: Model) -> str:

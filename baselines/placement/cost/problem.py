@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import MappingProxyType
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,7 +23,7 @@ from baselines.placement.model.equations import (
     trace_slopes,
 )
 from baselines.placement.model.intervals import Intervals, PatchEdges
-from baselines.placement.model.layout_model import LayoutMatrices, MatrixSlopes, layout_matrices, matrix_slopes
+from baselines.placement.model.layout_model import Matrices, ganged, layout_matrices, matrix_slopes
 from baselines.placement.model.reduced_layouts import Reduction, reduce_layouts
 from baselines.placement.model.reduced_slopes import ReducedSlopes, reduce_with_slopes
 from beamenv.blade.bounds import Bounds
@@ -38,7 +37,6 @@ from beamenv.patches.layout import PatchLayout
 from beamenv.plant.reduction import ReducedBlades
 
 Array = NDArray[np.float64]
-Matrices = TypeVar("Matrices", LayoutMatrices, MatrixSlopes)
 
 READS = ("current", "charge")
 
@@ -166,12 +164,7 @@ class PlacementProblem:
         return slice(actuators) if self.side == "actuators" else slice(actuators, None)
 
     def _ganged(self, matrices: Matrices) -> Matrices:
-        """With one voltage for all actuators, their forces are one."""
-        if not self.config.patches.only("actuators").ganged:
-            return matrices
-        stored = matrices.stored_energy
-        whole = None if stored is None else stored.sum(axis=(-2, -1), keepdims=True)
-        return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True), stored_energy=whole)
+        return ganged(matrices) if self.config.patches.only("actuators").ganged else matrices
 
 
 @lru_cache(maxsize=64)

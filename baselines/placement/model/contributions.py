@@ -19,11 +19,13 @@ from numpy.typing import NDArray
 from baselines.placement.model.chebyshev import ChebyshevSpan
 from baselines.placement.model.solid_contributions import BareBlade, Covering
 from baselines.placement.model.triangles import packed
-from beamenv.blade.config import BladeConfig
+from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.configuration import Refused
 from beamenv.configuration.read_only import ReadOnly
 from beamenv.patches import force_per_span
 from beamenv.structure import RotatingBeam
 from beamenv.structure.assembly import generalised_displacements, generalised_strains
+from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.walls.inlay import Strip
 
@@ -73,20 +75,71 @@ class Contributions(ReadOnly):
     thesis' model, whose FᵀK⁻¹F is of the whole blade."""
 
 
-def contributions(config: BladeConfig) -> Contributions:
-    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second."""
-    return of_walls(config) if config.model == "thesis" else of_solid_sections(config)
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """Coordinates of a bare blade that its patches' contributions are expressed in."""
+
+    frequencies: Array
+    """(N,), rad/s."""
+    basis: Array
+    """(n, N): its modes by the trial functions, each divided by its frequency."""
 
 
-def of_solid_sections(config: BladeConfig) -> Contributions:
+def contributions(config: BladeConfig, frame: Frame | None = None) -> Contributions:
+    """The contributions of a configuration's patches, for any position of them; takes some tenths of a second.
+
+    Contributions of sheets of several sizes are in the same coordinates where they are given one ``frame``. A blade of finite
+    elements, whose strains jump from one to the next, is taken by polynomials along the span. ``ValueError`` for one that heat
+    strains or springs hold.
+    """
+    config = by_polynomials(config)
+    return of_walls(config, frame) if config.model == "thesis" else of_solid_sections(config, frame)
+
+
+def frame_of(config: BladeConfig) -> Frame:
+    """The bare blade's own; ``ValueError`` as ``contributions`` raises it."""
+    config = by_polynomials(config)
+    bare = config.beam.build(model=config.model)
+    if config.model == "thesis":
+        frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
+    else:
+        frequencies, shapes = lowest_of(bare.at(config.speed), config.modes, bare.space.size)
+    return Frame(frequencies, shapes / frequencies)
+
+
+def by_polynomials(config: BladeConfig) -> BladeConfig:
+    """The blade by polynomials along the span; ``ValueError`` for one that heat strains or springs hold."""
+    _check_free(config.beam)
+    if config.beam.discretisation == "galerkin":
+        return config
+    beam = replace(config.beam, discretisation="galerkin", elements=None, element_order=None, mesh=None)
+    return replace(config, beam=beam)
+
+
+def _check_free(beam: BeamConfig) -> None:
+    if beam.temperatures is not None:
+        hot = beam.temperatures[0][1]
+        raise Refused("blade.beam.temperature", hot, "None where patches are placed, at the temperature of their data (K)")
+    if beam.tip_springs is not None and any(beam.tip_springs):
+        raise Refused("blade.beam.tip_springs", list(beam.tip_springs), "None where patches are placed on a cantilever")
+
+
+def lowest_of(point: OperatingPoint, modes: int, size: int) -> tuple[Array, Array]:
+    """As many modes, and their shapes, as layouts with ``modes`` modes are made of."""
+    return normal_modes(point.mass, point.stiffness, min(max(KEPT, 2 * modes), size))
+
+
+def of_solid_sections(config: BladeConfig, frame: Frame | None = None) -> Contributions:
     """In the blade's model."""
     (actuators, sensors), bare = config.patches.pair(), config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     covering = Covering.of(config, bare, span)
     exact = covering.bare(bare.exact)
     point = exact.at(config.speed)
-    frequencies, shapes = normal_modes(point.mass, point.stiffness, min(max(KEPT, 2 * config.modes), bare.space.size))
-    basis = shapes / frequencies
+    if frame is None:
+        frequencies, shapes = lowest_of(point, config.modes, bare.space.size)
+        frame = Frame(frequencies, shapes / frequencies)
+    frequencies, basis = frame.frequencies, frame.basis
     blade = BareBlade.of(exact, point, span.nodes, basis)
     sections = [covering.samples(kind, blade) for kind in range(len(COVERED))]
     tension = span.integral(np.stack([s.pull - sections[BARE].pull for s in sections], axis=1))
@@ -110,13 +163,13 @@ def of_solid_sections(config: BladeConfig) -> Contributions:
     )
 
 
-def of_walls(config: BladeConfig) -> Contributions:
+def of_walls(config: BladeConfig, frame: Frame | None = None) -> Contributions:
     """In the thesis' model."""
     actuators, sensors = config.patches.pair()
     bare = config.beam.build(model=config.model)
-    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
-    frequencies, shapes = normal_modes(bare.matrices.mass, bare.matrices.stiffness(config.speed))
-    basis = shapes / frequencies
+    span = ChebyshevSpan(actuators.outermost * bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
+    frame = frame_of(config) if frame is None else frame
+    frequencies, basis = frame.frequencies, frame.basis
     sections = [SectionSamples.of(beam, span, basis) for beam in covered_blades(config, span)]
     tension = span.integral(np.stack([s.added_pull(sections[BARE]) for s in sections], axis=1))
     bare_tension, pull = tension_of(bare, span.nodes), span.values(span.nodes) @ tension
@@ -194,7 +247,7 @@ def quadratic(rows: Array, section: Array) -> Array:
 
 def tension_of(bare: RotatingBeam, z: Array) -> Array:
     """T₀ (nodes,) = ∫_z^L m (R₀ + σ) dσ of the bare blade, N per (rad/s)²."""
-    whole = ChebyshevSpan(bare.length, 2 * bare.space.terms + EXTRA_COEFFICIENTS)
+    whole = ChebyshevSpan(bare.length, 2 * bare.space.order + EXTRA_COEFFICIENTS)
     mass = bare.walls_at(whole.nodes).inertia().mass_per_length
     pulled = whole.integral(mass * (bare.hub_radius + whole.nodes))
     return np.asarray((whole.values(np.array([bare.length])) - whole.values(z)) @ pulled)

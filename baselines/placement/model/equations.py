@@ -48,12 +48,13 @@ def filter_slopes(blades: ReducedBlades, slopes: ReducedSlopes, load_noise: Arra
     return Equation(transposed(slopes.dynamics), information + transposed(information), loads + transposed(loads))
 
 
-def trace_slopes(equation: Equation, slopes: Equation, solution: Array) -> Array:
-    """Derivatives of tr(X) (p,) of one equation with solution X (n, n), by its adjoint.
+def trace_slopes(equation: Equation, slopes: Equation, solution: Array, weight: Array | None = None) -> Array:
+    """Derivatives of tr(X N) (p,) of one equation with solution X (n, n), by its adjoint; N is ``weight`` (n, n), or the identity.
 
-    With A_c = A − GX and A_c Λ + Λ A_cᵀ + I = 0: d tr(X) = tr(Λ (X dA + dAᵀX + dQ − X dG X)).
+    With A_c = A − GX and A_c Λ + Λ A_cᵀ + N = 0: d tr(X N) = tr(Λ (X dA + dAᵀX + dQ − X dG X)).
     """
-    adjoint = solve_continuous_lyapunov(equation.A[0] - equation.G[0] @ solution, -np.eye(len(solution)))
+    weight = np.eye(len(solution)) if weight is None else weight
+    adjoint = solve_continuous_lyapunov(equation.A[0] - equation.G[0] @ solution, -weight)
     change = 2.0 * solution @ slopes.A + slopes.Q - solution @ slopes.G @ solution
     return np.asarray(np.einsum("ij,pji->p", adjoint, change))
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from baselines.placement.model.intervals import Intervals
 from baselines.placement.model.triangles import skew_from, symmetric_from
 
 Array = NDArray[np.float64]
+Matrices = TypeVar("Matrices", "LayoutMatrices", "MatrixSlopes")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,6 +53,13 @@ def layout_matrices(parts: Contributions, cut: Intervals, passive: bool) -> Layo
         charges=along(below, parts.sensor_force),
         stored_energy=stored(top, parts.actuator_energy),
     )
+
+
+def ganged(matrices: Matrices) -> Matrices:
+    """With one voltage for all actuators, their forces are one."""
+    stored = matrices.stored_energy
+    whole = None if stored is None else stored.sum(axis=(-2, -1), keepdims=True)
+    return replace(matrices, forces=matrices.forces.sum(axis=-1, keepdims=True), stored_energy=whole)
 
 
 def along(shares: Array, series: Array) -> Array:

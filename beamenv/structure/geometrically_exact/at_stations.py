@@ -21,19 +21,17 @@ from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, Fi
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows
 from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.section.amplitudes import AMPLITUDES, STRAINS
 from beamenv.structure.section.elements import RIGID
 from beamenv.structure.section.integrals import MONOMIALS
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 
 Array = NDArray[np.float64]
 
 BEAM, SHAPE, SHAPE_SLOPE = slice(0, RIGID), slice(RIGID, RIGID + AMPLITUDES), slice(RIGID + AMPLITUDES, STRAINS)
-
-HELD = 1e-10
-"""Share of the stiffest shape's energy that every shape is given, so that one that does not warp at all has an amplitude too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +59,8 @@ class BladeAtStations(Sealed):
     """(S, 6)"""
     shape_mass: Array
     """(S, AMPLITUDES, AMPLITUDES)"""
+    held: float
+    """Share of the stiffest shape's energy that every shape is given, so that one that does not warp has an amplitude too."""
     free: FreeStrains | None = None
     """Of a blade that is heated."""
     springs: TipSprings | None = None
@@ -69,7 +69,7 @@ class BladeAtStations(Sealed):
     @classmethod
     def of(
         cls,
-        space: TrialSpace,
+        space: SpanSpace,
         stations: Stations,
         sections: SectionsAlong,
         hub_radius: float,
@@ -78,7 +78,7 @@ class BladeAtStations(Sealed):
     ) -> BladeAtStations:
         """Gather the sections and tabulate the trial functions."""
         z, solid = stations.z, sections.solid
-        value, slope = shape_tables(space, z)
+        value, slope = space.amplitude_table(z)
         energy, stress_moments = solid.energy, solid.stress_moments
         if space.rigid:
             energy, stress_moments = without_shear(energy), moments_without_shear(stress_moments, energy)
@@ -94,6 +94,7 @@ class BladeAtStations(Sealed):
             stress_moments=sections.at(z, stress_moments),
             section_inertia=sections.at(z, solid.inertia),
             shape_mass=sections.at(z, solid.shape_mass),
+            held=space.held,
             free=None if heat is None else FreeStrains.of(z, sections, heat),
             springs=springs,
         )
@@ -135,7 +136,7 @@ class BladeAtStations(Sealed):
         mixed = self._shape_form(self.energy[:, SHAPE, SHAPE_SLOPE], self.value, self.slope)
         whole = whole + mixed + mixed.T + self._shape_form(self.energy[:, SHAPE_SLOPE, SHAPE_SLOPE], self.slope, self.slope)
         size = AMPLITUDES * terms
-        whole[np.arange(size), np.arange(size)] += HELD * np.diagonal(whole).max()
+        whole[np.arange(size), np.arange(size)] += self.held * np.diagonal(whole).max()
         return np.asarray(np.linalg.cholesky(whole))
 
     def _shape_form(self, section: Array, left: Array, right: Array) -> Array:

@@ -16,11 +16,12 @@ from beamenv.structure.geometrically_exact.heat import Heat
 from beamenv.structure.geometrically_exact.kinematics import SPIN, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
-from beamenv.structure.geometrically_exact.tables import increment_rows, shape_tables
+from beamenv.structure.geometrically_exact.tables import increment_rows
 from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.section.amplitudes import AMPLITUDES
 from beamenv.structure.section.elements import RIGID
-from beamenv.structure.trial_functions import Stations, TrialSpace
+from beamenv.structure.span_space import SpanSpace
+from beamenv.structure.stations import Stations
 from beamenv.structure.walls.inlay import Strip
 
 Array = NDArray[np.float64]
@@ -30,6 +31,9 @@ ITERATIONS = 30
 
 FREE = 2
 """Newton steps that may grow; where later ones do, no steady state is near."""
+
+FREE_UNDER_HEAT = 8
+"""The same of a heated blade, of which bending stretches the linear steady state at first."""
 
 HALVINGS = 5
 """Most halvings of a step in Ω² towards a steady state that Newton's method does not find from the linear one."""
@@ -46,7 +50,7 @@ CONVERGED_UNDER_HEAT = 1e-6
 class ExactBeam:
     """A blade, its sections along the span, and the stations at which it is integrated."""
 
-    space: TrialSpace
+    space: SpanSpace
     stations: Stations
     sections: SectionsAlong
     hub_radius: float
@@ -55,6 +59,11 @@ class ExactBeam:
     heat: Heat | None = None
     springs: TipSprings | None = None
     """What strains it and holds its tip beside the rotation."""
+
+    @property
+    def loaded_at_rest(self) -> bool:
+        """Whether anything strains it or holds its tip when it does not turn."""
+        return self.heat is not None or self.springs is not None
 
     def placement(self, z: Array, coefficients: Array) -> Placement:
         """Where the blade is at stations z."""
@@ -75,8 +84,8 @@ class ExactBeam:
         on_increments = placement.strain_rows.swapaxes(-1, -2) @ work[:, :RIGID]
         actions = work.shape[-1]
         force = rows.reshape(-1, self.space.size).T @ on_increments.reshape(-1, actions)
-        for table, part in zip(shape_tables(self.space, z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
-            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.terms, AMPLITUDES, actions)
+        for table, part in zip(self.space.amplitude_table(z), np.split(work[:, RIGID:], 2, axis=1), strict=True):
+            on_shapes = (table.T @ part.reshape(len(z), -1)).reshape(self.space.amplitude_terms, AMPLITUDES, actions)
             force += point.following.T @ on_shapes.swapaxes(0, 1).reshape(-1, actions)
         return np.asarray(force)
 
@@ -111,8 +120,8 @@ class ExactBeam:
 
     def _with_shapes(self, z: Array, beam: Array, amplitudes: Array) -> Array:
         """(S, STRAINS, c) from beam strains (S, 6, c) and amplitudes (AMPLITUDES × terms, c)."""
-        value, slope = shape_tables(self.space, z)
-        by_shape = amplitudes.reshape(AMPLITUDES, self.space.terms, -1)
+        value, slope = self.space.amplitude_table(z)
+        by_shape = amplitudes.reshape(AMPLITUDES, self.space.amplitude_terms, -1)
         shapes = [np.einsum("st,jtc->sjc", table, by_shape, optimize=True) for table in (value, slope)]
         return np.concatenate([beam, *shapes], axis=1)
 
@@ -223,11 +232,11 @@ class ExactBeam:
     def _newton(self, q: Array, load: Load) -> Array | None:
         """Coefficients of the steady state, or None where it is not found."""
         at, before = self.at_stations, np.inf
-        enough = CONVERGED if self.heat is None else CONVERGED_UNDER_HEAT
+        free, enough = (FREE, CONVERGED) if self.heat is None else (FREE_UNDER_HEAT, CONVERGED_UNDER_HEAT)
         for count in range(ITERATIONS):
             step = at.newton_step(q, load.speed, load.heat)
             largest = np.abs(at.rows[:, : SPIN.stop] @ step).max()
-            if not np.isfinite(largest) or (count >= FREE and largest > before):
+            if not np.isfinite(largest) or (count >= free and largest > before):
                 return None
             q, before = at.moved(q, step), largest
             if largest <= enough:

@@ -34,7 +34,9 @@ class Heat:
         assert planform.temperatures is not None
         hot = [temperature for _, temperature in planform.temperatures]
         where = hot[0] if len(set(hot)) == 1 else [list(each) for each in planform.temperatures]
-        return Refused("beam.temperature", where, f"nearer to {self.reference:g} K: the blade that is held buckles (K)")
+        return Refused(
+            "beam.temperature", where, f"nearer to {self.reference:g} K, where the blade neither buckles nor bends out of reach (K)"
+        )
 
     def rises(self, z: Array, sections: SectionsAlong) -> Array:
         """(S, HEATS): K at the sections' axes beyond the reference, and K per m along y."""

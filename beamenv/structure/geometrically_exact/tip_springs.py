@@ -19,7 +19,7 @@ from beamenv.configuration.read_only import Sealed
 from beamenv.structure.geometrically_exact.kinematics import MOVE, SPIN
 from beamenv.structure.geometrically_exact.rotations import rotation
 from beamenv.structure.geometrically_exact.tables import increment_rows
-from beamenv.structure.trial_functions import TrialSpace
+from beamenv.structure.span_space import SpanSpace
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class TipSprings(Sealed):
     """(6,): N/m along lag, flap and span, N m/rad about them."""
 
     @classmethod
-    def of(cls, space: TrialSpace, stiffness: tuple[float, ...]) -> TipSprings:
+    def of(cls, space: SpanSpace, stiffness: tuple[float, ...]) -> TipSprings:
         """At the tip of a blade."""
         rows = increment_rows(space, np.array([space.length]))[0]
         return cls(np.concatenate([rows[MOVE], rows[SPIN]]), np.array(stiffness))

@@ -20,7 +20,8 @@ from beamenv.structure.section.elements import (
 from beamenv.structure.section.integrals import MONOMIALS, integrals
 from beamenv.structure.section.lines import Lines
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.walls.laminate import Laminate, Ply
+from beamenv.structure.section.ply_parts import PlyPart, parts_of
+from beamenv.structure.walls.laminate import Laminate
 
 Array = NDArray[np.float64]
 
@@ -116,7 +117,9 @@ def element_sums(mesh: Mesh, laminates: Sequence[Laminate], which: NDArray[np.in
     for number, laminate in enumerate(laminates):
         members = np.flatnonzero(which.ravel()[first] == number)
         for low, high, ply in layers(laminate):
-            totals.add(mesh, _Layer(members, first[members], low, high, ply), pretwist)
+            layer = _Layer(members, first[members], low, high)
+            for part in parts_of(ply):
+                totals.add(mesh, layer, part, pretwist)
     shaped = {name: values[of_elements].reshape(sections, count, *values.shape[1:]) for name, values in vars(totals).items()}
     inertia = shaped.pop("inertia").sum(axis=1)
     middles, reaches = lines_across(mesh)
@@ -132,7 +135,6 @@ class _Layer:
     in_mesh: NDArray[np.intp]
     low: float
     high: float
-    ply: Ply
 
 
 def distinct_elements(mesh: Mesh, which: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -166,10 +168,15 @@ class _Totals:
         shapes = square, square, square, strain, strain, (elements, RIGID, RIGID), moments, (elements, nodes, nodes)
         return cls(*(np.zeros(shape) for shape in (*shapes, (elements, MONOMIALS))))
 
-    def add(self, mesh: Mesh, layer: _Layer, pretwist: float) -> None:
+    def add(self, mesh: Mesh, layer: _Layer, part: PlyPart, pretwist: float) -> None:
         """∫ table × table over the layer, contracted with what a pair of tables means in energy."""
-        sums = integrals(mesh, layer.in_mesh, layer.low, layer.high)
-        stiffness = stiffness_in_section(layer.ply, mesh.tangents.reshape(-1, 2)[layer.in_mesh])
+        sums = integrals(mesh, layer.in_mesh, layer.low, layer.high, part.rule)
+        if part.density:
+            self.mass[layer.members] += part.density * sums.value
+            self.inertia[layer.members] += part.density * sums.area
+        if part.stiffness is None:
+            return
+        stiffness = stiffness_in_section(part.stiffness, mesh.tangents.reshape(-1, 2)[layer.in_mesh])
         B, S, Z = strain_of_tables(pretwist)
         stressed_B, stressed_S, stressed_Z = (_stressed(stiffness, rows) for rows in (B, S[None], Z))
         at, count = layer.members, len(layer.in_mesh)
@@ -182,8 +189,6 @@ class _Totals:
         parts = ((stressed_B, sums.moments), (stressed_S, sums.moments_of_value), (stressed_Z, sums.moments_of_beam))
         spanwise = [_summed(stressed[:, :, None, 5], moments).reshape(count, MONOMIALS, -1) for stressed, moments in parts]
         self.moments[at] += np.concatenate(spanwise, axis=-1)
-        self.mass[at] += layer.ply.material.density * sums.value
-        self.inertia[at] += layer.ply.material.density * sums.area
 
 
 def _stressed(stiffness: Array, rows: Array) -> Array:

@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from beamenv.configuration.read_only import sealed
 from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.walls.laminate import Laminate, Ply
-from beamenv.structure.walls.materials import wall_stiffness
 
 Array = NDArray[np.float64]
 
@@ -151,20 +150,20 @@ def places(mesh: Mesh, members: NDArray[np.intp], along: Array, across: Array, w
 
 
 def layers(laminate: Laminate) -> list[tuple[float, float, Ply]]:
-    """Bottom and top (m) of a wall's layers, equal neighbouring plies being one."""
+    """Bottom and top (m) of a wall's layers, equal neighbouring plies being one, but graded ones each by itself."""
     found: list[tuple[float, float, Ply]] = []
     for low, high, ply in zip(laminate.interfaces[:-1], laminate.interfaces[1:], laminate.plies, strict=True):
-        if found and found[-1][2] == ply:
+        if found and found[-1][2] == ply and ply.uniform is not None:
             found[-1] = (found[-1][0], high, ply)
         else:
             found.append((low, high, ply))
     return found
 
 
-def stiffness_in_section(ply: Ply, tangent: Array) -> Array:
-    """(E, 6, 6), Pa, for the section's strains, of a ply in walls along ``tangent`` (E, 2)."""
+def stiffness_in_section(stiffness: Array, tangent: Array) -> Array:
+    """(E, 6, 6), Pa, for the section's strains, of a stiffness (6, 6) in walls along ``tangent`` (E, 2)."""
     turned = turn_of_strains(tangent)
-    return np.asarray(turned.swapaxes(-1, -2) @ wall_stiffness(ply.material, np.radians(ply.angle_deg)) @ turned)
+    return np.asarray(turned.swapaxes(-1, -2) @ stiffness @ turned)
 
 
 def turn_of_strains(tangent: Array) -> Array:

@@ -24,8 +24,8 @@ from beamenv.structure.section.element_sums import distinct_elements
 from beamenv.structure.section.elements import layers, strain_of_tables, turn_of_strains
 from beamenv.structure.section.integrals import integrals
 from beamenv.structure.section.mesh import Mesh
+from beamenv.structure.section.ply_parts import thermal_stress
 from beamenv.structure.walls.laminate import Laminate, Ply
-from beamenv.structure.walls.materials import wall_stiffness
 
 Array = NDArray[np.float64]
 
@@ -87,9 +87,10 @@ class ThermalSums:
 
 
 def _of_layer(mesh: Mesh, elements: NDArray[np.intp], low: float, high: float, ply: Ply, pretwist: float) -> tuple[Array, ...]:
-    sums, count = integrals(mesh, elements, low, high), len(elements)
+    held, rule = thermal_stress(ply)
+    sums, count = integrals(mesh, elements, low, high, rule), len(elements)
     turned = turn_of_strains(mesh.tangents.reshape(-1, 2)[elements])
-    stress = turned.swapaxes(-1, -2) @ thermal_stress(ply)
+    stress = turned.swapaxes(-1, -2) @ held
     B, S, Z = strain_of_tables(pretwist)
     on_tables = sums.with_beam.reshape(count, len(B), 3, -1)[:, :, BY_HEAT]
     on_values, on_beam = sums.value_with_beam[..., 0][:, BY_HEAT], sums.of_beam.reshape(count, 3, 3)[:, BY_HEAT]
@@ -113,14 +114,3 @@ def expansion_of(system: Factorised, heat: ThermalSums, shapes: Array, pretwist:
     by_warping, by_strain = sums.moments[..., :size], sums.moments[..., 2 * size :]
     moments = (by_warping @ here + by_strain @ strain[:, None] - heat.moments).sum(axis=1)
     return Expansion(strain, (shapes.swapaxes(-1, -2) @ onward).sum(axis=1), moments)
-
-
-def thermal_stress(ply: Ply) -> Array:
-    """Q α (6,), Pa/K, for a wall's strains (ε_ss, ε_nn, γ_sn, γ_sz, γ_nz, ε_zz): what holds a ply that is 1 K warmer."""
-    material, angle = ply.material, np.radians(ply.angle_deg)
-    along, across = material.expansion
-    c, s = np.cos(angle), np.sin(angle)
-    strain = np.array(
-        [c * c * along + s * s * across, across, 0.0, 2.0 * c * s * (along - across), 0.0, s * s * along + c * c * across]
-    )
-    return np.asarray(wall_stiffness(material, angle) @ strain)

@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 from beamenv.configuration.read_only import Sealed
 from beamenv.structure.section.elements import ACROSS, places
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.trial_functions import gauss_rule
+from beamenv.structure.stations import gauss_rule
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+
+Rule = tuple[tuple[float, ...], tuple[float, ...]]
+"""Places from −1 at the bottom of a layer to 1 at its top, and weights: of something that changes through it."""
 
 MONOMIALS = 6
 """1, x, y, x², xy, y²."""
@@ -52,11 +55,12 @@ class Integrals(Sealed):
     """Of the monomials (E, 6)."""
 
     @classmethod
-    def of(cls, mesh: Mesh, elements: Indices, low: float, high: float) -> Integrals:
-        """By Gauss's rule, of few points through thin layers."""
+    def of(cls, mesh: Mesh, elements: Indices, low: float, high: float, rule: Rule | None) -> Integrals:
+        """By Gauss's rule, of few points through thin layers, or by one of a weight through the layer."""
         along, weight_along = gauss_rule(mesh.order + 1)
         thickness = mesh.thickness[elements[0] % len(mesh.edges)]
-        depth, weight = gauss_rule(ACROSS + 1 if high - low > 0.4 * thickness else 2)
+        usual = gauss_rule(ACROSS + 1 if high - low > 0.4 * thickness else 2)
+        depth, weight = usual if rule is None else np.array(rule)
         half = 0.5 * (high - low)
         here = places(mesh, elements, along, low + half * (1.0 + depth), weight_along, half * weight)
         tables = here.tables()
@@ -83,13 +87,13 @@ class Integrals(Sealed):
         )
 
 
-def integrals(mesh: Mesh, elements: Indices, low: float, high: float) -> Integrals:
+def integrals(mesh: Mesh, elements: Indices, low: float, high: float, rule: Rule | None = None) -> Integrals:
     """Over a layer from ``low`` to ``high`` (m from the mid-line) of elements (flat indices into the mesh)."""
     if len(elements) > FEW:
-        return Integrals.of(mesh, elements, low, high)
-    return _remembered(mesh, elements.tobytes(), low, high)
+        return Integrals.of(mesh, elements, low, high, rule)
+    return _remembered(mesh, elements.tobytes(), low, high, rule)
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _remembered(mesh: Mesh, elements: bytes, low: float, high: float) -> Integrals:
-    return Integrals.of(mesh, np.frombuffer(elements, dtype=np.intp), low, high)
+def _remembered(mesh: Mesh, elements: bytes, low: float, high: float, rule: Rule | None) -> Integrals:
+    return Integrals.of(mesh, np.frombuffer(elements, dtype=np.intp), low, high, rule)

@@ -23,7 +23,7 @@ from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, st
 from beamenv.structure.section.expansion import Expansion, ThermalSums, expansion_of
 from beamenv.structure.section.integrals import MONOMIALS
 from beamenv.structure.section.mesh import Mesh
-from beamenv.structure.trial_functions import gauss_rule
+from beamenv.structure.stations import gauss_rule
 from beamenv.structure.walls.inlay import Strip
 from beamenv.structure.walls.laminate import Laminate
 

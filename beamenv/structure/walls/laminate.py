@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from beamenv.configuration import Number, Numbers, Refused, Table, Text, checked, configuration
 from beamenv.configuration.numbers import DEGREES
 from beamenv.configuration.read_only import Sealed
+from beamenv.structure.walls.graded import FunctionallyGraded, laminae_through
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -32,13 +33,27 @@ PLY_ANGLES = Numbers(DEGREES, least=1, most=1000, of="ply angles")
 class Ply:
     """One layer: its material and the angle of its fibres from the contour tangent (0 = hoop, 90 = spanwise), degrees."""
 
-    material: Lamina
+    material: Lamina | FunctionallyGraded
     angle_deg: Annotated[float, DEGREES]
+
+    @property
+    def uniform(self) -> Lamina | None:
+        """Its material where that is the same through its thickness, else None."""
+        return self.material if isinstance(self.material, Lamina) else self.material.uniform
 
     def at(self, temperature_K: float) -> Ply:
         """The ply at a temperature; ``ValueError`` beyond its material's data."""
         material = self.material.at(temperature_K)
         return self if material is self.material else Ply(material, self.angle_deg)
+
+    @property
+    def turned_over(self) -> Ply:
+        """From its outer face to its inner."""
+        return self if isinstance(self.material, Lamina) else Ply(self.material.turned_over, self.angle_deg)
+
+    def inner_part(self, share: float) -> Ply:
+        """What is left of it where the outermost part goes, of its thickness a share."""
+        return self if isinstance(self.material, Lamina) else Ply(self.material.part(0.0, share), self.angle_deg)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +74,15 @@ class Layup:
         return Layup, (self.default, dict(self.walls))
 
     @classmethod
-    def uniform(cls, material: Lamina, angles_deg: Sequence[float]) -> Layup:
-        """The same plies all around the contour: a circumferentially uniform stiffness (CUS) box, say."""
+    def uniform(cls, material: Lamina | FunctionallyGraded, angles_deg: Sequence[float]) -> Layup:
+        """The same plies all around the contour: a circumferentially uniform stiffness (CUS) box, say.
+
+        A graded material goes through the whole wall, from face to face, whatever the number of angles.
+        """
         return cls(default=stack(material, angles_deg, "angles_deg"))
 
     @classmethod
-    def by_wall(cls, material: Lamina, /, **angles_deg: Sequence[float]) -> Layup:
+    def by_wall(cls, material: Lamina | FunctionallyGraded, /, **angles_deg: Sequence[float]) -> Layup:
         """Plies wall by wall, by the names of the section's walls (a box: top, bottom, left, right)."""
         return cls(default=None, walls={wall: stack(material, angles, wall) for wall, angles in angles_deg.items()})
 
@@ -103,9 +121,10 @@ def _plies(name: str, given: Any) -> tuple[Ply, ...]:
     return tuple(given)
 
 
-def stack(material: Lamina, angles_deg: Sequence[float], name: str) -> tuple[Ply, ...]:
-    """Plies of one material at the given angles, inner to outer face."""
-    return tuple(Ply(material, angle) for angle in checked(name, angles_deg, PLY_ANGLES))
+def stack(material: Lamina | FunctionallyGraded, angles_deg: Sequence[float], name: str) -> tuple[Ply, ...]:
+    """Plies of one material at the given angles, inner to outer face; one ply of a graded material, which is graded once."""
+    plies = tuple(Ply(material, angle) for angle in checked(name, angles_deg, PLY_ANGLES))
+    return plies[:1] if isinstance(material, FunctionallyGraded) else plies
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +160,10 @@ class Laminate:
         level = self.interfaces[-1] - thickness
         kept = [k for k, start in enumerate(self.interfaces[:-1]) if start < level - 1e-12 * self.thickness]
         starts = tuple(self.interfaces[k] for k in kept)
-        return Laminate((*starts, level, self.interfaces[-1]), (*(self.plies[k] for k in kept), ply))
+        last = kept[-1]
+        share = (level - starts[-1]) / (self.interfaces[last + 1] - starts[-1])
+        cut = self.plies[last].inner_part(share) if share < 1.0 - 1e-12 else self.plies[last]
+        return Laminate((*starts, level, self.interfaces[-1]), (*self.plies[:last], cut, ply))
 
     def with_layer_on_top(self, ply: Ply, thickness: float) -> Laminate:
         """The same wall with a further layer of ``thickness`` (m) on its outer face; the mid-line stays where it is."""
@@ -150,12 +172,14 @@ class Laminate:
 
     def at(self, temperature_K: float) -> Laminate:
         """The same wall with its materials' constants at a temperature; ``ValueError`` beyond their data."""
-        return Laminate(self.interfaces, tuple(ply.at(temperature_K) for ply in self.plies))
+        warm = {ply: ply.at(temperature_K) for ply in dict.fromkeys(self.plies)}
+        return Laminate(self.interfaces, tuple(warm[ply] for ply in self.plies))
 
     @property
     def turned_over(self) -> Laminate:
         """The same plies from the outer face to the inner."""
-        return Laminate(tuple(-level for level in reversed(self.interfaces)), tuple(reversed(self.plies)))
+        plies = tuple(ply.turned_over for ply in reversed(self.plies))
+        return Laminate(tuple(-level for level in reversed(self.interfaces)), plies)
 
     def moments(self, values: Array, highest: int = HIGHEST_MOMENT) -> Array:
         """∫ value(n) nʲ dn for j = 0 … highest, from one value (any shape) per ply: (highest + 1, …)."""
@@ -164,7 +188,23 @@ class Laminate:
     def integrated(self, value: Callable[[Lamina, float], Any], highest: int = HIGHEST_MOMENT) -> Array:
         """∫ value nʲ dn for j = 0 … highest, of what a material has at an angle (rad) from s towards z: (highest + 1, …)."""
         angles = np.radians([ply.angle_deg for ply in self.plies])
-        return self.moments(np.array([value(ply.material, angle) for ply, angle in zip(self.plies, angles, strict=True)]), highest)
+        layers = list(zip(self.plies, self.interfaces[:-1], self.interfaces[1:], angles, strict=True))
+        if any(ply.uniform is None for ply in self.plies):
+            return np.sum([_integral(ply, low, high, angle, value, highest) for ply, low, high, angle in layers], axis=0)
+        uniform = [(ply.uniform, angle) for ply, *_, angle in layers if ply.uniform is not None]
+        return self.moments(np.array([value(*each) for each in uniform]), highest)
+
+
+def _integral(ply: Ply, low: float, high: float, angle: float, value: Callable[[Lamina, float], Any], highest: int) -> Array:
+    """That of one layer of a wall."""
+    if ply.uniform is not None:
+        return np.tensordot(power_integrals(np.array([low, high]), highest), [value(ply.uniform, angle)], axes=1)
+    assert isinstance(ply.material, FunctionallyGraded)
+    rule = ply.material.rule()
+    half = 0.5 * (high - low)
+    depth = 0.5 * (low + high) + half * rule.place
+    powers = depth ** np.arange(highest + 1)[:, None] * (half * rule.weight)
+    return np.tensordot(powers, np.array([value(material, angle) for material in laminae_through(ply.material)]), axes=1)
 
 
 def power_integrals(interfaces: Array, highest: int) -> Array:
@@ -191,7 +231,7 @@ class WallLaw(Sealed):
 @lru_cache(maxsize=64)
 def wall_law(laminate: Laminate) -> WallLaw:
     """Integrate a laminate through its thickness and condense out the hoop strain (N_ss = 0)."""
-    q_bar = laminate.integrated(Lamina.transformed_stiffness)
+    q_bar = laminate.integrated(lambda material, angle: material.transformed_stiffness(angle))
     full = q_bar[POWER[:, None] + POWER[None, :], COMPONENT[:, None], COMPONENT[None, :]]
     hoop_coupling = full[0, 1:] / full[0, 0]
     return WallLaw(

@@ -18,6 +18,8 @@ Density = Annotated[float, Number(gt=0.0, unit="kg/m³")]
 EXPANSION = Number(ge=-1e-2, le=1e-2, unit="1/K")
 Expansion = Annotated[float | None, EXPANSION]
 
+MODULI = ("E1", "E2", "G12", "G13", "G23")
+
 FOLLOWED = ("E1", "nu12", "alpha1")
 """In an isotropic material: what all else follows from."""
 
@@ -103,6 +105,11 @@ class Lamina:
             return replace(self, curves=(), **values)
         E, nu, alpha = (values.get(name, getattr(self, name)) for name in FOLLOWED)
         return Lamina.isotropic(E, nu, self.density, alpha)
+
+    def scaled(self, modulus: float, mass: float) -> Lamina:
+        """With moduli and density times ratios."""
+        stiffer = {name: modulus * getattr(self, name) for name in MODULI}
+        return replace(self, density=mass * self.density, **stiffer)
 
     @property
     def expansion(self) -> tuple[float, float]:

@@ -5,19 +5,37 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from beamenv.structure.walls.curves import Touloukian
+import numpy as np
+
+from beamenv.structure.walls.curves import ROOM, Touloukian
 from beamenv.structure.walls.materials import FOLLOWED, Lamina
 
-GRAPHITE_EPOXY = Lamina(
-    E1=206.8e9, E2=5.17e9, G12=3.1e9, G13=3.1e9, G23=2.5511e9, nu12=0.25, density=1528.15, alpha1=-0.5e-6, alpha2=32e-6
-)
-"""The thesis' blade (Table 5.1), which prints no expansion: that of high-modulus carbon fibres in epoxy, 60 % by volume (Callister,
-Fundamentals of Materials Science and Engineering, Table B.6). No curves: of such a ply's moduli over temperature no table could be
-read; its resin softens with heat, which its constants leave out."""
+EPOXY_GLASS_TRANSITION = 472.0
+"""K: of dry epoxies of structural composites, typically (NASA, Resin Systems and Chemistry: Degradation Mechanisms and Durability
+in Long-Term Durability of Polymeric Matrix Composites, 2013)."""
 
-AS4_3501_6 = Lamina(E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8)
-"""The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992), who give no expansion; nor curves: no source
-of either could be read."""
+
+def _softening(glass_transition_K: float) -> tuple[tuple[float, float], ...]:
+    """√((T_g − T)/(T_g − 300 K)): a dry resin's modulus over that at 300 K (Chamis, NASA TM-83320, 1983), in steps of 20 K."""
+    temperatures = np.arange(200.0, 381.0, 20.0)
+    shares = np.sqrt((glass_transition_K - temperatures) / (glass_transition_K - ROOM))
+    return tuple(zip(temperatures.tolist(), shares.tolist(), strict=True))
+
+
+GRAPHITE_EPOXY = Lamina(
+    E1=206.8e9, E2=5.17e9, G12=3.1e9, G13=3.1e9, G23=2.5511e9, nu12=0.25, density=1528.15, alpha1=-0.5e-6, alpha2=32e-6,
+    curves=dict.fromkeys(("E2", "G12", "G13", "G23"), _softening(EPOXY_GLASS_TRANSITION)),  # type: ignore[arg-type]
+)  # fmt: skip
+"""The thesis' blade (Table 5.1), which prints neither expansion nor what heat does. Expansion: that of high-modulus carbon fibres
+in epoxy, 60 % by volume (Callister, Fundamentals of Materials Science and Engineering, Table B.6). Across the fibres and in shear
+the ply softens as a dry resin does, along them not at all: within 10 % of the moduli that Sai Ram and Sinha take for a
+graphite-epoxy from 300 to 375 K (Journal of Sound and Vibration 158, 1992)."""
+
+AS4_3501_6 = Lamina(
+    E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8, alpha1=-1e-6, alpha2=26e-6
+)
+"""The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992); expansion of AS4/3501-6 by Soden, Hinton and
+Kaddour (Composites Science and Technology 58, 1998). No curves: no table of its moduli over temperature could be read."""
 
 ALUMINIUM = Lamina.isotropic(
     E=68.9e9,

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from train.figures.figure import Panel
-from train.reproduce.judging.verdicts import Judgement, Rule, Verdict, weakest
+from train.reproduce.judging.verdicts import Judged, Judgement, Rule, Verdict, weakest
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import Reading, readings
+from train.reproduce.thesis.readings import read_by
 
 Array = NDArray[np.float64]
 
@@ -98,6 +100,12 @@ class Study:
     outcome: Callable[..., Outcome]
     """From the model and, where it has parts, from what they came to."""
     parts: Callable[[Model], Parts] = no_parts
+    rests_on: Reading = ()
+    """Equations, by name, in which the thesis differs from us and which its numbers rest on; empty: what we compute is its own."""
+    printed: Callable[[Model], Mapping[str, Any]] | None = None
+    """Evidence for the second verdict where it follows from what the thesis prints, by the keys of the statements."""
+    unprinted: str = ""
+    """Why the thesis' equations cannot be evaluated for the other statements."""
     rows_on_page: bool = False
     """Whether the page shows the outcome's rows, as it always does for a table of the thesis."""
 
@@ -117,20 +125,36 @@ class Study:
             results = {key: part.result() for key, part in self.parts(model).items()}
         return self.outcome(model, results) if results else self.outcome(model)
 
-    def verdict(self, judgements: Mapping[str, Judgement]) -> Verdict:
+    def parts_by_reading(self, model: Model) -> Mapping[tuple[Reading, Any], Part]:
+        """Its parts, and those of the model as the thesis' own equations have it."""
+        again = () if self.printed is not None or self.unprinted else readings(self.rests_on)
+        return {
+            (reading, key): part
+            for reading in dict.fromkeys(((), *again))
+            for key, part in self.parts(read_by(model, reading) if reading else model).items()
+        }
+
+    @property
+    def own_statements(self) -> tuple[Statement, ...]:
+        """The thesis', asides left out."""
+        return tuple(statement for statement in self.statements if not statement.aside)
+
+    def verdict(self, judgements: Mapping[str, Judged]) -> Verdict:
         """The weakest verdict of the thesis' statements."""
         return weakest(self.verdicts(judgements))
 
-    def verdicts(self, judgements: Mapping[str, Judgement]) -> list[Verdict]:
+    def verdicts(self, judgements: Mapping[str, Judged]) -> list[Verdict]:
         """Those of the thesis' statements, asides left out."""
-        return [judgements[statement.key].verdict for statement in self.statements if not statement.aside]
+        return [judgements[statement.key].verdict for statement in self.own_statements]
 
     def judge(self, outcome: Outcome) -> dict[str, Judgement]:
         """The judgement of every statement; ``ValueError`` unless the outcome has evidence for exactly these."""
         keys = [statement.key for statement in self.statements]
         if set(keys) != set(outcome.evidence):
             raise ValueError(f"evidence of {self.name} = {sorted(outcome.evidence)} must be for {sorted(keys)}.")
-        return {
-            statement.key: statement.rule.judge(np.asarray(outcome.evidence[statement.key], dtype=float))
-            for statement in self.statements
-        }
+        return judged(self.statements, outcome.evidence)
+
+
+def judged(statements: Sequence[Statement], evidence: Mapping[str, Any]) -> dict[str, Judgement]:
+    """The judgement of each statement, by key, from the evidence for it."""
+    return {each.key: each.rule.judge(np.asarray(evidence[each.key], dtype=float)) for each in statements}

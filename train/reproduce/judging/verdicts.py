@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,15 @@ class Judgement:
     deviation: str
 
 
+class Judged(Protocol):
+    """A first or a second judgement."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """What became of the statement."""
+        ...
+
+
 class Rule(ABC):
     """Evidence in, judgement out."""
 
@@ -69,8 +79,6 @@ class Matches(Rule):
     tolerance: float
     trend: float
     unit: str = ""
-    beyond: Verdict = Verdict.NOT_REPRODUCED
-    """The verdict further off: untestable where the configuration behind the numbers is not known."""
 
     def _judge(self, evidence: Array) -> Judgement:
         ours, printed = evidence.ravel(), np.array(self.printed)
@@ -78,12 +86,15 @@ class Matches(Rule):
             raise ValueError(f"evidence = {evidence!r} must be {len(printed)} numbers, one for each that is printed.")
         off = ours / printed - 1.0
         worst = float(np.abs(off).max())
-        verdict = Verdict.REPRODUCED if worst <= self.tolerance else Verdict.TREND if worst <= self.trend else self.beyond
+        verdict = (
+            Verdict.REPRODUCED if worst <= self.tolerance else Verdict.TREND if worst <= self.trend else Verdict.NOT_REPRODUCED
+        )
         return Judgement(verdict, listed(printed, self.unit), listed(ours, self.unit), deviations(off))
 
     def _words(self) -> str:
-        within = f"reproduced within {percent(self.tolerance)} of every number, trend within {percent(self.trend)}"
-        return f"{within}, else {self.beyond.value}"
+        return (
+            f"reproduced within {percent(self.tolerance)} of every number, trend within {percent(self.trend)}, else not reproduced"
+        )
 
 
 @dataclass(frozen=True, slots=True)

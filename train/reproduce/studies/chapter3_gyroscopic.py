@@ -13,6 +13,7 @@ from train.reproduce.judging.verdicts import Changes, Holds, Large, Marginal, Sm
 from train.reproduce.studies.parameter_studies import ORDINALS, SPEEDS
 from train.reproduce.studies.responses import forced_responses
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import HOST
 from train.reproduce.thesis.response import ForcedBlade
 from train.reproduce.thesis.shapes import STATIONS, Shape, family_shapes
 
@@ -194,6 +195,7 @@ STUDIES = (
             ),
         ),
         lag_extension_frequencies,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.6",

@@ -24,6 +24,7 @@ from train.reproduce.studies.parameter_studies import (
 )
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import bending_stiffness
+from train.reproduce.thesis.equations import HOST
 
 FAMILIES = ("flap", "lag", "flap", "lag")
 
@@ -123,6 +124,7 @@ STUDIES = (
             Statement("at-rest", "Presetting has no effect on a blade at rest", Small(1e-6, 0.01)),
         ),
         preset_over_speed,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.22",
@@ -134,6 +136,7 @@ STUDIES = (
             Statement("turn", "Frequencies fall up to a ply angle of about 45° and rise beyond", Holds(), WHY_TURN),
         ),
         preset_over_ply_angle,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.23",
@@ -144,6 +147,7 @@ STUDIES = (
             Statement("a33", "a33 rises with presetting", Changes(+1)),
         ),
         preset_stiffness,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.24",

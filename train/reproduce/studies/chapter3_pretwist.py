@@ -21,6 +21,7 @@ from train.reproduce.studies.parameter_studies import (
     worst_newmark_error,
 )
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import HOST
 
 ANGLES_DEG = (0.0, 30.0, 60.0, 90.0)
 PRINTED_CROSSOVER = 120.0
@@ -114,6 +115,7 @@ STUDIES = (
             Statement("marginal", "Marginal influence on the first mode: largest difference of the shapes", Small(0.05, 0.10)),
         ),
         lag_shapes,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.18",
@@ -127,6 +129,7 @@ STUDIES = (
             ),
         ),
         flap_shapes,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.19",
@@ -167,6 +170,7 @@ STUDIES = (
             ),
         ),
         pretwist_over_speed,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.20",
@@ -184,5 +188,6 @@ STUDIES = (
             NEWMARK,
         ),
         pretwist_forced,
+        rests_on=HOST,
     ),
 )

@@ -13,7 +13,7 @@ from beamenv.blade.config import BladeConfig
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import WITH_AND_WITHOUT, Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Below, Changes, Holds, Large
-from train.reproduce.studies.chapter5_one_voltage import EACH, WHY_PLIES, WHY_TAPER
+from train.reproduce.studies.chapter5_one_voltage import EACH, LOOP, WHY_PLIES, WHY_TAPER
 from train.reproduce.studies.closed_loop import (
     PULSE,
     UNLIMITED,
@@ -25,8 +25,10 @@ from train.reproduce.studies.closed_loop import (
     response_panels,
     settling_times,
     simulate,
+    weighed,
 )
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import CONTROLLED, UNIFORM_TENSION
 
 Array = NDArray[np.float64]
 Compute = Callable[[Model], Outcome]
@@ -63,7 +65,7 @@ def voltages_over_what_is_open(model: Model, config: BladeConfig) -> Array:
     """Peak voltages, were there no limit, for each input weight and load that the thesis leaves open."""
     found = []
     for weight in OPEN_WEIGHTS:
-        plant = plant_of(replace(config, effort_weight=weight, voltage_limits=(-UNLIMITED, UNLIMITED)))
+        plant = weighed(model, plant_of(replace(config, effort_weight=weight, voltage_limits=(-UNLIMITED, UNLIMITED))), weight)
         found.append(simulate(plant, lqg(plant), model.load, 0.1).asked.max() / model.load)
     return np.outer(found, OPEN_LOADS).ravel()
 
@@ -115,7 +117,10 @@ def turning_time(times: Array, tip: Array, turn: int = 3) -> float:
     return float(times[at + 1] + (times[1] - times[0]) * (slope[at] / (slope[at] - slope[at + 1]) - 0.5))
 
 
-WHY_PULSE = "The thesis names neither pulse nor weights; most of what differs, differs by 10 to 20 %."
+WHY_PULSE = (
+    "The thesis names neither pulse nor weights; most of what differs, differs by 10 to 20 %. The order of its voltages comes of "
+    "Eq. 5.9, which weighs volts by stiffness."
+)
 
 STUDIES = (
     Study(
@@ -128,6 +133,7 @@ STUDIES = (
             Statement("settling", "90° plies settle sooner than 30°", Changes(-1)),
         ),
         individual_ply_angle,
+        rests_on=LOOP,
     ),
     Study(
         "figure-5.15",
@@ -145,6 +151,7 @@ STUDIES = (
             ),
         ),
         individual_taper,
+        rests_on=(*LOOP, UNIFORM_TENSION),
     ),
     Study(
         "figure-5.16",
@@ -158,6 +165,7 @@ STUDIES = (
             Statement("fourth", "On the fourth actuator 60° pretwist takes the higher one", Holds(), WHY_PULSE),
         ),
         individual_pretwist,
+        rests_on=LOOP,
     ),
     Study(
         "figure-5.17",
@@ -179,5 +187,6 @@ STUDIES = (
             ),
         ),
         gyroscopic,
+        rests_on=CONTROLLED,
     ),
 )

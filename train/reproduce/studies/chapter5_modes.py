@@ -16,8 +16,9 @@ from beamenv.plant.plant import Plant, drive_limit
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Small
-from train.reproduce.studies.closed_loop import Response, blade, patches, simulate
+from train.reproduce.studies.closed_loop import Response, blade, patches, simulate, weighed
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import CONTROLLED, HOST, together
 from train.reproduce.thesis.response import free_motion
 
 Array = NDArray[np.float64]
@@ -34,12 +35,14 @@ CONTROL_INTERVAL = 1e-4
 """s: fine enough for the highest mode of the reference."""
 
 
-def lqr_responses(model: Model, pretwist_deg: float, presetting_deg: float) -> dict[int, Response]:
+def lqr_responses(
+    model: Model, pretwist_deg: float, presetting_deg: float, numbers: tuple[int, ...] = MODES
+) -> dict[int, Response]:
     """LQR-controlled responses of models with each number of modes, and of the reference, to a step in flap."""
     config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
     whole, responses = Blade(config), {}
-    for modes in (*MODES, REFERENCE_MODES):
-        plant = whole.changed(with_modes(config, modes)).plant
+    for modes in (*numbers, REFERENCE_MODES):
+        plant = weighed(model, whole.changed(with_modes(config, modes)).plant)
         responses[modes] = simulate(plant, lqr(plant), model.load, DURATION)
     return responses
 
@@ -103,15 +106,18 @@ def convergence(enough: int, pretwist_deg: float, presetting_deg: float) -> Call
     """Figure 5.1 or 5.2."""
 
     def compute(model: Model) -> Outcome:
-        found = lqr_responses(model, pretwist_deg, presetting_deg)
+        numbers = MODES[MODES.index(enough) :] if model.reading else MODES
+        found = lqr_responses(model, pretwist_deg, presetting_deg, numbers)
         reference = found[REFERENCE_MODES]
-        tip = np.array([error(found[r].tip, reference.tip) for r in MODES])
-        voltage = np.array([error(found[r].voltages, reference.voltages) for r in MODES])
+        tip = np.array([error(found[r].tip, reference.tip) for r in numbers])
+        voltage = np.array([error(found[r].voltages, reference.voltages) for r in numbers])
+        at = numbers.index(enough)
+        evidence = {"tip": tip[at:], "voltage": voltage[at:]}
+        if model.reading:
+            return Outcome(evidence, [])
         config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
         truncated = truncation_errors(build_plant(with_modes(config, REFERENCE_MODES)))
         panels = [*few_modes_panels(found), *error_panels(tip, voltage, truncated)]
-        at = MODES.index(enough)
-        evidence = {"tip": tip[at:], "voltage": voltage[at:]}
         rows = [
             [r, f"{t:.4g}", f"{v:.4g}", 2 * r, *(f"{values[k]:.4g}" for values in truncated.values())]
             for k, (r, t, v) in enumerate(zip(MODES, tip, voltage, strict=True))
@@ -179,6 +185,7 @@ def study(name: str, title: str, configuration: str, enough: int, pretwist_deg: 
             Statement("voltage", f"The actuator voltage has converged {within}", Small(ENOUGH, LOOSE), VOLTAGE),
         ),
         convergence(enough, pretwist_deg, presetting_deg),
+        rests_on=together((*HOST, *CONTROLLED)),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -26,11 +27,18 @@ from train.reproduce.studies.closed_loop import (
     response_panels,
     settling_times,
     voltage_energy,
+    weighed,
 )
 from train.reproduce.studies.placement_study import Layouts, convergence, depth, initial_and_optimal, placed, poles, table_row
+from train.reproduce.studies.printed_layouts import UNPRINTED, with_printed_optimum
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.equations import CONTROLLED, HOST, together
+from train.reproduce.thesis.readings import read_by
 
 Array = NDArray[np.float64]
+
+READING = together((*HOST, *CONTROLLED))
+"""The equations by which the thesis' own layouts are judged."""
 
 POPULATIONS = (10, 20, 30)
 SEEDS = range(5)
@@ -83,42 +91,56 @@ def layout_parts(twists: Sequence[float], model: Model) -> Parts:
 def untwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:
     """Figure 6.5."""
     layouts = by_twist[0.0]
-    found = [struck(model, layouts, pulse) for pulse in PULSES]
+    found = [struck(model, layouts.initial, layouts.optimal, pulse) for pulse in PULSES]
+    notes = [positions_in_words(layouts), voltages_in_words(found[0])]
+    return Outcome(pulse_evidence(model, layouts.initial, layouts.optimal, found), response_panels(found[0]), notes=notes)
+
+
+def printed_response(model: Model) -> Mapping[str, Any]:
+    """What Figure 6.5 states, of the thesis' own best layout by its own equations."""
+    read = read_by(model, READING)
+    initial = placed_blade(read)
+    optimal = with_printed_optimum(initial)
+    initial = replace(initial, sensor_full_scale=optimal.sensor_full_scale)
+    return pulse_evidence(read, initial, optimal, [struck(read, initial, optimal, pulse) for pulse in PULSES])
+
+
+def pulse_evidence(model: Model, initial: BladeConfig, optimal: BladeConfig, found: list[dict[str, Response]]) -> Mapping[str, Any]:
+    """For each statement of Figure 6.5, from the responses to each pulse."""
     voltage = np.array([peak_voltages(each) for each in found])
-    evidence = {
-        **reductions(layouts, found),
+    return {
+        **reductions(model, initial, optimal, found),
         "voltage": np.concatenate([each[:, :3].T for each in voltage]),
         "fourth": voltage[:, 1, 3] / voltage[:, 0, 3] - 1.0,
         "later": [later_voltage(each["optimal"]) / later_voltage(each["initial"]) - 1.0 for each in found],
     }
-    return Outcome(evidence, response_panels(found[0]), notes=[positions_in_words(layouts), voltages_in_words(found[0])])
 
 
 def pretwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outcome:
     """Figure 6.6."""
     layouts = by_twist[30.0]
-    found = struck(model, layouts, None)
+    found = struck(model, layouts.initial, layouts.optimal, None)
     voltage = peak_voltages(found)
     evidence = {
-        **reductions(layouts, [found]),
+        **reductions(model, layouts.initial, layouts.optimal, [found]),
         "voltage": voltage[:, [0, 2, 3]].T,
         "second": [voltage[1, 1] / voltage[0, 1] - 1.0],
     }
     return Outcome(evidence, response_panels(found), notes=[positions_in_words(layouts), voltages_in_words(found)])
 
 
-def struck(model: Model, layouts: Layouts, pulse: float | None) -> dict[str, Response]:
+def struck(model: Model, initial: BladeConfig, optimal: BladeConfig, pulse: float | None) -> dict[str, Response]:
     """The controlled responses of the initial and of the optimal layout, to a pulse or (None) a step."""
-    return controlled(model, {"initial": layouts.initial, "optimal": layouts.optimal}, pulse)
+    return controlled(model, {"initial": initial, "optimal": optimal}, pulse)
 
 
-def reductions(layouts: Layouts, found: list[dict[str, Response]]) -> dict[str, Array]:
+def reductions(model: Model, initial: BladeConfig, optimal: BladeConfig, found: list[dict[str, Response]]) -> dict[str, Array]:
     """What placing changes in settling and tip displacement, as shares, for each load; effort (loads, [initial, optimal]), J s."""
     pairs = {
         "settling": [settling_times(each) for each in found],
         "tip": [peaks(each) for each in found],
     }
-    plants = {name: plant_of(getattr(layouts, name)) for name in ("initial", "optimal")}
+    plants = {"initial": weighed(model, plant_of(initial)), "optimal": weighed(model, plant_of(optimal))}
     efforts = [[voltage_energy(each[name], plant) for name, plant in plants.items()] for each in found]
     shares = {key: np.array([optimal / initial - 1.0 for initial, optimal in values]) for key, values in pairs.items()}
     return {**shares, "effort": np.array(efforts)}
@@ -195,6 +217,7 @@ STUDIES = (
         ),
         fitness,
         fitness_parts,
+        unprinted=UNPRINTED,
     ),
     Study(
         "figure-6.5",
@@ -208,6 +231,8 @@ STUDIES = (
         ),
         untwisted_response,
         partial(layout_parts, (0.0,)),
+        printed=printed_response,
+        unprinted=UNPRINTED,
     ),
     Study(
         "figure-6.6",
@@ -220,6 +245,7 @@ STUDIES = (
         ),
         pretwisted_response,
         partial(layout_parts, (30.0,)),
+        unprinted=f"{UNPRINTED}, nor a layout of the pretwisted blade",
     ),
     Study(
         "figure-6.7",
@@ -231,5 +257,6 @@ STUDIES = (
         ),
         all_poles,
         partial(layout_parts, (0.0, 30.0)),
+        unprinted=UNPRINTED,
     ),
 )

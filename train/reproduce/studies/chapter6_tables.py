@@ -15,6 +15,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side
 from train.reproduce.judging.study import Outcome, Part, Parts, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Substantial, WhateverIsOpen
+from train.reproduce.studies import chapter6_printed
 from train.reproduce.studies.chapter5_individual import OPEN_WEIGHTS
 from train.reproduce.studies.chapter6_columns import (
     NUMBERS,
@@ -27,6 +28,7 @@ from train.reproduce.studies.chapter6_columns import (
     four_rows,
 )
 from train.reproduce.studies.chapter6_layouts import placed_blade
+from train.reproduce.studies.chapter6_printed import NEAR
 from train.reproduce.studies.placement_study import (
     COUNTS,
     SPEEDS,
@@ -41,12 +43,11 @@ from train.reproduce.studies.placement_study import (
     together_against_alone,
     variants,
 )
+from train.reproduce.studies.printed_layouts import UNPRINTED, cost_of, printed_positions
 from train.reproduce.thesis import Model, printed_table
 
 Array = NDArray[np.float64]
 
-NEAR = 0.25
-"""Share of the span that counts as near the root; the thesis' sensors lie within 13 % of it."""
 STARTS = 10
 MOVED = 0.01
 """Share of the span by which a patch must move for its place to depend on something."""
@@ -101,9 +102,7 @@ def traces(side: Side, config: BladeConfig, row: TableRow) -> tuple[float, float
 
 def printed_cost(side: Side, config: BladeConfig, speed: float, method: str) -> float:
     """What the thesis' own layout of four costs on our blade, its patches moved apart where they overlap."""
-    positions = [float(row[f"{method}_position"]) for row in printed_table(NUMBERS[side, "four"]) if float(row["speed"]) == speed]
-    problem = problem_of(config, side, len(positions), speed)
-    return float(problem.cost(np.atleast_2d(problem.bounds.repaired(np.array(positions))))[0])
+    return cost_of(config, side, printed_positions(side, "four", 4, speed, method), speed)
 
 
 def costs_of(rows: Sequence[TableRow], side: Side) -> str:
@@ -232,7 +231,8 @@ def both_statements(side: Side) -> tuple[Statement, ...]:
 def four_study(name: str, side: Side) -> Study:
     """Table 6.1 or 6.2."""
     compute, parts = partial(four_patches, side), partial(four_parts, side)
-    return Study(name, f"Four {side} by GA and by SQP", ALONE, four_statements(side), compute, parts)
+    title, printed = f"Four {side} by GA and by SQP", partial(chapter6_printed.four, side)
+    return Study(name, title, ALONE, four_statements(side), compute, parts, printed=printed, unprinted=UNPRINTED)
 
 
 STUDIES = (
@@ -253,6 +253,8 @@ STUDIES = (
         ),
         partial(one_to_four_patches, "actuators"),
         partial(all_parts, "actuators"),
+        printed=partial(chapter6_printed.one_to_four, "actuators"),
+        unprinted=UNPRINTED,
     ),
     Study(
         "table-6.4",
@@ -267,5 +269,7 @@ STUDIES = (
         ),
         partial(one_to_four_patches, "sensors"),
         partial(all_parts, "sensors"),
+        printed=partial(chapter6_printed.one_to_four, "sensors"),
+        unprinted=UNPRINTED,
     ),
 )

@@ -18,6 +18,7 @@ from beamenv.plant.plant import Plant, sample
 from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.configurations import WORLD
+from train.reproduce.thesis.equations import INPUT_WEIGHT
 from train.reproduce.thesis.response import settling_time
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ PATCH_LENGTH, PATCH_WIDTH = 0.08, 0.057
 """m: chapter 5's patches."""
 DURATION, SHOWN = 2.0, 0.25
 """s: long enough to settle, and what is drawn."""
+EFFORT_WEIGHT = BladeConfig().effort_weight
 UNLIMITED = 1e6
 """V: a drive limit that no voltage reaches; voltages are compared as the law asks for them, which saturation would hide."""
 PULSE = 0.05
@@ -41,7 +43,8 @@ def patches(**changes: object) -> PatchLayout:
 
 def blade(model: Model, beam: BeamConfig, layout: PatchLayout | None = None, **changes: object) -> BladeConfig:
     """A blade of chapter 5 at the model's speed and damping."""
-    config = BladeConfig(beam=beam, patches=layout or patches(), model=WORLD, speed=model.speed, damping_ratio=model.damping_ratio)
+    placed = model.layout(layout or patches())
+    config = BladeConfig(beam=beam, patches=placed, model=WORLD, speed=model.speed, damping_ratio=model.damping_ratio)
     return replace(config, **changes)  # type: ignore[arg-type]
 
 
@@ -61,6 +64,28 @@ def plant_of(config: BladeConfig) -> Plant:
     """The plant of a blade, with one loop where its actuators are ganged."""
     plant = build_plant(config)
     return one_loop(plant) if config.patches.only("actuators").ganged else plant
+
+
+def weighed(model: Model, plant: Plant, effort_weight: float = EFFORT_WEIGHT) -> Plant:
+    """The plant with the input weight of the model: ours, or that of Eq. 5.9 in proportion to ``effort_weight``."""
+    if INPUT_WEIGHT not in model.reading:
+        return plant
+    share = effort_weight / EFFORT_WEIGHT
+    return replace(plant, input_weight=share * printed_factor(model) * printed_weight(plant))
+
+
+def printed_weight(plant: Plant) -> Array:
+    """FᵀΨᵀKΨF (m, m) of Eq. 5.9, F in modal coordinates: stiff modes weigh more, where FᵀK⁻¹F has them weigh less."""
+    omega = plant.natural_frequencies
+    force = omega[:, None] * plant.B[-len(omega) :]
+    return force.T @ force
+
+
+@lru_cache(maxsize=8)
+def printed_factor(model: Model) -> float:
+    """η of Eq. 5.9, which the thesis does not print: the one by which tr R of θ = 30° is that of our own rule."""
+    plant = plant_of(blade(model, model.blade(30.0)))
+    return float(np.trace(plant.input_weight) / np.trace(printed_weight(plant)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,7 +141,7 @@ def controlled(
     """LQG-controlled responses to the model's load, by label."""
     responses = {}
     for label, config in blades.items():
-        plant = plant_of(config)
+        plant = weighed(model, plant_of(config))
         law = lqg(plant)
         found = simulate(plant, law, model.load, pulse=pulse, direction=direction)
         asked = simulate(*without_limits(plant, law), model.load, SHOWN, pulse, direction).asked

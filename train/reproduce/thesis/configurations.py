@@ -9,6 +9,8 @@ from beamenv.blade.presets import CHANDRA_CHOPRA
 from beamenv.patches import PatchLayout
 from beamenv.plant.signals import REFERENCE_LOAD
 from beamenv.structure import RotatingBeam
+from train.reproduce.thesis.equations import Reading
+from train.reproduce.thesis.sheets import layout_by
 
 WORLD = "thesis"
 """The model of every blade here: the thesis' wall kinematics, about the blade at rest, and its plant."""
@@ -56,6 +58,8 @@ class Model:
     """N/m of uniform step: the thesis names no load (but 500 kg/m in chapter 6); with this one ±1500 V matters."""
     damping_ratio: float = 0.01
     """Of every mode, as in chapter 6."""
+    reading: Reading = ()
+    """Equations that are taken as the thesis has them (``readings.read_by``)."""
 
     def blade(self, angle_deg: float = 0.0, **changes: float | str | int) -> BeamConfig:
         """The thesis' box with all plies at ``angle_deg`` and other fields of ``BeamConfig`` changed."""
@@ -64,3 +68,7 @@ class Model:
     def beam(self, angle_deg: float = 0.0, **changes: float | str | int) -> RotatingBeam:
         """That blade, without patches."""
         return built(self.blade(angle_deg, **changes))
+
+    def layout(self, layout: PatchLayout) -> PatchLayout:
+        """A layout of patches with the sheets as they are read."""
+        return layout_by(layout, self.reading) if self.reading else layout

@@ -16,7 +16,6 @@ from beamenv.structure import RotatingBeam
 from beamenv.structure.beam import EXTRA_STATIONS
 from beamenv.structure.modes import normal_modes
 from beamenv.structure.newmark import NewmarkScheme, newmark
-from beamenv.structure.trial_functions import Stations
 
 Array = NDArray[np.float64]
 
@@ -50,7 +49,7 @@ class ForcedBlade:
         if not self.pressure:
             return self.beam.line_load()[:, DIRECTIONS[self.direction][1]]
         beam = self.beam
-        stations = Stations.between(np.array([0.0, beam.length]), beam.space.terms + EXTRA_STATIONS)
+        stations = beam.space.stations(np.array([0.0, beam.length]), beam.space.order + EXTRA_STATIONS)
         chord = 1.0 - (1.0 - 1.0 / beam.taper) * stations.z / beam.length
         return (stations.weight * chord) @ beam.space.evaluate(stations.z)[DIRECTIONS[self.direction][0], 0]
 

@@ -1,0 +1,137 @@
+"""What patches may be: the sizes they are cut to, how many, and the budget that they are bought from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from baselines.placement.sizing.sheets import SizeGrid, Span, cut_to
+from beamenv.blade.config import BladeConfig
+from beamenv.configuration import Count, Number, Numbers, Refused, configuration
+from beamenv.patches.layout import SIDES
+from beamenv.structure import RotatingBeam
+
+Array = NDArray[np.float64]
+
+Range = Annotated[tuple[float, float] | None, Numbers(Number(gt=0.0, unit="m"), 2, 2)]
+
+SPREAD = (0.5, 2.0)
+"""Shares of the blade's own sizes between which patches are cut unless said otherwise."""
+
+NODES = (3, 3)
+"""Widths and thicknesses at which sections are computed: the cost is then within 0.1 % of that of sections of their own."""
+
+MOST = Count(1, 8)
+
+
+@configuration("sizes")
+class Sizes:
+    """Least and largest sizes, m, and the greatest numbers of patches; None: half to twice the blade's own, and as many."""
+
+    length: Range = None
+    width: Range = None
+    thickness: Range = None
+    actuators: Annotated[int | None, MOST] = None
+    sensors: Annotated[int | None, MOST] = None
+
+    def __post_init__(self) -> None:
+        for name in ("length", "width", "thickness"):
+            given = getattr(self, name)
+            if given is not None and given[0] > given[1]:
+                raise Refused(f"sizes.{name}", given, "the least first, then the largest (m)")
+
+
+@configuration("budget")
+class Budget:
+    """What may be spent; None: as much as the sizes allow."""
+
+    mass: Annotated[float | None, Number(gt=0.0, unit="kg")] = None
+    """kg of piezo sheet, actuators and sensors."""
+    channels: Annotated[int | None, Count()] = None
+    """Voltages, one for each actuator."""
+    power: Annotated[float | None, Number(gt=0.0, unit="W")] = None
+    """W: Σ ½CV²f of the actuators at their voltage limit."""
+    frequency: Annotated[float | None, Number(gt=0.0, unit="Hz")] = None
+    """f in Hz; None: that of the bare blade's first mode."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Sizes of one blade's patches, in numbers."""
+
+    counts: tuple[int, int]
+    """The greatest numbers of actuators and of sensors."""
+    end: float
+    """m: where the last patch ends at most."""
+    length: Span
+    widths: tuple[Span, Span]
+    thicknesses: tuple[Span, Span]
+    """m, of the actuators and of the sensors."""
+
+    @classmethod
+    def of(cls, config: BladeConfig, sizes: Sizes, channels: int | None) -> Limits:
+        """Those of a blade; ``ValueError`` for sheets that do not fit its walls, and for patches that do not fit its span."""
+        groups = config.patches.pair()
+        end = groups[0].outermost * config.beam.length
+        length = sizes.length or spread(groups[0].length, end)
+        counts = tuple(given or group.count for given, group in zip((sizes.actuators, sizes.sensors), groups, strict=True))
+        if not length[0] <= length[1] <= end:
+            raise Refused("sizes.length", list(length), f"at most the {end:.6g} m that patches may lie on")
+        bare = config.beam.build(model=config.model)
+        widths, thicknesses = [], []
+        for group in groups:
+            room = room_of(bare, group.wall, group.offset)
+            widths.append(sizes.width or spread(group.width, room))
+            thick = np.inf if group.bonded else 0.5 * bare.section.thickness_of(group.wall)
+            thicknesses.append(sizes.thickness or spread(group.patch.thickness, thick))
+            largest = cut_to(group.patch, thicknesses[-1][1])
+            inlay = largest.inlay(group.wall, 0.0, length[1], widths[-1][1], group.offset, group.face, group.bonded)
+            bare.room.check_fit(inlay)
+        allowed = min(counts[0], channels or counts[0]), counts[1]
+        return cls(allowed, end, length, (widths[0], widths[1]), (thicknesses[0], thicknesses[1]))
+
+    def grids(self, config: BladeConfig) -> tuple[SizeGrid, SizeGrid]:
+        """Where sections are computed: over these sizes and the blade's own."""
+        groups = config.patches.pair()
+        above, below = (
+            SizeGrid(around(self.widths[k], each.width), around(self.thicknesses[k], each.patch.thickness), NODES)
+            for k, each in enumerate(groups)
+        )
+        return above, below
+
+    @property
+    def least_sizes(self) -> Array:
+        """(4,), m: width and thickness of the actuators, then of the sensors."""
+        return np.array([self._size(k, 0) for k in range(4)])
+
+    @property
+    def largest_sizes(self) -> Array:
+        """(4,), m."""
+        return np.array([self._size(k, 1) for k in range(4)])
+
+    def _size(self, index: int, end: int) -> float:
+        return (self.widths, self.thicknesses)[index % 2][index // 2][end]
+
+    @property
+    def side_of(self) -> NDArray[np.intp]:
+        """(E,): 0 of every actuator, 1 of every sensor."""
+        return np.repeat(np.arange(len(SIDES)), self.counts)
+
+
+def spread(own: float, room: float) -> Span:
+    """Half to twice a size, as far as there is room."""
+    return min(SPREAD[0] * own, room), max(min(SPREAD[1] * own, room), own if own <= room else room)
+
+
+def around(span: Sequence[float], own: float) -> Span:
+    """The range with a value."""
+    return min(span[0], own), max(span[1], own)
+
+
+def room_of(bare: RotatingBeam, wall: str, offset: float) -> float:
+    """M along a wall's contour, where it is narrowest."""
+    return float(bare.room.narrowest * max(bare.section.wall_width(wall) - 2.0 * abs(offset), 0.0))

@@ -1,0 +1,117 @@
+"""One table or figure on the page: what is stated of it, both verdicts, its picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from train.reproduce import catalogue
+from train.reproduce.judging.second import Second
+from train.reproduce.judging.study import Statement, Study
+from train.reproduce.judging.verdicts import Judgement, Verdict
+from train.reproduce.markup import Markup
+from train.reproduce.runner import Record
+from train.reproduce.thesis.equations import TOGETHER
+
+SYMBOL = {Verdict.REPRODUCED: "●", Verdict.TREND: "◐", Verdict.NOT_REPRODUCED: "○", Verdict.UNTESTABLE: "–"}
+IN_NATURE, BY_EQUATIONS = "in nature", "by the thesis' equations"
+"""The two columns of verdicts."""
+
+
+def shown_verdict(verdict: Verdict) -> str:
+    """A verdict with a symbol that can be found at a glance, in print too."""
+    return f"{SYMBOL[verdict]} {verdict.value}"
+
+
+def shown_second(verdict: Verdict) -> str:
+    """The same of a second verdict."""
+    return f"{SYMBOL[verdict]} cannot be evaluated" if verdict is Verdict.UNTESTABLE else shown_verdict(verdict)
+
+
+def section(study: Study, record: Record, markup: Markup) -> list[str]:
+    """One table or figure."""
+    parts = [markup.heading(3, study.heading), markup.paragraph(f"Configuration: {study.configuration}.")]
+    if record.error:
+        return [*parts, markup.paragraph(f"This study failed: {record.error}")]
+    own = study in catalogue.FUTURE_WORK[1]
+    parts.append(markup.paragraph(own_verdict(study, record) if own else both_verdicts(study, record)))
+    parts.append(own_table(study, record, markup) if own else statement_table(study, record, markup))
+    remarks = dict.fromkeys(statement.remark for statement in study.statements if statement.remark)
+    told = [] if own else tellings(study, record)
+    parts += [markup.paragraph(text) for text in (*remarks, *told, *record.notes)]
+    parts.append(markup.image(study.name))
+    return [*parts, markup.table(record.header, record.rows)] if record.rows else parts
+
+
+def own_verdict(study: Study, record: Record) -> str:
+    """The verdict of our own work, with how many of its statements hold."""
+    return f"Verdict: {shown_verdict(study.verdict(record.judgements))} ({share(study.verdicts(record.judgements))})."
+
+
+def both_verdicts(study: Study, record: Record) -> str:
+    """Both verdicts of a table or figure."""
+    first, second = study.verdict(record.judgements), study.verdict(record.second)
+    shares = share(study.verdicts(record.judgements)), share(study.verdicts(record.second))
+    return (
+        f"Verdict {IN_NATURE}: {shown_verdict(first)} ({shares[0]}); {BY_EQUATIONS}: {shown_second(second)} ({shares[1]})"
+        f"{taken_as_printed(study)}."
+    )
+
+
+def share(verdicts: Sequence[Verdict]) -> str:
+    """How many of them are reproduced."""
+    return f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements reproduced"
+
+
+def taken_as_printed(study: Study) -> str:
+    """What the second verdict takes as the thesis has it, in words."""
+    if study.printed is not None:
+        return ", which are judged by the layouts that it prints"
+    names = [name for name in TOGETHER if name in study.rests_on]
+    return f", with its {', '.join(names)}" if names else ""
+
+
+def statement_table(study: Study, record: Record, markup: Markup) -> str:
+    """Every statement with both verdicts, where there are two."""
+    rows = []
+    for statement in study.statements:
+        found = record.judgements[statement.key]
+        again = second_cell(record.second[statement.key], found) if statement.key in record.second else ""
+        rows.append([worded(statement), *numbers(found), shown_verdict(found.verdict), again, statement.rule.words])
+    return markup.table(["statement", "thesis", "ours", "deviation", IN_NATURE, BY_EQUATIONS, "rule"], rows)
+
+
+def own_table(study: Study, record: Record, markup: Markup) -> str:
+    """Every statement of our own work, with one verdict."""
+    rows = []
+    for statement in study.statements:
+        found = record.judgements[statement.key]
+        rows.append([worded(statement), *numbers(found), shown_verdict(found.verdict), statement.rule.words])
+    return markup.table(["statement", "expected", "ours", "deviation", "verdict", "rule"], rows)
+
+
+def worded(statement: Statement) -> str:
+    """Its text."""
+    return f"Our own question: {statement.text}" if statement.aside else statement.text
+
+
+def numbers(found: Judgement) -> tuple[str, str, str]:
+    """What the thesis has, what we have, and how far these are apart."""
+    return found.thesis, found.ours, found.deviation
+
+
+def second_cell(second: Second, first: Judgement) -> str:
+    """The second verdict with the numbers of the thesis' equations, where they differ from ours, and which of them it needs."""
+    text = shown_second(second.verdict)
+    if not second.reason and (second.ours, second.deviation) != (first.ours, first.deviation):
+        text += f": {second.ours}, {second.deviation}" if second.deviation != second.ours else f": {second.ours}"
+    return f"{text}; with its {', '.join(second.enough)}" if second.enough else text
+
+
+def tellings(study: Study, record: Record) -> list[str]:
+    """Why some cannot be evaluated by the thesis' equations, and what misprints that it refutes would make of others."""
+    seconds = [(statement.text, record.second[statement.key]) for statement in study.own_statements]
+    reasons = dict.fromkeys(second.reason for _, second in seconds if second.reason)
+    return [
+        *(f"Not evaluated by the thesis' equations: {reason.rstrip('.')}." for reason in reasons),
+        *(f"“{text}”, {sentence}." for text, second in seconds for sentence in second.told),
+    ]
