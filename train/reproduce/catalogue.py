@@ -23,6 +23,7 @@ from train.reproduce.studies import (
     chapter7_elements,
     chapter7_equations,
     chapter7_graded,
+    chapter7_heat,
 )
 
 Chapter = tuple[str, tuple[Study, ...]]
@@ -51,6 +52,7 @@ FUTURE_WORK: Chapter = (
     "7.2, done",
     (
         *chapter7_graded.STUDIES,
+        *chapter7_heat.STUDIES,
         *chapter7_elements.STUDIES,
         *chapter7_equations.STUDIES,
     ),
