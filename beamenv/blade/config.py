@@ -37,7 +37,6 @@ from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEM
 from beamenv.structure.held_and_heated import (
     DIFFERENCE,
     KELVIN,
-    ROOM,
     SPRINGS,
     check_held_and_heated,
     temperatures_of,
@@ -46,6 +45,7 @@ from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_stat
 from beamenv.structure.planform import TABLE, Steps
 from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
+from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.laminate import PLY_ANGLES
 from beamenv.structure.walls.materials import MODULI

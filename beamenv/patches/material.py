@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, Refused, configuration
+from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
 from beamenv.structure.walls.materials import Lamina, strain_rotation
@@ -30,9 +31,6 @@ FIBRE_ANGLE_DEG = 90.0
 
 VACUUM = 8.8541878128e-12
 """F/m."""
-
-ROOM = 293.15
-"""K: at which a sheet's constants hold."""
 
 COLDEST = 173.15
 """K: below, nothing is known of any sheet."""
@@ -59,10 +57,10 @@ class PatchMaterial:
     permittivity: Annotated[float | None, Number(ge=VACUUM, le=1e5 * VACUUM, unit="F/m")] = None
     """F/m of a sheet free of stress, as its electrodes find it: its capacitance is that times volume over spacing²."""
     permittivity_per_K: Annotated[float, Number(ge=-0.02, le=0.02, unit="1/K")] = 0.0
-    """By which share of it at 20 °C the permittivity ε rises per K. Free strain per field, k √(ε s), rises as its root: coupling
+    """By which share of it at 300 K the permittivity ε rises per K. Free strain per field, k √(ε s), rises as its root: coupling
     factor k and compliance s hardly change."""
     warmest: Annotated[float | None, Number(gt=0.0, le=2000.0, unit="K")] = None
-    """Up to which temperature it may be used; None: any, at which it is as at 20 °C."""
+    """Up to which temperature it may be used; None: any, at which it is as at 300 K."""
     pyroelectric: Annotated[float, Number(ge=-1.0, le=1.0, unit="C/m²K")] = 0.0
     """Charge per area and K of a sheet free to expand."""
 

@@ -60,13 +60,20 @@ class PlantVariation:
     """Of every modulus of the laminate, over what it was at the start, when it no longer changes; nothing else varies then."""
     mass_drift: Ratio = SAME
     """Of the laminate's density likewise."""
+    temperature: Annotated[Pair | None, Range(100.0, 2000.0, unit="K")] = None
+    """K, of blade and patches as the episode begins; None: that of the configuration, which is also what the design knows. Nothing
+    else varies then."""
+    temperature_change: Annotated[Pair, Range(-500.0, 500.0, unit="K")] = (0.0, 0.0)
+    """K: by how much it has risen at the end of the drift (``Warming`` of the simulation)."""
+    pyroelectric: Annotated[bool, Flag()] = False
+    """Whether sensor patches show that their temperature changes."""
     drift_onset: Annotated[Pair, Range(0.0, 1e6, unit="s")] = (0.0, 0.0)
-    """s: when modulus and mass begin to change, evenly in time (``Drift`` of the simulation)."""
+    """s: when modulus and mass, or the temperature, begin to change, evenly in time (``Drift`` of the simulation)."""
     drift_duration: Annotated[Pair, Range(0.0, 1e6, unit="s")] = (0.4, 0.4)
     """s: for how long they do."""
     bank: Annotated[int, Count(1, MOST_PLANTS)] = 128
-    """Plants in the bank: a Latin hypercube of what varies, or the stations of what changes within an episode: of speeds all of
-    them, of modulus and mass 16 on each of as many courses."""
+    """Plants in the bank: a Latin hypercube of what varies, or the stations of what changes within an episode: of speeds and of
+    temperatures all of them, of modulus and mass 16 on each of as many courses."""
     seed: Natural = 0
     """Of the bank. Agents train on a bank of another seed than the one they are judged on, and are chosen on one of a third."""
 
@@ -77,7 +84,8 @@ class PlantVariation:
         if self.drifts and drawn:
             named = "modulus_drift" if self.modulus_drift != SAME else "mass_drift"
             raise Refused(named, list(getattr(self, named)), "1 where other plants are drawn")
-        if (self.speed_wander or self.drifts) and self.bank < 2:
+        self._check_heat()
+        if self.walks and self.bank < 2:
             raise Refused("bank", self.bank, "at least 2 where the blade changes within an episode")
         if self.spin_up is not None and not max(self.spin_up):
             raise Refused("spin_up", self.spin_up, "two speeds of which one is above 0 rad/s: from 0 to 0 no rotor runs up")
@@ -86,10 +94,26 @@ class PlantVariation:
         if self.truth is not None and (self.varies or self.spin_up is not None):
             raise Refused("truth", self.truth, "None where other plants are drawn or the rotor runs up")
 
+    def _check_heat(self) -> None:
+        if self.temperature is None:
+            if self.temperature_change != (0.0, 0.0):
+                raise Refused("temperature_change", list(self.temperature_change), "0 where no temperature is drawn (K)")
+            if self.pyroelectric:
+                raise Refused("pyroelectric", True, "False where no temperature is drawn")
+        elif self._drawn or self.drifts or self.speed_wander:
+            raise Refused("temperature", list(self.temperature), "None where other plants are drawn, drift or wander")
+        elif self.temperature[0] + self.temperature_change[0] <= 0.0:
+            raise Refused("temperature_change", list(self.temperature_change), "one that leaves temperatures above 0 K")
+
     @property
     def varies(self) -> bool:
         """Whether there are other plants than the configured one, drawn or on the way."""
-        return self._drawn or self.drifts or self.speed_wander > 0.0
+        return self._drawn or self.walks
+
+    @property
+    def walks(self) -> bool:
+        """Whether the blade changes within the episode."""
+        return self.drifts or self.speed_wander > 0.0 or self.temperature is not None
 
     @property
     def drifts(self) -> bool:

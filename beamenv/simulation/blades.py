@@ -212,6 +212,8 @@ class Blades:
         output, tip = (
             self._starts.shown(those, deflection, state, table, given) for table in (self._stepped.readout, self._stepped.tip)
         )
+        if self._stepped.pyroelectric is not None:
+            output = output + those.take(self._shown_of_heat())
         motion = self._undriven(state, output, tip, noise, those)
         return motion if self._shape else Motion(*(field[0] for field in motion))
 
@@ -282,6 +284,8 @@ class Blades:
         noise = self._disturbances.next(generators, resting)
         if self._changing and (passage := self._elapse()) is not None:
             self._carry(passage)
+        if self._stepped.pyroelectric is not None:
+            reading = reading + self._shown_of_heat().reshape(reading.shape)
         if self._shape:
             increment, energy, effort = (each.reshape(self.count) for each in (increment, energy, effort))
         return Motion(
@@ -294,6 +298,12 @@ class Blades:
             effort,
             increment,
         )
+
+    def _shown_of_heat(self) -> Any:
+        """(N, p): what sensors show, in full scales, of their own warming."""
+        assert self._stepped.pyroelectric is not None
+        per_warming = self._stepped.pyroelectric[self.plants.index]
+        return row_product(self.arrays.floats(self.plants.warming()), per_warming)
 
     def _limited(self, actions: Any) -> Any:
         """Actions as the drive lets them through; NumPy is quicker with two calls than with one."""

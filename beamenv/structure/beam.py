@@ -25,7 +25,6 @@ from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.held_and_heated import (
     DIFFERENCE,
     KELVIN,
-    ROOM,
     SPRINGS,
     check_held_and_heated,
     temperatures_of,
@@ -39,6 +38,7 @@ from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.span_walls import SpanWalls
 from beamenv.structure.span_space import MOTIONS, SpanSpace
 from beamenv.structure.trial_functions import TrialSpace
+from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.inlay import Inlay, Strip
 from beamenv.structure.walls.laminate import Layup
 

@@ -16,7 +16,8 @@ Array = NDArray[np.float64]
 THICK_INLAY = 0.05
 """Of a wall's thickness: where thicker inlays begin and end strains jump, which polynomials along the span cannot follow. Sheets of
 0.3 mm on a strip of 2 mm would move its tip 13 % too far per volt. The thesis' patches are a thirtieth of their walls: left to the
-polynomials they move the tip 0.1 to 1.2 % less than with breaks, and no frequency is more than 3e-5 off."""
+polynomials they move the tip at rest 0.5 to 2.4 % too far per volt, with breaks 0.05 to 0.24 %, and of the first eleven
+frequencies none is more than 1.6e-4 off, against finite elements."""
 
 BONDED_SHEET = 0.02
 """The same of sheets on a face, which stiffen bending by some three times that share: wafers of 0.25 mm on a strip of 3 mm

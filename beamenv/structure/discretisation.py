@@ -19,6 +19,9 @@ MESH = Numbers(Number(ge=0.0, le=1.0), least=2, most=101, of="shares of the span
 
 DEFAULT_ELEMENTS, DEFAULT_ORDER = 12, 4
 
+MOST = 400
+"""Elements times order: so many are solved as dense matrices within half a minute and 2 GB."""
+
 _GALERKIN, _ELEMENTS = ("galerkin",), ("finite-elements",)
 _HEEDED: Heeded = (
     ("terms", "discretisation", _GALERKIN),
@@ -31,8 +34,13 @@ _HEEDED: Heeded = (
 def check_discretisation(table: Any) -> None:
     """``Refused`` where options of a blade's discretisation do not go together, or a mesh does not ascend from clamp to tip."""
     check_heeded(table, _HEEDED)
+    order = table.element_order or DEFAULT_ORDER
+    if (table.elements or 0) * order > MOST:
+        raise Refused("elements", table.elements, f"at most {MOST // order} of order {order}")
     if table.mesh is None:
         return
+    if (len(table.mesh) - 1) * order > MOST:
+        raise Refused("mesh", table.mesh, f"at most {MOST // order} elements of order {order}")
     if table.elements is not None:
         raise Refused("elements", table.elements, "left out beside mesh")
     if table.mesh[0] != 0.0 or table.mesh[-1] != 1.0 or np.any(np.diff(table.mesh) < NEAREST):

@@ -5,9 +5,6 @@ from __future__ import annotations
 from beamenv.configuration import Number, Numbers, Refused
 from beamenv.structure.planform import Steps, check_table
 
-ROOM = 293.15
-"""K, 20 °C: at which blades are free of thermal strain unless said otherwise."""
-
 KELVIN = Number(gt=0.0, le=5000.0, unit="K")
 DIFFERENCE = Number(ge=-5000.0, le=5000.0, unit="K")
 SPRINGS = Numbers(

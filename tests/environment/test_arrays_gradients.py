@@ -19,6 +19,7 @@ SCENARIOS = {
     "failure on the way": {"preset": "mid-failure", "failures": {"onset": [0.0, 0.01]}},
     "off-speed": {"preset": "off-speed", "plants": {"bank": 4}},
     "drift": {"preset": "drift", "plants": {"bank": 4}},
+    "heat": {"preset": "heat", "plants": {"bank": 4, "drift_onset": [0.0, 0.01], "drift_duration": 0.01}},
     "spin-up": {"plants": {"spin_up": [100.0, 150.0]}},
 }
 

@@ -208,7 +208,9 @@ def _curve(value):
         return value
     if isinstance(value, Mapping):
         read = {str(name): _number(each) for name, each in value.items()}
-        return NOTHING if NOTHING in read.values() or not set(read) <= set(_POLYNOMIAL) else read
+        if NOTHING in read.values() or not {"least_K", "most_K"} <= set(read) <= set(_POLYNOMIAL):
+            return NOTHING
+        return Touloukian(**read) if 0.0 < read["least_K"] < read["most_K"] <= 1e4 else NOTHING
     return _pairs(value)
 
 

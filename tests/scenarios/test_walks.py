@@ -136,9 +136,9 @@ def test_a_slow_run_up_is_met_as_by_the_equations_of_a_run_up():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "stations"), [("gust-speed", 255), ("drift", 31)])
+@pytest.mark.parametrize(("name", "stations"), [("gust-speed", 255), ("drift", 31), ("heat", 65)])
 def test_twice_as_many_stations_change_the_cost_of_an_episode_by_less_than_a_hundredth(name, stations, monkeypatch):
-    few = replace(SCENARIOS[name].plants, bank=128 if name == "gust-speed" else 16)
+    few = replace(SCENARIOS[name].plants, bank={"gust-speed": 128, "drift": 16, "heat": 33}[name])
     costs = []
     for bank in (few.bank, stations):
         monkeypatch.setattr(walks, "STATIONS", 16 if bank == 16 else 31)
@@ -202,6 +202,11 @@ def test_no_tachometer_follows_a_speed_that_wanders():
         ({"modulus_drift": 1.1, "bank": 1}, "scenario.plants.bank is 1, but must be at least 2 where the blade changes"),
         ({"mass_drift": 1.1, "spin_up": [190.0, 200.0]}, "scenario.plants.spin_up is .* but must be None where other plants"),
         ({"speed_wander": 0.1, "truth": "solid-blade"}, "scenario.plants.truth is .* but must be None where other plants"),
+        ({"temperature": 300.0, "mass_drift": 1.1}, "scenario.plants.temperature is .* but must be None where other plants"),
+        ({"temperature": 300.0, "bank": 1}, "scenario.plants.bank is 1, but must be at least 2"),
+        ({"temperature_change": 3.0}, "scenario.plants.temperature_change is .* but must be 0 where no temperature is drawn"),
+        ({"pyroelectric": True}, "scenario.plants.pyroelectric is True, but must be False where no temperature is drawn"),
+        ({"temperature": 300.0, "truth": "solid-blade"}, "scenario.plants.truth is .* but must be None where other plants"),
         ({"drift_onset": -1.0}, "scenario.plants.drift_onset is -1.0, but must be a number or a range"),
     ],
 )

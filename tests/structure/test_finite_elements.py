@@ -99,8 +99,9 @@ def test_eigenvalues_converge_with_the_2p_th_power_of_an_element(motion, order):
 
 @pytest.mark.parametrize("order", [2, 3, 4])
 def test_no_element_locks_however_slender_the_blade(order):
-    """Where sections shear all fields have the same order p, and of a slender blade shear asks for θ = u': what is left of its
-    elements follows a bend as those of u'' of order p do, whatever the slenderness, 4e3 times the energy of shear or 4e9.
+    """Where sections shear all fields have the same order p, and of a slender blade shear asks for θ = u'. What its elements can
+    still do is what those for u'' of order p do, so that eight are 2.2e-2 (p = 2), 8e-5 (3) and 2e-7 (4) off in the second mode
+    at 500 and at 5000 half depths alike; elements that lock would be a hundred times worse.
     """
     excess = []
     for slenderness in (50.0, 500.0, 5000.0):
@@ -108,7 +109,8 @@ def test_no_element_locks_however_slender_the_blade(order):
         beam = RotatingBeam(SQUARE, WITHOUT_POISSON, length, **ELEMENTS, mesh=tuple(np.linspace(0.0, 1.0, 9)), element_order=order)
         exact = replace(beam, mesh=None, elements=16, element_order=6).natural_frequencies(0.0, 3, ("flap",))
         excess.append(beam.natural_frequencies(0.0, 3, ("flap",)) / exact - 1.0)
-    assert np.all(excess[2] < 1.5 * excess[1] + 1e-6)
+    assert np.all(excess[2] < 1.1 * excess[1] + 5e-6)
+    assert excess[1][1] == pytest.approx({2: 2.1e-2, 3: 7.9e-5, 4: 6.8e-7}[order], rel=0.2)
 
 
 WORLDS = {"blade": {}, "thesis": {"model": "thesis", "shear_flow": "consistent"}}
@@ -222,6 +224,7 @@ def test_elements_end_where_patches_do_and_tables_bend():
         ({"discretisation": "splines"}, "discretisation is 'splines', but must be one of galerkin, finite-elements."),
         ({**ELEMENTS, "elements": 0}, "elements is 0, but must be None or a whole number from 1 to 100."),
         ({**ELEMENTS, "elements": 101}, "elements is 101, but must be None or a whole number from 1 to 100."),
+        ({**ELEMENTS, "elements": 80, "element_order": 6}, "elements is 80, but must be at most 66 of order 6."),
         ({**ELEMENTS, "element_order": 1}, "element_order is 1, but must be None or a whole number from 2 to 6."),
         ({"elements": 4}, "elements is 4, but must be left out where discretisation is 'galerkin'."),
         ({**ELEMENTS, "terms": 4}, "terms is 4, but must be left out where discretisation is 'finite-elements'."),

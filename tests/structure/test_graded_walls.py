@@ -8,9 +8,12 @@ from scipy.integrate import quad
 
 from beamenv.structure import (
     GRAPHITE_EPOXY,
+    AirfoilSection,
     BoxSection,
+    CSection,
     FunctionallyGraded,
     Inlay,
+    ISection,
     Lamina,
     Laminate,
     Layup,
@@ -18,6 +21,8 @@ from beamenv.structure import (
     RotatingBeam,
     StripSection,
     TubeSection,
+    Web,
+    ZSection,
 )
 from beamenv.structure.section.section import mesh_of
 from beamenv.structure.section.solid_sections import SolidSections
@@ -30,6 +35,7 @@ NU, H = 0.3, 0.01
 SOFT, STIFF = Lamina.isotropic(70e9, NU, 2700.0, 23e-6), Lamina.isotropic(380e9, NU, 3960.0, 7e-6)
 EXPONENTS = (0.07, 0.5, 1.0, 2.7, 45.0)
 BOX = BoxSection(0.254, 0.0508, 0.01016)
+STEEL_WITHIN = FunctionallyGraded("sus304", "silicon-nitride", 0.7)
 
 
 def graded(exponent, inner=SOFT, outer=STIFF, scheme="voigt"):
@@ -271,6 +277,37 @@ def test_moments_are_those_that_ferreira_and_fantuzzi_print_for_their_beam():
     assert law[1, 1] == pytest.approx(E2 * thickness**3 / 12.0 * numerator / (6.0 + 11.0 * n + 6.0 * n**2 + n**3))
 
 
+OPEN_AND_WEBBED = {
+    "channel": CSection(0.04, 0.08, 0.002),
+    "i": ISection(0.06, 0.06, 0.002),
+    "z": ZSection(0.06, 0.06, 0.002),
+    "airfoil": AirfoilSection(chord=0.2, thickness=0.0015, profile="NACA 0012", webs=(Web(0.35),)),
+    "box": BoxSection(0.2, 0.08, 0.003, webs=(Web(0.4),)),
+}
+
+
+@pytest.mark.parametrize("section", OPEN_AND_WEBBED.values(), ids=OPEN_AND_WEBBED)
+def test_open_walls_and_webs_are_graded_too(section):
+    """Thin walls: p/(1 + p) of the volume is the inner material, within what the mid-line's curvature shifts."""
+    steel, ceramic, mixed = (section.properties(Layup.uniform(each, [0.0])) for each in (SUS304, SILICON_NITRIDE, STEEL_WITHIN))
+    share = (mixed.mass_per_length - ceramic.mass_per_length) / (steel.mass_per_length - ceramic.mass_per_length)
+    assert share == pytest.approx(0.7 / 1.7, rel=0.03)
+    stretch = [each.classical_stiffness[0, 0] for each in (steel, mixed, ceramic)]
+    assert stretch == sorted(stretch)
+    limit = section.properties(layup_of(0.0, inner=SUS304, outer=SILICON_NITRIDE))
+    assert np.array_equal(limit.stiffness, ceramic.stiffness)
+
+
+def test_one_wall_may_be_graded_and_the_others_laid_up():
+    walls = {name: [30.0, -30.0] for name in ("bottom", "left", "right")}
+    laid_up = Layup.by_wall(GRAPHITE_EPOXY, **walls, top=[30.0, -30.0])
+    mixed = Layup(None, {**laid_up.walls, "top": Layup.uniform(STEEL_WITHIN, [0.0]).default})
+    found, plain = (BOX.properties(each) for each in (mixed, laid_up))
+    assert found.mass_centre[1] > plain.mass_centre[1] + 0.1 * BOX.depth
+    half = BOX.properties(Layup(None, {**mixed.walls, "top": Layup.uniform(STEEL_WITHIN, [0.0] * 4).default}))
+    assert np.array_equal(found.stiffness, half.stiffness)
+
+
 def test_temperature_acts_on_both_materials():
     hot = FunctionallyGraded("sus304", "silicon-nitride", 1.0).at(600.0)
     assert hot.constituents == (SUS304.at(600.0), SILICON_NITRIDE.at(600.0))
@@ -329,3 +366,37 @@ def test_heated_blade_of_a_pair_strains_by_what_its_materials_are_there():
     assert ceramic < stretch(layup_of(1.0, inner="sus304", outer="silicon-nitride")) < steel
     with pytest.raises(ValueError, match=r"alpha1 is None, but must be a number \(1/K\) where temperature strains the blade"):
         stretch(layup_of(1.0, inner=Lamina.isotropic(7e10, 0.3, 2700.0)))
+
+
+def in_layers(material, count):
+    """The wall as uniform plies, each of the mixture at its middle."""
+    mixture = material.mixture(((np.arange(count) + 0.5) / count) ** material.exponent)
+    columns = (mixture.E, mixture.nu, mixture.density, mixture.alpha)
+    return Layup(tuple(Ply(Lamina.isotropic(*map(float, row)), 0.0) for row in zip(*columns, strict=True)))
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_uniform_layers_approach_the_graded_wall_with_the_square_of_their_number(scheme):
+    """All of a strip's 6 × 6 stiffness, with moduli and Poisson's ratio that change: 10⁻⁴ from 48 layers to the graded wall."""
+    material, strip = graded(2.0, SUS304, SILICON_NITRIDE, scheme), StripSection(0.05, H)
+    exact = strip.properties(Layup.uniform(material, [0.0])).stiffness
+    scale = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
+    off = [np.abs((strip.properties(in_layers(material, n)).stiffness - exact) / scale).max() for n in (24, 48)]
+    assert off[1] < 1.1e-4
+    assert off[0] / off[1] == pytest.approx(4.0, rel=0.01)
+
+
+def test_uniform_layers_expand_as_the_graded_wall():
+    material = graded(2.0, SUS304, SILICON_NITRIDE, "mori-tanaka")
+
+    def curvature_and_strain(layup):
+        strip = StripSection(0.05, H)
+        mesh, plies = mesh_of(strip, (1.0,), (), (True,)), layup.plies("strip")
+        which = np.zeros((1, len(mesh.edges)), dtype=int)
+        built = SolidSections.build(mesh, [Laminate.equal_plies(plies, H)], which, 0.0, heated=True)
+        return built.expansion.strain[0, [2, 3], 0]
+
+    exact = curvature_and_strain(Layup.uniform(material, [0.0]))
+    off = [np.abs(curvature_and_strain(in_layers(material, n)) / exact - 1.0).max() for n in (24, 48)]
+    assert off[1] < 1e-3
+    assert off[0] / off[1] == pytest.approx(4.0, rel=0.02)

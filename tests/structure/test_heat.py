@@ -21,7 +21,7 @@ STEEL = replace(Lamina.isotropic(210e9, 0.3, 7850.0), alpha1=12e-6, alpha2=12e-6
 GRAPHITE = Lamina(206.8e9, 5.17e9, 3.1e9, 3.1e9, 2.5511e9, 0.25, 1528.15, alpha1=-0.3e-6, alpha2=28e-6)
 BOX = BoxSection(0.1, 0.05, 0.004)
 CLAMPED = (1e12,) * 6
-MADE_AT = 293.15
+MADE_AT = 300.0
 KAPPA_Y = 3
 """Of the beam strains: θx′, bending in flap; 4: θy′."""
 
@@ -66,13 +66,13 @@ def test_a_difference_between_the_faces_bends_by_alpha_times_it_over_the_depth(s
 def test_a_two_layer_strip_bends_as_timoshenko_says(width):
     """κ = 6 (α₂ − α₁) ΔT (1 + m)² / h [3 (1 + m)² + (1 + mn)(m² + 1/mn)] with m = t₁/t₂, n = E₁/E₂ (Timoshenko, Journal of the
     Optical Society of America 11, 1925), here m = 1. Two layers of one Poisson's ratio bend so as a narrow beam and as a wide
-    plate, which bends alike both ways: E becomes E/(1 − ν) in both. Near free edges it is neither, by a depth of the strip.
+    plate, which bends alike both ways, for E becomes E/(1 − ν) in both: to round-off whatever the width.
     """
     depth, n = 0.002, 210.0 / 70.0
     found = sections(StripSection(width, depth), (Ply(STEEL, 0.0), Ply(ALUMINIUM, 0.0))).expansion.strain[0, :, 0]
     expected = 6.0 * (ALPHA - 12e-6) * 4.0 / (depth * (12.0 + (1.0 + n) * (1.0 + 1.0 / n)))
-    assert abs(found[KAPPA_Y]) == pytest.approx(expected, rel=0.02 if width < 0.01 else 0.01)
-    assert found[2] == pytest.approx(strain_of_two_layers(n), rel=0.02)
+    assert abs(found[KAPPA_Y]) == pytest.approx(expected, rel=1e-9)
+    assert found[2] == pytest.approx(strain_of_two_layers(n), rel=1e-9)
 
 
 def strain_of_two_layers(n):
@@ -90,7 +90,7 @@ def test_without_contraction_a_two_layer_strip_bends_as_timoshenko_says_to_round
 
 @pytest.mark.parametrize("angles", [[0.0, 90.0, 90.0, 0.0], [90.0, 0.0], [30.0, -30.0, 30.0, 60.0]])
 def test_a_wide_strip_expands_bends_and_twists_as_lamination_theory_says(angles):
-    """[A B; B D]⁻¹ ∫Q̄α (1, n) dn: what is left, 1 to 2 %, is at the free edges of a strip 100 times as wide as it is thick."""
+    """[A B; B D]⁻¹ ∫Q̄α (1, n) dn: what is left, 0.3 %, is at the free edges of a strip 100 times as wide as it is thick."""
     width, depth = 0.2, 0.002
     plies = tuple(Ply(GRAPHITE, angle) for angle in angles)
     found = sections(StripSection(width, depth), plies).expansion.strain[0, :, 0]
@@ -102,7 +102,7 @@ def test_a_wide_strip_expands_bends_and_twists_as_lamination_theory_says(angles)
     strain = np.linalg.solve(np.block([[A, B], [B, D]]), np.concatenate(load))
     scale = np.abs(strain[[1, 4, 5]]) + 1e-3 * np.abs(free).max() * np.array([1.0, 1.0 / depth, 1.0 / depth])
     twisted = np.array([found[2] - strain[1], abs(found[KAPPA_Y]) - abs(strain[4]), abs(found[5]) - 0.5 * abs(strain[5])])
-    assert np.abs(twisted / scale).max() < 0.03
+    assert np.abs(twisted / scale).max() < 0.004
 
 
 def expansion_in_wall(ply):

@@ -66,8 +66,9 @@ def test_a_material_without_curves_is_the_same_at_any_temperature():
 
 def test_unknown_expansion_is_refused_where_it_is_asked_for():
     assert GRAPHITE_EPOXY.expansion == (-0.5e-6, 32e-6)
+    assert AS4_3501_6.expansion == (-1e-6, 26e-6)
     with pytest.raises(ValueError, match=r"^material.alpha1 is None, but must be a number \(1/K\) where temperature strains the"):
-        AS4_3501_6.expansion  # noqa: B018 - a property that refuses
+        Lamina.isotropic(70e9, 0.3, 2700.0).expansion  # noqa: B018 - a property that refuses
 
 
 def test_each_property_of_a_ply_follows_its_own_curve():

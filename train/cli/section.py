@@ -57,10 +57,9 @@ def _walls(beam: Any, size: float) -> list[dict[str, Any]]:
     for wall in beam.section.wall_names:
         lengths = [float(chain.lengths[[name == wall for name in chain.walls]].sum()) for chain in beam.section.chains]
         plies = beam.layup.plies(wall)
-        angles = [ply.angle_deg for ply in plies]
-        rows.append(
-            {"wall": wall, "length": size * sum(lengths), "thickness": beam.section.thickness_of(wall), "ply_angles_deg": angles}
-        )
+        angles, uniform = [ply.angle_deg for ply in plies], [ply.uniform is not None for ply in plies]
+        row = {"wall": wall, "length": size * sum(lengths), "thickness": beam.section.thickness_of(wall), "ply_angles_deg": angles}
+        rows.append(row if all(uniform) else {**row, "graded": [not each for each in uniform]})
     return rows
 
 
@@ -69,7 +68,9 @@ def _print(found: Any, walls: list[dict[str, Any]]) -> None:
     for name in ("wall", "length, mm", "thickness, mm", "plies, ° from the contour, inner to outer"):
         table.add_column(name, justify="left" if name in ("wall",) else "right")
     for row in walls:
-        plies = ", ".join(f"{angle:g}" for angle in row["ply_angles_deg"])
+        angles = row["ply_angles_deg"]
+        graded = row.get("graded", [False] * len(angles))
+        plies = ", ".join("graded" if each else f"{angle:g}" for angle, each in zip(angles, graded, strict=True))
         table.add_row(row["wall"], f"{1e3 * row['length']:.4g}", f"{1e3 * row['thickness']:.4g}", plies)
     print_table(table)
     table = Table(title="Stiffness, transverse shear with it")

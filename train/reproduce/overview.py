@@ -28,9 +28,9 @@ TWO_COLUMNS = (
     "with the shear flow that a closed cell asks for, and checked against what others measured and computed (what that model "
     "still leaves out of nature is listed in the errata). *By the thesis' equations* asks whether the thesis computed it rightly "
     "from what it prints: the same computation with the equations of the table below in place of ours, all of those that bear on "
-    "a figure together. Where a statement then holds better than in nature, the equation is named that does it alone, in the "
-    "table's order, or all that are needed together. Misprints that the thesis' own tables or equations refute are tried last and "
-    "count for nothing."
+    "a figure together. Where a statement then holds better than in nature, the equation is named that does it alone, the first in "
+    "the table's order, or those that are needed together. Misprints that the thesis' own tables or equations refute are tried "
+    "last and count for nothing."
 )
 FUTURE_WORK_INTRODUCTION = (
     "What the thesis' section 7.2 left to others, and is there now (in words: docs/beyond-the-thesis.md). These statements are our "
@@ -106,7 +106,7 @@ def why(records: Sequence[Record]) -> str:
     none = sum(Verdict.NOT_REPRODUCED in each for each in fallen)
     return (
         f"Why so many are negative. Of {len(first)} statements {len(missed)} are not so in nature, {first.count(Verdict.TREND)} of "
-        "them only not quite. "
+        "which hold in trend. "
         f"The thesis' model accounts for {found[Verdict.REPRODUCED]}: by its own equations they are right. {found[Verdict.TREND]} "
         f"keep a trend by them, {found[Verdict.NOT_REPRODUCED]} do not: there it is the thesis' arithmetic, values read off plots, "
         "loads, weights or lay-ups that it does not print, and what it saw in four curves and stated of all. "

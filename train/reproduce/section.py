@@ -113,5 +113,5 @@ def tellings(study: Study, record: Record) -> list[str]:
     reasons = dict.fromkeys(second.reason for _, second in seconds if second.reason)
     return [
         *(f"Not evaluated by the thesis' equations: {reason.rstrip('.')}." for reason in reasons),
-        *(f"“{text}” would be, {sentence}." for text, second in seconds for sentence in second.told),
+        *(f"“{text}”, {sentence}." for text, second in seconds for sentence in second.told),
     ]

@@ -13,6 +13,7 @@ from beamenv.arrays import REFERENCE, Arrays, Masked, SomeRows, Those, copied, i
 from beamenv.simulation.kernel import Operators, row_product
 from beamenv.simulation.memory import Arrangement
 from beamenv.simulation.plants.bank import Bank
+from beamenv.simulation.plants.walks import Warming
 
 Rows = NDArray[np.int64]
 
@@ -91,6 +92,12 @@ class Allotment:
         passage = Passage(those, bank.to_common[those.take(before)] @ bank.from_common[now])
         self._allot(those, now)
         return passage
+
+    def warming(self) -> Any:
+        """(N, 2): K per control interval by which blades warm now, and K since their episodes began."""
+        walk = self._bank.walk
+        assert isinstance(walk, Warming)
+        return walk.warming(self._courses, self._elapsed)
 
     def _moved(self, moves: Any) -> Those | None:
         """The blades of a mask (N,); None where there are none and it costs nothing to ask."""

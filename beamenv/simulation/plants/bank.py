@@ -71,6 +71,8 @@ class Bank(ReadOnly):
     """(K, n, n) where they do: a plant's states to coordinates that all have in common."""
     from_common: Array | None = None
     """(K, n, n): back."""
+    pyroelectric: Array | None = None
+    """(K, 2, p): what sensors show, in full scales, per K and control interval by which a plant warms, and per K; None: nothing."""
     others: tuple[Plant, ...] = ()
     """What ``plant`` is to the first group, for each further one."""
     own: tuple[Array, Array] | None = None
@@ -184,6 +186,7 @@ class Bank(ReadOnly):
             to_common=_one_after_the_other([bank.to_common for bank in banks]),
             from_common=_one_after_the_other([bank.from_common for bank in banks]),
             start=None if first.start is None else np.concatenate(starts),  # type: ignore[arg-type]
+            pyroelectric=_one_after_the_other([bank.pyroelectric for bank in banks]),
             own=None if first.own is None else _both_after_each_other([bank.own for bank in banks]),
             runs=first.runs,
             walk=first.walk,
@@ -216,6 +219,6 @@ BY_PLANT = (
     "steady",
 )
 """Its arrays that have a row for each plant, the operators' aside."""
-NOT_ALWAYS = ("to_design", "to_common", "from_common", "start")
+NOT_ALWAYS = ("to_design", "to_common", "from_common", "start", "pyroelectric")
 """Further arrays of numbers, which not every bank has."""
 _ELECTRONICS = ("process_noise", "sensor_noise", "voltage_limits", "sensor_full_scale", "reference_load")

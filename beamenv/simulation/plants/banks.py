@@ -17,11 +17,12 @@ from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
 from beamenv.simulation.plants.model_bank import model_bank
+from beamenv.simulation.plants.pyroelectric import pyroelectric_readings
 from beamenv.simulation.plants.run_up import Cycloid
 from beamenv.simulation.plants.run_ups import run_up_of
 from beamenv.simulation.plants.spin_up import spin_up_bank
 from beamenv.simulation.plants.standing import about_moving_equilibrium, about_steady_states
-from beamenv.simulation.plants.walks import stations_of, walk_of
+from beamenv.simulation.plants.walks import Warming, stations_of, walk_of
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,8 @@ def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
         bank = replace(
             bank, speeds=np.full(len(blades), blade.config.speed), walk=walk, to_common=passage[0], from_common=passage[1]
         )
+    if variation.pyroelectric:
+        bank = replace(bank, pyroelectric=np.tile(pyroelectric_readings(blade), (len(blades), 1, 1)))
     return about_steady_states(bank.in_cost_axes(), blades)
 
 
@@ -88,11 +91,12 @@ def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:
 
 def varied(variation: PlantVariation, config: BladeConfig) -> Array:
     """(bank, 5): speed, ply angle, modulus and mass ratios, and damping ratio, by Latin hypercube (McKay et al. 1979), or at the
-    stations of what changes within an episode.
+    stations of what changes within an episode; (bank, 6) with temperatures (K), where they do.
     """
     walk = walk_of(variation, config.control_interval)
     if walk is not None:
-        return _on_the_way(stations_of(walk, variation), config)
+        rows = _on_the_way(stations_of(walk, variation), config)
+        return np.column_stack([rows, walk.stations()]) if isinstance(walk, Warming) else rows
     generator = np.random.default_rng(variation.seed)
     damping = variation.damping_ratio or (config.damping_ratio, config.damping_ratio)
     ranges = (variation.speed_ratio, variation.ply_angle_ratio, variation.modulus_ratio, variation.mass_ratio)

@@ -4,7 +4,7 @@ A bank's plants are those of some stations of what changes. In an interval a bla
 to its course at the middle of the interval, held over it; from one plant to the next, displacements, velocities and what the
 electronics hold go on; damping is that of the plant. With K stations evenly over a range the course is met within half the
 distance of two, range/2(K − 1): in the scenarios that ship 0.14 % of the speed, at most 0.5 % of mass and 0.7 % of stiffness, and
-twice as many stations change J by less than 1 % (``tests/scenarios/test_walks.py``).
+2.4 K; twice as many stations change J by less than 1 % (``tests/scenarios/test_walks.py``).
 
 What so slow a change does to the steady state is not vibration, as in a run-up (``run_up``): with it, and with what Euler's force
 displaces, moves the equilibrium that vibration is about. Unlike there, the start of an episode excites nothing, for the change was
@@ -123,19 +123,68 @@ class Drift:
         return integers(course * self.plants + array.round(share * (self.plants - 1)))
 
 
+@dataclass(frozen=True, slots=True)
+class Warming:
+    """A blade whose temperature is drawn, and changes evenly from an instant on: all courses share the stations of one range."""
+
+    first: tuple[float, float]
+    change: tuple[float, float]
+    """K, ranges to be drawn from."""
+    onset: tuple[float, float]
+    duration: tuple[float, float]
+    """In control intervals, likewise."""
+    plants: int
+
+    @property
+    def draws(self) -> int:
+        """First temperature, change, onset, duration."""
+        return 4
+
+    def courses(self, uniforms: Any) -> Any:
+        """(N, 4): those, in K and in control intervals."""
+        ranges = enumerate((self.first, self.change, self.onset, self.duration))
+        return namespace(uniforms).stack([low + (high - low) * uniforms[:, k] for k, (low, high) in ranges], -1)
+
+    def stations(self) -> Array:
+        """(K,) K, evenly over all that a course may reach."""
+        (low, high), (fall, rise) = self.first, self.change
+        return np.linspace(min(low, low + fall), max(high, high + rise), self.plants)
+
+    def warmed(self, courses: Any, time: Any) -> Any:
+        """K (N,): by how much blades are warmer at times (N,), in control intervals, than at first."""
+        (_, change, onset, duration), array = courses.T, namespace(courses)
+        return change * array.clip((time - onset) / array.clip(duration, 1.0, None), 0.0, 1.0)
+
+    def warming(self, courses: Any, elapsed: Any) -> Any:
+        """(N, 2): K per control interval after ``elapsed`` intervals (N,), in the mean of one around, and K since the first."""
+        before, after, now = (self.warmed(courses, elapsed + shift) for shift in (-0.5, 0.5, 0.0))
+        return namespace(courses).stack([after - before, now], -1)
+
+    def places(self, courses: Any, elapsed: Any) -> Any:
+        """The nearest stations."""
+        first, *_, last = self.stations().tolist()
+        temperatures = courses[:, 0] + self.warmed(courses, elapsed + 0.5)
+        place, array = (temperatures - first) / max(last - first, 1e-9) * (self.plants - 1), namespace(courses)
+        return integers(array.clip(array.round(place), 0, self.plants - 1))
+
+
 def walk_of(variation: PlantVariation, interval: float) -> Walk | None:
     """How blades walk over the bank of a scenario, at a control interval in s; None where each keeps its plant."""
     if variation.speed_wander:
         return Wander(variation.speed_wander, variation.wander_frequency * interval, variation.bank)
+    onset, duration = ((low / interval, high / interval) for low, high in (variation.drift_onset, variation.drift_duration))
+    if variation.temperature is not None:
+        return Warming(variation.temperature, variation.temperature_change, onset, duration, variation.bank)
     if variation.drifts:
         plants = min(STATIONS, variation.bank)
-        onset, duration = ((low / interval, high / interval) for low, high in (variation.drift_onset, variation.drift_duration))
         return Drift(onset, duration, variation.bank // plants, plants)
     return None
 
 
 def stations_of(walk: Walk, variation: PlantVariation) -> Array:
     """(K, 3): ratios of speed, modulus and mass at the stations of a bank, over those configured."""
+    if isinstance(walk, Warming):
+        return np.ones((walk.plants, 3))
     if isinstance(walk, Wander):
         return np.stack([walk.stations(), np.ones(walk.plants), np.ones(walk.plants)], axis=1)
     assert isinstance(walk, Drift)

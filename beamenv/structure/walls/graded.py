@@ -47,7 +47,7 @@ class Mixture:
 @configuration("graded")
 class FunctionallyGraded:
     """A material that changes from the ply's inner face to its outer one: at the share ξ of the thickness from the inner face,
-    ξ to the power ``exponent`` of the volume is the outer material.
+    ξ to the power ``exponent`` of the volume is the outer material. Of a web and of an open wall the faces are as those of inlays.
 
     "voigt" mixes E, ν, density and expansion by volume (the rule of mixtures of Reddy and Chin, Journal of Thermal Stresses 21,
     1998). "mori-tanaka" takes the outer material for spheres in a matrix of the inner one: bulk and shear modulus by Mori and
@@ -127,11 +127,13 @@ def mixture_through(material: FunctionallyGraded) -> tuple[DepthRule, Mixture]:
     return rule, material.mixture(rule.volume)
 
 
-def laminae(mixture: Mixture) -> list[Lamina]:
+@lru_cache(maxsize=64)
+def laminae_through(material: FunctionallyGraded) -> tuple[Lamina, ...]:
     """What a wall's law asks for at each place; isotropic as its constituents are, and not checked again."""
+    _, mixture = mixture_through(material)
     alphas = np.full_like(mixture.E, np.nan) if mixture.alpha is None else mixture.alpha
     columns = (mixture.E, mixture.nu, mixture.shear, mixture.density, alphas)
-    return [_lamina(*row) for row in np.stack(columns, axis=1).tolist()]
+    return tuple(_lamina(*row) for row in np.stack(columns, axis=1).tolist())
 
 
 def _lamina(E: float, nu: float, G: float, density: float, alpha: float) -> Lamina:

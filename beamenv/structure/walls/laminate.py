@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from beamenv.configuration import Number, Numbers, Refused, Table, Text, checked, configuration
 from beamenv.configuration.numbers import DEGREES
 from beamenv.configuration.read_only import Sealed
-from beamenv.structure.walls.graded import FunctionallyGraded, laminae, mixture_through
+from beamenv.structure.walls.graded import FunctionallyGraded, laminae_through
 from beamenv.structure.walls.materials import Lamina
 
 Array = NDArray[np.float64]
@@ -172,7 +172,8 @@ class Laminate:
 
     def at(self, temperature_K: float) -> Laminate:
         """The same wall with its materials' constants at a temperature; ``ValueError`` beyond their data."""
-        return Laminate(self.interfaces, tuple(ply.at(temperature_K) for ply in self.plies))
+        warm = {ply: ply.at(temperature_K) for ply in dict.fromkeys(self.plies)}
+        return Laminate(self.interfaces, tuple(warm[ply] for ply in self.plies))
 
     @property
     def turned_over(self) -> Laminate:
@@ -199,11 +200,11 @@ def _integral(ply: Ply, low: float, high: float, angle: float, value: Callable[[
     if ply.uniform is not None:
         return np.tensordot(power_integrals(np.array([low, high]), highest), [value(ply.uniform, angle)], axes=1)
     assert isinstance(ply.material, FunctionallyGraded)
-    rule, mixture = mixture_through(ply.material)
+    rule = ply.material.rule()
     half = 0.5 * (high - low)
     depth = 0.5 * (low + high) + half * rule.place
     powers = depth ** np.arange(highest + 1)[:, None] * (half * rule.weight)
-    return np.tensordot(powers, np.array([value(material, angle) for material in laminae(mixture)]), axes=1)
+    return np.tensordot(powers, np.array([value(material, angle) for material in laminae_through(ply.material)]), axes=1)
 
 
 def power_integrals(interfaces: Array, highest: int) -> Array:

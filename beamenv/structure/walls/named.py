@@ -31,9 +31,11 @@ in epoxy, 60 % by volume (Callister, Fundamentals of Materials Science and Engin
 the ply softens as a dry resin does, along them not at all: within 10 % of the moduli that Sai Ram and Sinha take for a
 graphite-epoxy from 300 to 375 K (Journal of Sound and Vibration 158, 1992)."""
 
-AS4_3501_6 = Lamina(E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8)
-"""The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992), who give no expansion; nor curves: no source
-of either could be read."""
+AS4_3501_6 = Lamina(
+    E1=141.93e9, E2=9.788e9, G12=6.135e9, G13=6.135e9, G23=4.8e9, nu12=0.42, density=1444.8, alpha1=-1e-6, alpha2=26e-6
+)
+"""The graphite-epoxy of Chandra and Chopra's box beams (Journal of Aircraft 29, 1992); expansion of AS4/3501-6 by Soden, Hinton and
+Kaddour (Composites Science and Technology 58, 1998). No curves: no table of its moduli over temperature could be read."""
 
 ALUMINIUM = Lamina.isotropic(
     E=68.9e9,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from train.reproduce.judging.study import Study, judged
 from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.thesis import Model
-from train.reproduce.thesis.equations import Reading, readings, refutation, together
+from train.reproduce.thesis.equations import Reading, readings, refutation
 from train.reproduce.thesis.readings import read_by
 
 RANK = (Verdict.UNTESTABLE, Verdict.NOT_REPRODUCED, Verdict.TREND, Verdict.REPRODUCED)
@@ -36,7 +36,7 @@ class Second:
     reading: Reading = ()
     """The first way of reading them, in their fixed order, that gives the verdict; empty where nothing differs from our model."""
     enough: Reading = ()
-    """Where the verdict is better than by our model: the first equation that gives it alone, the others ours."""
+    """Where the verdict is better than by our model: the first equation that gives it alone, the others ours, or several needed."""
     reason: str = ""
     """Why they cannot be evaluated."""
     told: tuple[str, ...] = ()
@@ -74,7 +74,7 @@ def told(key: str, verdict: Verdict, tries: Tries) -> tuple[str, ...]:
     for reading, found in tries.items():
         refuted = refutation(reading)
         if refuted and not isinstance(found, str) and rank(found[key].verdict) > rank(verdict):
-            sentences.append(f"with {reading[-1]} ({refuted}) {outcome_in_words(found[key])}")
+            sentences.append(f"with {reading[-1]} ({refuted}): {outcome_in_words(found[key])}")
     return tuple(sentences)
 
 
@@ -116,15 +116,33 @@ def _best(key: str, tries: Tries) -> Second | None:
 
 
 def needed(study: Study, model: Model, found: Mapping[str, Second], better: list[str]) -> dict[str, Reading]:
-    """For statements that the thesis' equations judge better than ours: the first equation that does so alone, or all of them."""
+    """For statements that the thesis' equations judge better than ours: the first equation that does so alone, the others ours, or
+    what is left of all when one after another is dropped that is not needed.
+    """
+    tries: Tries = {}
+
+    def suffices(key: str, reading: Reading) -> bool:
+        if reading not in tries:
+            tries[reading] = attempt(study, model, reading, {})
+        judgements = tries[reading]
+        return not isinstance(judgements, str) and judgements[key].verdict is found[key].verdict
+
     enough: dict[str, Reading] = {}
-    singles = together(study.rests_on)
-    for name in singles if len(singles) > 1 else ():
-        if set(better) - set(enough):
-            alone = attempt(study, model, (name,), {})
-            kept = [key for key in better if not isinstance(alone, str) and alone[key].verdict is found[key].verdict]
-            enough |= {key: (name,) for key in kept if key not in enough}
-    return {key: enough.get(key, found[key].reading) for key in better}
+    for key in better:
+        whole = found[key].reading
+        alone = next(((name,) for name in whole if len(whole) == 1 or suffices(key, (name,))), ())
+        enough[key] = alone or without_needless(key, whole, suffices)
+    return enough
+
+
+def without_needless(key: str, whole: Reading, suffices: Callable[[str, Reading], bool]) -> Reading:
+    """Of several equations those without which a statement is judged worse."""
+    kept = whole
+    for name in whole:
+        rest = tuple(each for each in kept if each != name)
+        if rest and suffices(key, rest):
+            kept = rest
+    return kept
 
 
 def from_print(study: Study, model: Model) -> dict[str, Second]:

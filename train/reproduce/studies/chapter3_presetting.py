@@ -24,7 +24,7 @@ from train.reproduce.studies.parameter_studies import (
 )
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import bending_stiffness
-from train.reproduce.thesis.equations import HOST, TURNING
+from train.reproduce.thesis.equations import HOST
 
 FAMILIES = ("flap", "lag", "flap", "lag")
 
@@ -136,7 +136,7 @@ STUDIES = (
             Statement("turn", "Frequencies fall up to a ply angle of about 45° and rise beyond", Holds(), WHY_TURN),
         ),
         preset_over_ply_angle,
-        rests_on=TURNING,
+        rests_on=HOST,
     ),
     Study(
         "figure-3.23",

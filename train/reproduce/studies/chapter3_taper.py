@@ -171,7 +171,7 @@ STUDIES = (
             Statement("turn", "Frequencies fall up to a ply angle of about 45° and rise beyond", Holds(), WHY_TURN),
         ),
         over_ply_angle,
-        rests_on=(*TURNING, UNIFORM_TENSION),
+        rests_on=TAPERED,
     ),
     Study(
         "figure-3.15",

@@ -35,11 +35,13 @@ CONTROL_INTERVAL = 1e-4
 """s: fine enough for the highest mode of the reference."""
 
 
-def lqr_responses(model: Model, pretwist_deg: float, presetting_deg: float) -> dict[int, Response]:
+def lqr_responses(
+    model: Model, pretwist_deg: float, presetting_deg: float, numbers: tuple[int, ...] = MODES
+) -> dict[int, Response]:
     """LQR-controlled responses of models with each number of modes, and of the reference, to a step in flap."""
     config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
     whole, responses = Blade(config), {}
-    for modes in (*MODES, REFERENCE_MODES):
+    for modes in (*numbers, REFERENCE_MODES):
         plant = weighed(model, whole.changed(with_modes(config, modes)).plant)
         responses[modes] = simulate(plant, lqr(plant), model.load, DURATION)
     return responses
@@ -104,11 +106,12 @@ def convergence(enough: int, pretwist_deg: float, presetting_deg: float) -> Call
     """Figure 5.1 or 5.2."""
 
     def compute(model: Model) -> Outcome:
-        found = lqr_responses(model, pretwist_deg, presetting_deg)
+        numbers = MODES[MODES.index(enough) :] if model.reading else MODES
+        found = lqr_responses(model, pretwist_deg, presetting_deg, numbers)
         reference = found[REFERENCE_MODES]
-        tip = np.array([error(found[r].tip, reference.tip) for r in MODES])
-        voltage = np.array([error(found[r].voltages, reference.voltages) for r in MODES])
-        at = MODES.index(enough)
+        tip = np.array([error(found[r].tip, reference.tip) for r in numbers])
+        voltage = np.array([error(found[r].voltages, reference.voltages) for r in numbers])
+        at = numbers.index(enough)
         evidence = {"tip": tip[at:], "voltage": voltage[at:]}
         if model.reading:
             return Outcome(evidence, [])

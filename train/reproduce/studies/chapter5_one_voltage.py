@@ -129,7 +129,8 @@ WHY_PZT = (
 )
 WHY_PLIES = (
     "The input weight is the energy the actuators store, less in a stiffer blade: the same rule then asks for more voltage. Eq. "
-    "5.9 has K where K⁻¹ belongs, so that volts on a stiffer blade weigh more: that turns the order of 30° and 60° round."
+    "5.9 has K where K⁻¹ belongs, so that stiff modes weigh more; with the thesis' shear flow that turns the order of 30° and "
+    "60° round."
 )
 
 

@@ -28,6 +28,7 @@ DRAWN = slice(1, -1)
 AT = (0.0, 200.0)
 """rad/s."""
 MODES = 4
+HEATED, KELVIN = (0.5, 5.0), (300.0, 600.0, 900.0)
 
 SPEEDS = (0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0)
 PRINTED = (3.516015, 4.137320, 5.585001, 7.360373, 9.256838, 11.202328, 13.170150)
@@ -93,7 +94,10 @@ def free(model: Model) -> Outcome:
     """Frequencies over the exponent, at rest and turning."""
     loci = frequency_sweep([blade(graded(exponent)).beam.build() for exponent in EXPONENTS], list(AT), MODES)
     alone = frequency_sweep([blade(each).beam.build() for each in (SILICON_NITRIDE, SUS304)], list(AT), MODES)
+    hot = [[blade(graded(exponent).at(kelvin)).beam.build() for kelvin in KELVIN] for exponent in HEATED]
+    heated = np.stack([frequency_sweep(beams, list(AT), MODES) for beams in hot])
     evidence = {
+        "hot": heated.swapaxes(1, -1).reshape(-1, len(KELVIN)),
         "limits": loci[[0, -1]] / alone - 1.0,
         "steel": loci.reshape(len(EXPONENTS), -1).T,
         "speed": loci[:, 1] > loci[:, 0],
@@ -176,6 +180,7 @@ STUDIES = (
             Statement(
                 "steel", "All four frequencies fall as steel takes the place of the lighter and stiffer ceramic", Changes(-1)
             ),
+            Statement("hot", "All four fall from 300 to 600 and 900 K, by the moduli of both materials alone", Changes(-1)),
             Statement("speed", "Turning stiffens all four at every exponent", Holds()),
         ),
         free,

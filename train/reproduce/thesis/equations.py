@@ -64,7 +64,7 @@ HOST: Reading = (SHEAR_FLOW,)
 """What a bare blade of off-axis plies rests on; one of θ = 0°, whose walls have no coupling, on nothing that is not ours too."""
 
 TURNING: Reading = (*HOST, PRINTED_Q12, PRINTED_Q)
-"""What figures over the ply angle do, on whose turn at 45° the misprinted Q̄ might bear."""
+"""What the bending stiffness over the ply angle does, on whose turn at 45° the misprinted Q̄ might bear."""
 
 CONTROLLED: Reading = (MFC_DENSITY, FIELD, INPUT_WEIGHT, FIBRES_ACROSS)
 """What patches and controllers add."""

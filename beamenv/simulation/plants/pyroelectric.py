@@ -1,0 +1,48 @@
+"""What sensor patches show of their own warming: charge that the change of their polarisation sets free.
+
+A sheet of area A, free to expand, gives the charge p A ΔT. In the unit that charges are counted in here, that of Eq. 4.37 of the
+thesis, ∫ D dA over its face, it is that whatever the way of its electrodes. What a bonded sheet, which the blade beneath strains
+otherwise than it would expand, adds by its piezoelectric effect is left out.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.blade.build import Blade
+from beamenv.configuration import Refused
+from beamenv.patches.group import PatchGroup
+from beamenv.sensors.kinds import PatchCharge, PatchCurrent, Sensor
+
+Array = NDArray[np.float64]
+
+
+def pyroelectric_readings(blade: Blade) -> Array:
+    """(2, p): readings in full scales per K and control interval, and per K; ``ValueError`` where no patch is read."""
+    config, scale = blade.config, blade.truth.sensor_full_scale
+    groups = config.patches.groups("sensors")
+    charges = [_charges(group) for group in groups]
+    per_rate = 1.0 / config.control_interval
+    parts = [(each, per_rate, 0.0) for each in charges]
+    if config.sensors:
+        parts = [_of_sensor(sensor, charges, per_rate) for sensor in config.sensors]
+    found = np.concatenate([np.stack([rate * own, kept * own]) for own, rate, kept in parts], axis=1)
+    if not found.any():
+        raise Refused("scenario.plants.pyroelectric", True, "False where no currents or charges of pyroelectric patches are read")
+    return np.asarray(found / scale)
+
+
+def _of_sensor(sensor: Sensor, charges: list[Array], per_rate: float) -> tuple[Array, float, float]:
+    """Charges per K of the patches that a sensor reads, and what it shows of them per K and interval, and per K."""
+    if isinstance(sensor, PatchCurrent):
+        return charges[sensor.group], per_rate, 0.0
+    if isinstance(sensor, PatchCharge):
+        return charges[sensor.group], 0.0, 1.0
+    return np.zeros(1), 0.0, 0.0
+
+
+def _charges(group: PatchGroup) -> Array:
+    """(channels,), C/K."""
+    each = np.full(group.count, group.patch.pyroelectric * group.length * group.width)
+    return each.sum(keepdims=True) if group.ganged else each

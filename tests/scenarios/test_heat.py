@@ -1,0 +1,119 @@
+"""A blade whose temperature the design does not know: courses, what moves, and what patches show of their own warming."""
+
+import numpy as np
+import pytest
+from scipy.stats import kstest
+
+from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv.patches import MFC
+from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.simulation.plants.banks import varied
+from beamenv.simulation.plants.walks import Warming, walk_of
+from beamenv.task import resolve_task
+
+INTERVAL = 0.5e-3
+QUIET = {**dict.fromkeys(("step", "pulse", "deflection", "harmonic"), 0.0), "white_load": False, "sensor_noise": False}
+RISING = {"temperature": 300.0, "temperature_change": 1.0, "drift_onset": 0.01, "drift_duration": 0.02, "bank": 3}
+AREA = 0.085 * 0.057
+
+
+def test_temperatures_are_drawn_and_change_evenly_on_the_way():
+    walk = walk_of(SCENARIOS["heat"].plants, INTERVAL)
+    assert isinstance(walk, Warming)
+    courses = walk.courses(np.random.default_rng(0).random((5000, walk.draws)))
+    assert kstest(courses[:, 0], "uniform", (223.15, 150.0)).pvalue > 0.001
+    assert kstest(courses[:, 1], "uniform", (-3.0, 6.0)).pvalue > 0.001
+    warmed = np.array([walk.warmed(courses, np.full(5000, time)) for time in np.arange(1001.0)])
+    np.testing.assert_array_equal(warmed[0], 0.0)
+    np.testing.assert_array_equal(warmed[-1], courses[:, 1])
+    middle = courses[:, 2] + 0.5 * courses[:, 3]
+    np.testing.assert_allclose(walk.warmed(courses, middle), 0.5 * courses[:, 1], rtol=1e-12)
+    rates = np.array([walk.warming(courses, np.full(5000, time))[:, 0] for time in range(1001)])
+    np.testing.assert_allclose(rates.sum(axis=0), courses[:, 1], rtol=1e-9)
+
+
+def test_a_blade_is_at_the_station_nearest_to_its_temperature():
+    walk = walk_of(SCENARIOS["heat"].plants, INTERVAL)
+    stations = walk.stations()
+    assert (stations[0], stations[-1], len(stations)) == (220.15, 376.15, 33)
+    courses = walk.courses(np.random.default_rng(1).random((50, walk.draws)))
+    for elapsed in (0, 300, 999):
+        temperatures = courses[:, 0] + walk.warmed(courses, np.full(50, elapsed + 0.5))
+        nearest = np.abs(stations - temperatures[:, None]).argmin(axis=1)
+        np.testing.assert_array_equal(walk.places(courses, np.full(50, elapsed)), nearest)
+
+
+def test_the_plants_are_the_blade_at_the_stations_and_the_design_knows_of_none():
+    task, nominal = (resolve_task(scenario={"plants": plants}) for plants in ({"temperature": [230.0, 370.0], "bank": 3}, {}))
+    rows = varied(task.scenario.plants, task.config)
+    np.testing.assert_array_equal(rows[:, 5], [230.0, 300.0, 370.0])
+    np.testing.assert_array_equal(rows[:, :4], 1.0)
+    for name in ("A", "B", "C", "sensor_full_scale"):
+        np.testing.assert_array_equal(getattr(task.design_blade.plant, name), getattr(nominal.design_blade.plant, name))
+    stored = np.trace(task.bank.effort_weight, axis1=1, axis2=2)
+    warm = 1.0 + 4e-3 * (rows[:, 5] - 300.0)
+    assert np.all(np.diff(stored / warm) > 0.0)  # as d squared, which is as permittivity, and the more the softer the walls are
+
+
+def test_a_current_of_pyroelectric_charge_flows_while_the_blade_warms():
+    """p A dT/dt in the middle of the drift, and none before and after."""
+    env = RotatingBeamEnv(scenario=QUIET | {"plants": RISING | {"pyroelectric": True}}, duration=0.04, dtype="float64")
+    still = RotatingBeamEnv(scenario=QUIET | {"plants": RISING}, duration=0.04, dtype="float64")
+    readings = [[each.reset(seed=0)[0]] for each in (env, still)]
+    for shown, each in zip(readings, (env, still), strict=True):
+        shown += [each.step(np.zeros(4))[0] for _ in range(79)]
+    current = (np.array(readings[0]) - np.array(readings[1])) * env.task.design_blade.plant.sensor_full_scale
+    expected = MFC.pyroelectric * AREA * 1.0 / 0.02
+    np.testing.assert_allclose(current[25:55], expected, rtol=1e-9)
+    np.testing.assert_allclose(current[:20], 0.0, atol=1e-12)
+    np.testing.assert_allclose(current[62:], 0.0, atol=1e-12)
+
+
+def test_a_charge_amplifier_shows_the_charge_gathered():
+    blade = {"sensors": [{"kind": "charge", "range": 1e-4}, {"kind": "displacement", "range": 1.0}]}
+    env = RotatingBeamEnv(blade=blade, scenario=QUIET | {"plants": RISING | {"pyroelectric": True}}, duration=0.04, dtype="float64")
+    still = RotatingBeamEnv(blade=blade, scenario=QUIET | {"plants": RISING}, duration=0.04, dtype="float64")
+    for each in (env, still):
+        each.reset(seed=0)
+    last = [[each.step(np.zeros(4))[0] for _ in range(79)][-1] for each in (env, still)]
+    np.testing.assert_allclose((last[0] - last[1])[:4] * 1e-4, MFC.pyroelectric * AREA * 1.0, rtol=1e-9)
+    assert last[0][4] == last[1][4]
+
+
+def test_a_batch_reads_what_its_blades_alone_do():
+    chosen = {
+        "preset": "heat",
+        "plants": {
+            "bank": 4,
+            "drift_onset": 0.0,
+            "drift_duration": 0.02,
+            "temperature": 300.0,
+            "temperature_change": [-90.0, 70.0],
+        },
+    }
+    batch, alone = RotatingBeamVectorEnv(3, scenario=chosen), [RotatingBeamEnv(scenario=chosen) for _ in range(3)]
+    batch.reset(seed=[3, 4, 5])
+    for seed, env in zip((3, 4, 5), alone, strict=True):
+        env.reset(seed=seed)
+    met = set()
+    for _ in range(60):
+        readings, rewards, *_ = batch.step(np.zeros((3, 4)))
+        each = [env.step(np.zeros(4)) for env in alone]
+        np.testing.assert_array_equal(batch._blades.index, [int(env._blade.index[0]) for env in alone])
+        np.testing.assert_allclose(rewards, [step[1] for step in each], rtol=1e-9)
+        np.testing.assert_allclose(readings, np.stack([step[0] for step in each]), rtol=1e-5, atol=1e-7)
+        met.update(batch._blades.index.tolist())
+    assert len(met) > 2
+
+
+def test_pyroelectricity_that_no_sensor_would_show_is_refused_in_a_sentence():
+    plants = {"temperature": 300.0, "pyroelectric": True, "bank": 2}
+    with pytest.raises(ValueError, match="scenario.plants.pyroelectric is True, but must be False where no currents"):
+        _ = resolve_task(blade={"sensors": [{"kind": "displacement"}]}, scenario={"plants": plants}).bank
+
+
+def test_a_blade_too_hot_for_its_patches_is_refused_in_a_sentence():
+    with pytest.raises(ValueError, match=r"temperature is 450.0, but must be a number from 173.15 to 403.15 \(K\)"):
+        _ = resolve_task(
+            blade={"beam": {"material": "aluminium"}}, scenario={"plants": {"temperature": [300.0, 450.0], "bank": 2}}
+        ).bank
