@@ -9,11 +9,12 @@ from typer.testing import CliRunner
 
 import beamenv
 from baselines.placement import JointProblem, SizingSearch, place_jointly
+from baselines.placement.sizing.own_layouts import THESIS
 from beamenv.blade.files import load_config
 from beamenv.blade.presets import blade_config
 from train.cli.app import app
 from train.placement.front_picture import front_panels
-from train.placement.sized import THESIS, size_patches
+from train.placement.sized import size_patches
 
 QUICK = SizingSearch(population=12, generations=3, polished=3, iterations=5)
 TWO = ("--actuators", "2", "--sensors", "1")

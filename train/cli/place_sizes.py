@@ -37,7 +37,9 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
     if to.save is not None:
         check_file(checked_path("save", to.save, (".json",)), "save")
     with one_bar("sizes") as report:
-        sized = size_patches(config, Sizes(actuators=counts["actuators"], sensors=counts["sensors"]), Budget(**budget), seed, report)
+        sized = size_patches(
+            config, Sizes(actuators=counts["actuators"], sensors=counts["sensors"]), Budget(**budget), seed, report
+        )
     if to.as_json:
         print_json(sized.to_dict())
     else:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +10,10 @@ from numpy.typing import NDArray
 from train.figures.figure import Curve, Look, Marker, Panel
 from train.figures.palette import INK, PALETTE, SIGNS
 from train.figures.paper import STYLE, draw_panel, handles, save
+from train.figures.patches import patches_panel
 from train.placement.sized import SizedFront
 
 Array = NDArray[np.float64]
-
-ACTUATORS, SENSORS = Look(PALETTE[0], width=2.6), Look(PALETTE[1], width=2.6)
-ASIDE = 0.15
-"""By how much actuators are drawn above and sensors below the number of their design."""
 
 
 def draw_front(sized: SizedFront, path: Path) -> None:
@@ -42,7 +37,7 @@ def draw_front(sized: SizedFront, path: Path) -> None:
 
 def front_panels(sized: SizedFront) -> list[Panel]:
     """Cost over mass, and the span with every point's patches at its mass."""
-    return [cost_panel(sized), patches_panel(sized)]
+    return [cost_panel(sized), patches_panel(sized.front.points, sized.problem.config.beam.length)]
 
 
 def cost_panel(sized: SizedFront) -> Panel:
@@ -64,22 +59,3 @@ def cost_panel(sized: SizedFront) -> Panel:
         curves.append(Curve(np.array([1e3 * each.mass]), np.array([1e6 * each.cost]), f"own size, {each.name}", "points", look))
     title = f"Patches of a blade at {sized.problem.config.speed:g} rad/s"
     return Panel(title, "mass of piezo sheet, g", "stationary cost of LQG, µJ", curves, logarithmic=True)
-
-
-def patches_panel(sized: SizedFront) -> Panel:
-    """Where the patches of each point begin and end, from the lightest to the heaviest."""
-    curves: list[Curve] = []
-    for number, each in enumerate(sized.front.points, start=1):
-        for name, side, look, shift in (
-            ("actuators", each.actuators, ACTUATORS, ASIDE),
-            ("sensors", each.sensors, SENSORS, -ASIDE),
-        ):
-            curves.append(_rows(side.patches, number + shift, name if number == 1 else "", look))
-    span = sized.problem.config.beam.length
-    return Panel("Their patches", "m from the root", "design, lightest first", curves, whole=True, x_limits=(-0.02 * span, span))
-
-
-def _rows(patches: Sequence[Any], height: float, label: str, look: Look) -> Curve:
-    """One line for all patches of a side, broken between them."""
-    ends = np.array([[each.start, each.start + each.length, np.nan] for each in patches]).ravel()
-    return Curve(ends, np.where(np.isnan(ends), np.nan, height), label, "solid", look)

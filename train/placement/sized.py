@@ -6,19 +6,6 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-THESIS = "thesis, Tables 6.3 and 6.4"
-
-
-@dataclass(frozen=True, slots=True)
-class Layout:
-    """The blade's own patches somewhere, by the same measure as the front."""
-
-    name: str
-    mass: float
-    """kg."""
-    cost: float
-    """J."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SizedFront:
@@ -28,8 +15,8 @@ class SizedFront:
     """The ``SizingProblem``."""
     front: Any
     """The ``Front``."""
-    layouts: tuple[Layout, ...]
-    """Of the blade's own patches; none where they are more than may be."""
+    layouts: tuple[Any, ...]
+    """``Layout``s of the blade's own patches; none where they are more than may be."""
     on_plants: tuple[float, ...]
     """J of each point of the front on the plant that is built of it."""
 
@@ -67,6 +54,7 @@ def size_patches(
     from baselines.placement import SizingProblem, size
     from baselines.placement.sizing.blades import cost_on_plant
     from baselines.placement.sizing.front import Archive
+    from baselines.placement.sizing.own_layouts import layouts_of
 
     problem = SizingProblem.of(config, sizes, budget)
     archive = Archive(problem, progress)
@@ -78,36 +66,3 @@ def size_patches(
             raise
     layouts = layouts_of(problem, config, placed and front.complete)
     return SizedFront(problem, front, layouts, tuple(cost_on_plant(problem, each) for each in front.points))
-
-
-def layouts_of(problem: Any, config: Any, placed: bool) -> tuple[Layout, ...]:
-    """The blade's own patches: as they are given, where the thesis has them, and ``placed``."""
-    from baselines.placement import optimal_layout
-    from beamenv.blade.layouts import SIDES, positions_of
-
-    places = {"as configured": [positions_of(config, side) for side in SIDES]}
-    thesis = thesis_places(config)
-    if thesis is not None:
-        places[THESIS] = thesis
-    if placed and problem.with_own_sizes(places["as configured"]) is not None:
-        best = optimal_layout(config)
-        places["placed"] = [best[side] for side in SIDES]
-    found = []
-    for name, positions in places.items():
-        designs = problem.with_own_sizes(positions)
-        if designs is not None:
-            found.append(Layout(name, float(problem.mass(designs)[0]), float(problem.cost(designs)[0])))
-    return tuple(found)
-
-
-def thesis_places(config: Any) -> list[Any] | None:
-    """Positions of the thesis' tables for a blade of its size with as many patches; None for any other."""
-    from beamenv.blade.config import BeamConfig
-    from beamenv.blade.layouts import THESIS_TABLES, positions_of, thesis_positions
-
-    if config.beam.section is not None or config.beam.length != BeamConfig().length:
-        return None
-    try:
-        return [thesis_positions(config, side, name, len(positions_of(config, side))) for name, side in THESIS_TABLES.items()]
-    except ValueError:
-        return None

@@ -23,6 +23,7 @@ from train.reproduce.studies import (
     chapter7_elements,
     chapter7_equations,
     chapter7_graded,
+    chapter7_sizing,
 )
 
 Chapter = tuple[str, tuple[Study, ...]]
@@ -52,6 +53,7 @@ FUTURE_WORK: Chapter = (
     (
         *chapter7_graded.STUDIES,
         *chapter7_elements.STUDIES,
+        *chapter7_sizing.STUDIES,
         *chapter7_equations.STUDIES,
     ),
 )
