@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike
 
 from baselines.design.controller import Array
 from baselines.design.error_model import ErrorModel
-from baselines.design.hidden_layer import Learning, Weights, hidden_units, learned, norms, outputs
+from baselines.design.hidden_layer import Learning, Weights, hidden_units, learned, norms, outputs, prediction_error
 from baselines.design.law import Law
 from baselines.design.linear import LinearController
-from baselines.design.matrix import keep_matrices, real_matrix
+from baselines.design.matrix import keep_matrices, real_matrix, rows
 from baselines.design.objects import instance
 
 FADES = 0.05
@@ -37,14 +37,18 @@ class Memory(NamedTuple):
     """δ (N, n): the part of it that is the network's doing."""
     error: Array
     """Ê (N, n): the error that is still in it, as the error observer has it."""
-    inputs: Array
-    """μ (N, f): what the network was shown last."""
+    by_units: Array
+    """(N, h, n): the states that each hidden unit would have brought about with a weight of 1."""
+    by_inputs: Array
+    """(N, 2 q, n): those that each input would have brought about."""
     units: Array
-    """σ (N, h): its hidden units then."""
+    """σ (N, h): hidden units."""
     outer: Array
-    """W (N, h, q)."""
+    """W (N, h)."""
     inner: Array
-    """V − V₀ (N, f, h)."""
+    """V − V₀ (N, h, 2)."""
+    bias: Array
+    """b (N, p): of whitened innovations."""
     energy: Array
     """ÊᵀPÊ (N,)."""
     adaptive: Array
@@ -71,22 +75,23 @@ class AdaptiveNeural(Law):
     The network foresees the forces w that act and are not in the design, and what it foresees goes through the design's filter and
     regulator. With x̂ the state of the reference model, the design in a loop with the readings,
 
-        ε = y − C x̂,            x̂ ← x̂ + L ε,         x̂⁺ = A x̂ + B u + D w,         w = Wᵀ σ(Vᵀ μ),
-        δ ← δ − L C δ,          u_ad = K δ,           u = clip(M ξ + T y − u_ad),    δ⁺ = A δ + D w,
-        Ê ← Ê + Λ (ε − C Ê),    p ∝ Dᵀ P Ê,           Ê⁺ = A (Ê − L ε),
+        ε = y − C x̂,          x̂ ← x̂ + L ε,         x̂⁺ = A x̂ + B u + D w,         w = Wᵀ σ(Vᵀ μ),
+        δ ← δ − L C δ,        u_ad = K δ,           u = clip(M ξ + T y − u_ad),    δ⁺ = A δ + D w,
 
-    u_ad within its share of the drive, μ a one, the estimate and the latest voltages in units of what is usual. W and V learn along
-    p (``hidden_layer.learned``), P = ĀᵀPĀ + CᵀS⁻¹C, Ā = A − ALC: EᵀPE is what the error E of the model will show in normalised
-    innovations squared. Where ε is white, as on the design, p has no direction in the mean and nothing is learned but noise. δ is
-    the answer of a stable filter to a network whose weights are bounded, so that u_ad is bounded whatever the blade does.
+    u_ad within its share of the drive; μ are the deflection and the velocity of each mode in x̂ in units of what is usual. W and V
+    learn from ε + C δ, the innovations of the design alone, and from what the units and inputs would have made of them through the
+    same filter (``hidden_layer.learned``): on the design they are white, and nothing is learned but noise. An error observer,
+    Ê ← Ê + Λ (ε − C Ê), tells the energy EᵀPE of the model's error, P = ĀᵀPĀ + CᵀS⁻¹C with Ā = A − ALC: the normalised innovations
+    squared that it will cause. δ is the answer of a stable filter to a network whose weights are bounded, so that u_ad is bounded
+    whatever the blade does.
     """
 
     base: LinearController
     """M, T, F, G, H; it stands behind the same instruments."""
     model: ErrorModel
-    """A, B, C, D, K, L, Λ and P."""
+    """A, B, C, D, K, L, Λ, S and P."""
     start: Array
-    """V₀ (f, h)."""
+    """V₀ (h, 2)."""
     learning: Learning
     authority: float
     """Largest adaptive voltage over the drive limit."""
@@ -98,7 +103,7 @@ class AdaptiveNeural(Law):
         Law.__post_init__(self)
         instance("base", self.base, LinearController, "a LinearController, such as reference_lqg(plant)")
         instance("model", self.model, ErrorModel, "an ErrorModel, such as error_model(plant, base)")
-        keep_matrices(self, {"start": (self.model.inputs, np.shape(self.start)[-1])})
+        keep_matrices(self, {"start": (rows(self.start), 2)})
 
     @property
     def order(self) -> int:
@@ -107,8 +112,8 @@ class AdaptiveNeural(Law):
 
     @property
     def _shapes(self) -> tuple[tuple[int, ...], ...]:
-        (n, q), (f, h), m = self.model.force_input.shape, self.start.shape, self.instruments.counts[1]
-        return (self.base.order,), (n,), (n,), (n,), (f,), (h,), (h, q), (f, h), (), (m,)
+        (n, q, m, p), h = self.model.counts, len(self.start)
+        return (self.base.order,), (n,), (n,), (n,), (h, n), (2 * q, n), (h,), (h,), (h, 2), (p,), (), (m,)
 
     def switched(self, on: bool) -> AdaptiveNeural:
         """The same law with its adaptation on or off; either goes on from what the other remembers, without a jump."""
@@ -146,23 +151,25 @@ class AdaptiveNeural(Law):
 
     def _decided(self, observation: Array, old: Memory, new: Memory) -> Array:
         """Actions (N, m); writes what is to be remembered."""
-        model = self.model
+        model, gain = self.model, self.model.kalman_gain
         innovation = model.innovation(self.instruments.read(observation), old.predicted)
         error = model.observed_error(old.error, innovation)
         new.energy[...] = model.energy(error)
-        weights = self._learned(old, error, new.energy)
-        new.outer[...], new.inner[...] = weights
-        estimate = old.predicted + innovation @ model.kalman_gain.T
-        departure = old.departure - old.departure @ model.corrected.T
-        new.adaptive[...] = np.clip(departure @ model.feedback_gain.T, -self.authority * model.drive, self.authority * model.drive)
+        weights = self._learned(old, innovation, new.energy)
+        new.outer[...], new.inner[...], new.bias[...] = weights
+        estimate, departure = old.predicted + innovation @ gain.T, old.departure - old.departure @ model.corrected
+        most = self.authority * model.drive
+        new.adaptive[...] = np.clip(departure @ model.feedback_gain.T, -most, most)
         action = self._driven(observation, old, new)
-        voltage = action * self.instruments.voltage_scale
-        new.inputs[...] = model.network_inputs(estimate, voltage, old.inputs)
-        new.units[...] = hidden_units(self.start, weights, new.inputs)
-        forces = outputs(weights, new.units) @ model.force_input.T
-        new.predicted[...] = estimate @ model.transition.T + voltage @ model.voltage_input.T + forces
+        inputs = model.network_inputs(estimate)
+        new.units[...] = hidden_units(self.start, weights, inputs, self.learning.saturation)
+        forces = outputs(weights, new.units, inputs.shape[1]) @ model.force_input.T
+        driven = (action * self.instruments.voltage_scale) @ model.voltage_input.T
+        new.predicted[...] = estimate @ model.transition.T + driven + forces
         new.departure[...] = departure @ model.transition.T + forces
-        new.error[...] = (error - innovation @ model.kalman_gain.T) @ model.transition.T
+        new.error[...] = (error - innovation @ gain.T) @ model.transition.T
+        new.by_units[...] = model.moved(old.by_units, new.units)
+        new.by_inputs[...] = model.moved(old.by_inputs, inputs.reshape(len(inputs), -1))
         return action
 
     def _driven(self, observation: Array, old: Memory, new: Memory) -> Array:
@@ -175,9 +182,11 @@ class AdaptiveNeural(Law):
         new.own[...] = product[:, :order] + action @ feedback
         return action
 
-    def _learned(self, old: Memory, error: Array, energy: Array) -> Weights:
+    def _learned(self, old: Memory, innovation: Array, energy: Array) -> Weights:
         """The weights after this reading."""
+        weights = Weights(old.outer, old.inner, old.bias)
         if not self.adapts:
-            return Weights((1.0 - FADES) * old.outer, (1.0 - FADES) * old.inner)
-        direction = error @ self.model.direction
-        return learned(Weights(old.outer, old.inner), old.inputs, old.units, direction, np.sqrt(energy), self.learning)
+            return Weights(*((1.0 - FADES) * each for each in weights))
+        felt = self.model.felt(old.by_units, old.by_inputs)
+        error = prediction_error(weights, felt, self.model.design_innovation(innovation, old.departure))
+        return learned(weights, felt, old.units, error, np.sqrt(energy), self.learning)

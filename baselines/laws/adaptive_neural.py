@@ -32,30 +32,28 @@ UNUSUAL = 0.1
 class AdaptationSettings:
     """What the network is, and how it learns."""
 
-    hidden: Annotated[int, Count(1, 200)] = 24
-    """Hidden units."""
+    hidden: Annotated[int, Count(1, 50)] = 2
+    """Hidden units of each force."""
     forces: Annotated[int, Count(1, 100)] = 11
     """Modes, the first, whose forces it foresees; voltages instead where a plant has no modes of its own coordinates."""
-    lags: Annotated[int, Count(0, 8)] = 3
-    """Latest voltages that it is shown."""
-    outer_rate: Annotated[float, Number(ge=0.0, le=1.0)] = 1.0
+    outer_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.1
     """γ_W."""
-    inner_rate: Annotated[float, Number(ge=0.0, le=1.0)] = 0.1
+    inner_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.1
     """γ_V."""
-    forgetting: Annotated[float, Number(ge=0.0, le=0.1)] = 1e-3
+    bias_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.1
+    """γ_b."""
+    forgetting: Annotated[float, Number(ge=0.0, le=0.1)] = 0.0
     """κ of the e-modification."""
-    outer_bound: Annotated[float, Number(gt=0.0, le=1e3)] = 4.0
+    outer_bound: Annotated[float, Number(gt=0.0, le=1e3)] = 10.0
     """Largest norm of W."""
     inner_bound: Annotated[float, Number(gt=0.0, le=1e3)] = 1.0
     """Largest norm of V − V₀."""
-    caution: Annotated[float, Number(gt=0.0, le=1e6)] = 0.1
-    """λ: steps are shorter the less is to be seen of a force in the readings, halved where that is λ in innovations squared."""
-    surprise: Annotated[float, Number(ge=0.0, le=1e3)] = 0.0
+    saturation: Annotated[float, Number(gt=0.0, le=1e3)] = 3.0
+    """Where hidden units end, in units of what is usual."""
+    surprise: Annotated[float, Number(ge=0.0, le=1e3)] = 1.0
     """Root mean square of the forces that the error observer takes for noise."""
     authority: Annotated[float, Number(gt=0.0, le=2.0)] = 0.5
     """Largest adaptive voltage over the drive limit."""
-    gain: Annotated[float, Number(gt=0.0, le=1.0)] = 0.3
-    """Length of each hidden unit's first weights: below 1 all are next to linear at usual vibration."""
     seed: Annotated[int, Count(0, 2**32 - 1)] = 0
     """Of the first inner weights."""
 
@@ -76,9 +74,9 @@ def adaptive_neural(
     own = optional_instance("base", base, LinearController, "a LinearController, such as reference_lqg(plant)")
     law = reference_lqg(plant, verify=verify) if own is None else _behind_instruments(own, plant)
     model = error_model(plant, law, chosen)
-    rates, bounds = (chosen.outer_rate, chosen.inner_rate), (chosen.outer_bound, chosen.inner_bound)
-    learning = Learning(*rates, chosen.forgetting, *bounds, activity=chosen.hidden * chosen.gain**2)
-    start = chosen.gain * first_inner_weights(model.inputs, chosen.hidden, chosen.seed)
+    rates, bounds = (chosen.outer_rate, chosen.inner_rate, chosen.bias_rate), (chosen.outer_bound, chosen.inner_bound)
+    learning = Learning(*rates, chosen.forgetting, *bounds, chosen.saturation)
+    start = first_inner_weights(model.counts[1], chosen.hidden, chosen.seed)
     return AdaptiveNeural("adaptive neural LQG", law.instruments, law, model, start, learning, chosen.authority)
 
 
@@ -94,31 +92,33 @@ def _behind_instruments(base: LinearController, plant: Plant) -> LinearControlle
 def error_model(plant: Plant, law: LinearController, settings: AdaptationSettings) -> ErrorModel:
     """The design as the reference model of a law, in units of what is usual under a load that lasts."""
     held = sampled(plant)
-    filtered, rated = optimal_filter(plant, held), with_rate_penalty(held, RATE_WEIGHT)
+    filtered, K = optimal_filter(plant, held), optimal_regulator(plant, with_rate_penalty(held, RATE_WEIGHT)).gain
     A, C, L = held.A, held.C, filtered.gain
-    usual, force_input = _usual(plant, held, law), _force_input(plant, held, settings.forces)
-    force_input = force_input * _usual_forces(plant, usual, settings.forces)
-    noise = known_sensor_noise(plant) / held.interval
-    seen = C.T @ np.linalg.solve(C @ filtered.matrix @ C.T + noise, C)
-    loop = A - A @ L @ C
-    lyapunov = solve_discrete_lyapunov(loop.T, 0.5 * (seen + seen.T), method="bilinear")
-    lyapunov = 0.5 * (lyapunov + lyapunov.T)
-    curvature = np.einsum("nq,nq->q", force_input, lyapunov @ force_input)
+    innovations = C @ filtered.matrix @ C.T + known_sensor_noise(plant) / held.interval
+    whitening = _inverse_root(innovations)
+    felt, loop = whitening @ C, A - A @ L @ C
+    lyapunov = solve_discrete_lyapunov(loop.T, felt.T @ felt, method="bilinear")
+    force_input, shown = _forces(plant, held, _spread(plant, held, law), K[:, : len(A)], settings.forces)
     return ErrorModel(
         transition=A,
         voltage_input=held.B,
         output=C,
         force_input=force_input,
-        feedback_gain=optimal_regulator(plant, rated).gain[:, : len(A)],
+        feedback_gain=_of_modes(plant, K[:, : len(A)], settings.forces),
         kalman_gain=L,
         observer_gain=_observer_gain(plant, held, settings.surprise * force_input),
-        lyapunov=lyapunov,
-        direction=lyapunov @ force_input / (settings.caution + curvature),
+        whitening=whitening,
+        lyapunov=0.5 * (lyapunov + lyapunov.T),
+        shown=shown,
         full_scale=plant.sensor_full_scale,
         drive=drive_limit(plant),
-        usual=usual,
-        lags=settings.lags,
     )
+
+
+def _inverse_root(covariance: Array) -> Array:
+    unit = 1.0 / np.sqrt(np.diagonal(covariance))
+    values, vectors = np.linalg.eigh(covariance * np.outer(unit, unit))
+    return np.asarray((vectors / np.sqrt(values)) @ vectors.T * unit)
 
 
 def _has_modes(plant: Plant) -> bool:
@@ -128,34 +128,53 @@ def _has_modes(plant: Plant) -> bool:
     return plant.in_energy_coordinates and turned.shape == (r, r) and np.array_equal(plant.A[:r, r : 2 * r], turned)
 
 
-def _force_input(plant: Plant, held: SampledPlant, forces: int) -> Array:
-    """D (n, q) of modal accelerations held over an interval; or of voltages."""
+def _forces(plant: Plant, held: SampledPlant, spread: Array, gain: Array, forces: int) -> tuple[Array, Array]:
+    """D (n, q) of forces in units of what is usual, and what is shown of a state (n, 2 q), by its covariance ``spread``.
+
+    Forces on the first modes, each shown its own mode; where a plant has no modes of its own coordinates, voltages, each shown what
+    the regulator would ask for, and how that changes.
+    """
     if not _has_modes(plant):
-        return held.B
-    n, r = len(plant.A), plant.blade_states // 2
+        seen = np.stack([-gain, -gain @ (held.A - np.eye(len(held.A)))], axis=1).reshape(-1, len(held.A)).T
+        return UNUSUAL * held.B * drive_limit(plant), seen / _sizes(seen.T @ spread @ seen)
+    n, r = len(held.A), plant.blade_states // 2
     q = min(forces, r)
-    accelerated = np.zeros((n + q, n + q))
-    accelerated[:n, :n] = plant.A
-    accelerated[r : r + q, n:] = np.eye(q)
-    held_over = expm(accelerated * held.interval)[:n, n:]
-    return np.vstack([held_over, np.zeros((len(held.A) - n, q))])
+    seen = np.zeros((n, 2 * q))
+    seen[np.arange(q), 2 * np.arange(q)] = seen[r + np.arange(q), 2 * np.arange(q) + 1] = 1.0
+    usual = _sizes(seen.T @ spread @ seen)
+    return UNUSUAL * plant.natural_frequencies[:q] * usual[::2] * _accelerated(plant, held, q), seen / usual
 
 
-def _usual(plant: Plant, held: SampledPlant, law: LinearController) -> Array:
-    """(n,) root mean square of the blade's states under a load that lasts, noise and the law."""
+def _of_modes(plant: Plant, gain: Array, forces: int) -> Array:
+    """The gain (m, n) on modes whose forces are foreseen: of the others' departures, which these excite too, less is known."""
+    if not _has_modes(plant):
+        return gain
+    r = plant.blade_states // 2
+    state = np.arange(gain.shape[1])
+    return np.asarray(np.where((state >= 2 * r) | (state % r < forces), gain, 0.0))
+
+
+def _accelerated(plant: Plant, held: SampledPlant, count: int) -> Array:
+    """(n, q): what accelerations of the first modes do within an interval in which they last."""
+    n, r = len(plant.A), plant.blade_states // 2
+    whole = np.zeros((n + count, n + count))
+    whole[:n, :n] = plant.A
+    whole[r : r + count, n:] = np.eye(count)
+    return np.vstack([expm(whole * held.interval)[:n, n:], np.zeros((len(held.A) - n, count))])
+
+
+def _spread(plant: Plant, held: SampledPlant, law: LinearController) -> Array:
+    """Covariance (n, n) of the plant's states under a load that lasts, noise and the law."""
     loaded = sampled_with_loads(plant, PersistentLoad())
     transition, noise_input, _, _, covariance = closed_loop(loaded, law)
     spread = solve_discrete_lyapunov(transition, noise_input @ covariance @ noise_input.T, method="bilinear")
-    size = np.sqrt(np.maximum(np.diagonal(spread)[: len(held.A)], 0.0))
-    return np.where(np.arange(len(size)) < plant.blade_states, size, 0.0)
+    return np.asarray(spread[: len(held.A), : len(held.A)])
 
 
-def _usual_forces(plant: Plant, usual: Array, forces: int) -> Array:
-    """(q,) that a force of 1 stands for."""
-    if not _has_modes(plant):
-        return UNUSUAL * drive_limit(plant)
-    q = min(forces, plant.blade_states // 2)
-    return UNUSUAL * plant.natural_frequencies[:q] * usual[:q]
+def _sizes(covariance: Array) -> Array:
+    """Root mean squares; 1 of what does not move."""
+    squares = np.diagonal(covariance)
+    return np.sqrt(np.where(squares > 0.0, squares, 1.0))
 
 
 def _observer_gain(plant: Plant, held: SampledPlant, surprise: Array) -> Array:

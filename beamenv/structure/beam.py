@@ -26,6 +26,7 @@ from beamenv.structure.held_and_heated import (
     DIFFERENCE,
     KELVIN,
     SPRINGS,
+    check_data,
     check_held_and_heated,
     temperatures_of,
 )
@@ -134,6 +135,8 @@ class RotatingBeam:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
         check_held_and_heated(self.model, self.temperatures, self.tip_springs)
+        plies = (ply for wall in self.section.wall_names for ply in self.layup.plies(wall))
+        check_data(self.temperatures, (ply.material for ply in (*plies, *(inlay.ply for inlay in self.inlays))), "beam")
         self.room.check(self.inlays)
 
     @property

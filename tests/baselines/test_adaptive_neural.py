@@ -55,7 +55,7 @@ def test_the_adaptive_voltage_and_the_weights_stay_within_their_bounds(small_pla
 @pytest.mark.parametrize("on_first", [True, False])
 def test_switching_in_mid_episode_makes_no_jump(small_plant, readings, on_first):
     """At the instant itself the voltage is what it would have been; off, it comes back to the base's."""
-    law, slow = adaptive_neural(small_plant()), 0.05 * readings
+    law, slow = adaptive_neural(small_plant()), 0.2 * readings
     switched, memories = driven(law, slow, (150, on_first))
     unswitched, _ = driven(law.switched(on_first), slow)
     np.testing.assert_array_equal(switched[:151], unswitched[:151])
@@ -119,7 +119,9 @@ def test_a_base_of_other_instruments_is_refused(small_plant):
             adaptive_neural(plant, base)
 
 
-@pytest.mark.parametrize("wrong", [{"hidden": 0}, {"outer_rate": -1.0}, {"authority": 0.0}, {"forgetting": 1.0}, {"seed": -1}])
+@pytest.mark.parametrize(
+    "wrong", [{"hidden": 0}, {"outer_rate": -1.0}, {"authority": 0.0}, {"forgetting": 1.0}, {"inner_rate": 2.0}, {"seed": -1}]
+)
 def test_settings_out_of_range_are_refused(wrong):
     with pytest.raises(ValueError, match=f"adaptation.{next(iter(wrong))} is "):
         AdaptationSettings(**wrong)

@@ -47,7 +47,7 @@ def family():
 
 @cache
 def adaptive():
-    return baselines.adaptive_neural(small.plant(), settings=baselines.AdaptationSettings(hidden=3, forces=1, lags=1))
+    return baselines.adaptive_neural(small.plant(), settings=baselines.AdaptationSettings(hidden=1, forces=2))
 
 
 def law(name, kinds=None, /, **valid):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam, StripSection, TubeSection
+from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Lamina, Layup, RotatingBeam, StripSection, TubeSection
 from beamenv.structure.section.central_solution import Factorised, central_solution
 from beamenv.structure.section.element_sums import element_sums
 from beamenv.structure.section.expansion import ThermalSums, expansion_of
@@ -297,6 +297,11 @@ def test_a_buckled_blade_is_refused_in_a_sentence():
         blade(temperature=600.0, tip_springs=CLAMPED).at(0.0)
     with pytest.raises(ValueError, match=r"beam.temperature is 600.* buckles"):
         blade(temperature=600.0, tip_springs=CLAMPED, steady_state="linear").natural_frequencies()
+
+
+def test_a_temperature_beyond_a_materials_data_is_refused_in_a_sentence():
+    with pytest.raises(ValueError, match=r"beam.temperature is 500.0, but must be a number from 200 to 380 \(K\)"):
+        blade(layup=Layup.uniform(GRAPHITE_EPOXY, [30.0]), temperature=500.0)
 
 
 def test_a_material_of_unknown_expansion_is_refused_in_a_sentence():

@@ -23,6 +23,7 @@ from train.reproduce.studies import (
     chapter7_elements,
     chapter7_equations,
     chapter7_graded,
+    chapter7_heat,
     chapter7_sizing,
 )
 
@@ -52,6 +53,7 @@ FUTURE_WORK: Chapter = (
     "7.2, done",
     (
         *chapter7_graded.STUDIES,
+        *chapter7_heat.STUDIES,
         *chapter7_elements.STUDIES,
         *chapter7_sizing.STUDIES,
         *chapter7_equations.STUDIES,
