@@ -97,7 +97,7 @@ def slopes_both_ways(problem: SizingProblem, design: Designs) -> tuple[Array, Ar
         shift[0, k] = steps * STEP
         return problem.cost_and_slopes(Designs.of_rows(design.rows + shift))[0]
 
-    numeric = [(at(k, 1.0) - at(k, -1.0)) / (2.0 * STEP) for k in there]
+    numeric = [(at(k, 1.0) - at(k, -1.0)) / (2.0 * STEP) for k in there.tolist()]
     return exact[there], np.array(numeric)
 
 
