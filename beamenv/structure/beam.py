@@ -355,7 +355,8 @@ class RotatingBeam:
         if self.model == "thesis":
             return np.zeros(self.surface_strain(z).shape[:2])
         face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
-        return np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
+        strain = np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
+        return strain if self.exact.heat is None else strain + self.exact.heat.face_strain(z, self.exact.sections)
 
     def line_load(self) -> Array:
         """Generalised force (N, 2) per N/m of uniform line load in lag and in flap."""
