@@ -21,6 +21,7 @@ from train.reproduce.studies import (
     chapter6_layouts,
     chapter6_tables,
     chapter7_elements,
+    chapter7_adaptive,
     chapter7_equations,
     chapter7_graded,
     chapter7_heat,
@@ -52,6 +53,7 @@ FUTURE_WORK: Chapter = (
     "7.2, done",
     (
         *chapter7_graded.STUDIES,
+        *chapter7_adaptive.STUDIES,
         *chapter7_heat.STUDIES,
         *chapter7_elements.STUDIES,
         *chapter7_equations.STUDIES,
