@@ -29,6 +29,7 @@ from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches import PatchLayout
+from beamenv.patches.layout import SIDES
 from beamenv.plant.limits import VOLTAGES
 from beamenv.sensors.kinds import SENSORS, Accelerometer, PatchCurrent, Sensor
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
@@ -38,6 +39,7 @@ from beamenv.structure.held_and_heated import (
     DIFFERENCE,
     KELVIN,
     SPRINGS,
+    check_data,
     check_held_and_heated,
     temperatures_of,
 )
@@ -170,11 +172,18 @@ class BeamConfig:
                 if getattr(lamina, name) < SOFTEST:
                     raise Refused(f"{path}.{name}", getattr(lamina, name), f"at least {SOFTEST:g} (Pa)")
         check_held_and_heated("blade", self.temperatures, self.tip_springs, "blade.beam")
+        if self.temperatures is not None:
+            check_data(self.temperatures, [self.wall_material], "blade.beam")
 
     @property
     def temperatures(self) -> Steps | None:
         """Shares of the span and the temperature (K) there; None where there is none."""
         return temperatures_of(self.temperature, self.temperature_table, self.temperature_difference, self.reference_temperature)
+
+    @property
+    def wall_material(self) -> Lamina | FunctionallyGraded:
+        """That of the walls, itself."""
+        return MATERIALS[self.material] if isinstance(self.material, str) else self.material
 
     @property
     def root_section(self) -> Section:
@@ -214,7 +223,7 @@ class BeamConfig:
 
     def layup(self) -> Layup:
         """The plies of every wall."""
-        material = MATERIALS[self.material] if isinstance(self.material, str) else self.material
+        material = self.wall_material
         walls = dict(self.ply_angles_deg)
         if set(walls) == {ON_EVERY_WALL}:
             return Layup.uniform(material, walls[ON_EVERY_WALL])
@@ -270,6 +279,8 @@ class BladeConfig:
     def __post_init__(self) -> None:
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
         check_held_and_heated(self.model, self.beam.temperatures, self.beam.tip_springs, "blade.beam")
+        sheets = (group.patch for side in SIDES for group in self.patches.groups(side))
+        check_data(self.beam.temperatures, sheets, "blade.beam")
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

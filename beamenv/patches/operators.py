@@ -51,6 +51,27 @@ def work_on_section(beam: RotatingBeam, patch: PatchMaterial, inlay: Inlay) -> t
     return sections, sections.solid.layer_force(inlay.strip, low, high, (hoop, span, shear))
 
 
+def charge_per_kelvin(beam: RotatingBeam, group: PatchGroup) -> Array:
+    """(channels,), C/K: what sensor patches give that warm with a blade which nothing holds, counted as ``sensing`` counts.
+
+    p A of a sheet free to expand, and of what the blade strains it otherwise the piezoelectric charge.
+    """
+    inlays = group.inlays("sensors", beam.length)
+    each = np.array([_charge_of_one(beam, group.patch, inlay) for inlay in inlays])
+    return _by_channel(each[None], group)[0]
+
+
+def _charge_of_one(beam: RotatingBeam, patch: PatchMaterial, inlay: Inlay) -> float:
+    sections, warm = beam.exact.cut_for(inlay.strip), as_hot_as(beam, patch, inlay)
+    low, high = inlay.depths(beam.section.thickness_of(inlay.wall))
+    hoop, span, shear = (warm.stress_in_wall(inlay.ply.angle_deg) / warm.electrode_spacing).tolist()
+    under = stations_under(beam, inlay.start, inlay.start + inlay.length)
+    work = sections.solid.layer_work_by_heat(inlay.strip, low, high, (hoop, span, shear))[:, 0]
+    strained = float(under.weight @ sections.at(under.z, work)) * warm.charge_per_reaction
+    area = inlay.length * inlay.width
+    return patch.pyroelectric * area + strained - area * float(warm.piezoelectric_stress() @ np.array(warm.lamina.expansion))
+
+
 def as_hot_as(beam: RotatingBeam, patch: PatchMaterial, inlay: Inlay) -> PatchMaterial:
     """A sheet at the temperature that a blade has in the middle of an inlay."""
     if beam.temperatures is None:

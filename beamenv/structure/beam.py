@@ -26,6 +26,7 @@ from beamenv.structure.held_and_heated import (
     DIFFERENCE,
     KELVIN,
     SPRINGS,
+    check_data,
     check_held_and_heated,
     temperatures_of,
 )
@@ -134,6 +135,8 @@ class RotatingBeam:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
         check_held_and_heated(self.model, self.temperatures, self.tip_springs)
+        plies = (ply for wall in self.section.wall_names for ply in self.layup.plies(wall))
+        check_data(self.temperatures, (ply.material for ply in (*plies, *(inlay.ply for inlay in self.inlays))), "beam")
         self.room.check(self.inlays)
 
     @property
@@ -352,7 +355,8 @@ class RotatingBeam:
         if self.model == "thesis":
             return np.zeros(self.surface_strain(z).shape[:2])
         face = self.exact.sections.at(z, self.exact.sections.solid.face_strain)
-        return np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
+        strain = np.asarray((face @ self.exact.steady_strains(z, self.at(speed))[..., None])[..., 0])
+        return strain if self.exact.heat is None else strain + self.exact.heat.face_strain(z, self.exact.sections)
 
     def line_load(self) -> Array:
         """Generalised force (N, 2) per N/m of uniform line load in lag and in flap."""

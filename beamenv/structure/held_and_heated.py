@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Protocol
+
 from beamenv.configuration import Number, Numbers, Refused
 from beamenv.structure.planform import Steps, check_table
 
@@ -18,6 +21,26 @@ def temperatures_of(temperature: float | None, table: Steps | None, difference: 
         return table
     hot = reference if temperature is None and difference else temperature
     return None if hot is None else ((0.0, hot), (1.0, hot))
+
+
+class Material(Protocol):
+    """Whatever has constants at a temperature."""
+
+    def at(self, temperature_K: float) -> object:
+        """The same at a temperature; ``Refused`` beyond its data."""
+        ...
+
+
+def check_data(temperatures: Steps | None, materials: Iterable[Material], path: str) -> None:
+    """``ValueError`` for a temperature beyond the data of a material."""
+    if temperatures is None:
+        return
+    try:
+        for material in dict.fromkeys(materials):
+            for _, temperature in temperatures:
+                material.at(temperature)
+    except Refused as error:
+        raise Refused(f"{path}.temperature", error.value, error.allowed) from None
 
 
 def check_held_and_heated(model: str, temperatures: Steps | None, springs: tuple[float, ...] | None, path: str = "beam") -> None:

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 FINEST = 0.5
 """Of the reach of the clamp: the element beside it. Further out elements grow with the distance from it."""
 
-SHORTEST = 1.0 / 32.0
+SHORTEST = 1e-3
 """Of the length of elements elsewhere, at least: what a clamp does within less of a slender blade counts for nothing."""
 
 GROWTH = 1.0

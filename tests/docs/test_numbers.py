@@ -103,3 +103,16 @@ def test_patches_at_the_clamp_have_one_figure_on_all_pages():
         "beamenv/blade/clamp.py": "by up to 7 %",
     }.items():
         assert words in (ROOT / page).read_text(encoding="utf-8"), page
+
+
+def test_counts_of_verdicts_told_of_the_thesis_are_those_of_its_page():
+    page, told = ((ROOT / "docs" / name).read_text(encoding="utf-8") for name in ("thesis.md", "beyond-the-thesis.md"))
+    nature, equations = (
+        [int(cell) for cell in re.search(rf"^\| their statements, {by} \|(.*)\|$", page, re.MULTILINE)[1].split("|")]
+        for by in ("in nature", "by the thesis' equations")
+    )
+    told = " ".join(told.split())
+    assert f"Of {sum(nature)} statements {nature[0]} hold in nature and {equations[0]} by the thesis' equations" in told
+    assert f"by which {equations[3]} cannot be evaluated" in told
+    missed, right, trend = re.search(r"statements (\d+) are not so .*? accounts for (\d+): .*? (\d+) keep a trend", page).groups()
+    assert f"of the {missed} that nature does not bear out in full its model explains {right}, and {trend} in trend" in told

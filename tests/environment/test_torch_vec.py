@@ -59,6 +59,8 @@ def told(returned):
         ("mid-failure", "float32"),
         ({"plants": {"speed_ratio": [0.8, 1.2], "bank": 4}}, "float64"),
         ({"plants": {"speed_ratio": [0.8, 1.2], "bank": 4}}, "float32"),
+        ({"preset": "heat", "plants": {"bank": 4, "drift_onset": 0.0, "drift_duration": 0.02}}, "float64"),
+        ({"preset": "heat", "plants": {"bank": 4, "drift_onset": 0.0, "drift_duration": 0.02}}, "float32"),
     ],
     ids=str,
 )

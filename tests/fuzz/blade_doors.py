@@ -188,6 +188,7 @@ DOORS = [
     constructor(BeamConfig, {}, material=either(TEXT, instance(Lamina, FunctionallyGraded))),
     constructor(PatchLayout, {}, material=either(TEXT, instance(PatchMaterial))),
     constructor(PatchMaterial, {each.name: getattr(MFC, each.name) for each in dataclasses.fields(MFC)}),
+    Door("PatchMaterial.at", MFC.at, {"temperature_K": NUMBER}, lambda: {"temperature_K": 350.0}, told=("temperature",)),
     constructor(ElectronicsConfig, {}),
     constructor(BladeConfig, {}),
     *(constructor(cls, {}) for cls in (PlantVariation, Drive, Acquisition, Failures, Rotor)),

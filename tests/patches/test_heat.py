@@ -8,7 +8,9 @@ import pytest
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches import MFC, PATCH_MATERIALS, PatchLayout, actuation, local_response
+from beamenv.patches.group import PatchGroup
 from beamenv.patches.material import PZT
+from beamenv.patches.operators import charge_per_kelvin
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam, StripSection
 
 ALUMINIUM = Layup.uniform(Lamina.isotropic(70e9, 0.33, 2700.0, alpha=23e-6), [0.0])
@@ -77,11 +79,27 @@ def test_a_sheet_that_expands_less_bends_a_strip_as_two_layers():
     assert abs(turned) == pytest.approx(curvature * length, rel=0.02)
 
 
+def test_a_sheet_that_expands_as_the_blade_does_gives_the_charge_of_a_free_one():
+    """p A, whatever way it lies; and on a blade that it does not stiffen, with σ = Q (α_blade − α_sheet), d·σ A more."""
+    blade = beam(temperature=MADE_AT)
+    for sheet in (MFC, PZT):
+        alike = replace(sheet, lamina=replace(sheet.lamina, alpha1=23e-6, alpha2=23e-6))
+        for angle in (90.0, 20.0):
+            group = PatchGroup(positions=(0.3, 0.9), wall="bottom", passive=False, material=alike, angle_deg=angle)
+            area = group.length * group.width
+            assert charge_per_kelvin(blade, group) == pytest.approx([alike.pyroelectric * area] * 2, rel=1e-9)
+        group = PatchGroup(positions=(0.3,), wall="bottom", passive=False, material=sheet)
+        along, across = sheet.lamina.expansion
+        stress = sheet.lamina.reduced_stiffness() @ np.array([23e-6 - along, 23e-6 - across, 0.0])
+        more = float(stress[:2] @ np.array([sheet.d11, sheet.d12]))
+        assert charge_per_kelvin(blade, group) == pytest.approx([(sheet.pyroelectric + more) * area], rel=1e-9)
+
+
 @pytest.mark.parametrize(("name", "warmest"), [("MFC", 403.15), ("PZT", 448.15)])
 def test_a_blade_hotter_than_its_patches_may_be_is_refused_in_a_sentence(name, warmest):
     layout = PatchLayout(material=name)
-    with pytest.raises(ValueError, match=rf"temperature is 460.0, but must be a number from 173.15 to {warmest} \(K\)"):
-        _ = Blade(BladeConfig(beam=BeamConfig(temperature=460.0, material="aluminium"), patches=layout)).plant
+    with pytest.raises(ValueError, match=rf"blade.beam.temperature is 460.0, but must be a number from 173.15 to {warmest} \(K\)"):
+        BladeConfig(beam=BeamConfig(temperature=460.0, material="aluminium"), patches=layout)
 
 
 def test_a_sheet_without_data_is_the_same_at_any_temperature():

@@ -12,6 +12,7 @@ from baselines.placement.model.contributions import contributions
 from beamenv.blade import BeamConfig, BladeConfig
 from beamenv.blade.build import Blade
 from beamenv.blade.files import from_dict, load_config, to_dict
+from beamenv.plant.files import save_plant
 
 ELEMENTS = {"discretisation": "finite-elements"}
 MODES = 11
@@ -121,3 +122,14 @@ def test_heat_and_springs_act_on_elements_as_on_polynomials(held):
     metal = replace(BeamConfig(material="aluminium").build(), **held)
     one, other = (replace(metal, **way).natural_frequencies(100.0, 5) for way in ({**ELEMENTS, "element_order": 5}, {"terms": 24}))
     assert np.abs(one / other - 1.0).max() < 2e-6
+
+
+def test_what_moves_may_be_of_elements_and_what_is_known_of_polynomials(tmp_path):
+    """By a plant file, as the solid blade is: the law for polynomials is within 1 % of the one that is told the truth."""
+    elements = BladeConfig(beam=BeamConfig(**ELEMENTS), modes=21)
+    save_plant(beamenv.modal_plant_of(elements), tmp_path / "elements.npz")
+    task = gym.make(beamenv.ENV_ID, scenario={"plants": {"truth": str(tmp_path / "elements.npz")}}).unwrapped.task
+    known, told = reference_lqg(task.design.full_plant), reference_lqg(task.plant)
+    costs = [stationary_cost(task.plant, law) for law in (known, told)]
+    assert costs[1] < 0.35 * stationary_cost(task.plant, no_control(task.plant))
+    assert costs[0] / costs[1] == pytest.approx(1.0, abs=0.01)

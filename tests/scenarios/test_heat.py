@@ -5,7 +5,8 @@ import pytest
 from scipy.stats import kstest
 
 from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
-from beamenv.patches import MFC
+from beamenv.blade.config import BeamConfig, BladeConfig
+from beamenv.patches.operators import charge_per_kelvin
 from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.simulation.plants.banks import varied
 from beamenv.simulation.plants.walks import Warming, walk_of
@@ -14,7 +15,6 @@ from beamenv.task import resolve_task
 INTERVAL = 0.5e-3
 QUIET = {**dict.fromkeys(("step", "pulse", "deflection", "harmonic"), 0.0), "white_load": False, "sensor_noise": False}
 RISING = {"temperature": 300.0, "temperature_change": 1.0, "drift_onset": 0.01, "drift_duration": 0.02, "bank": 3}
-AREA = 0.085 * 0.057
 
 
 def test_temperatures_are_drawn_and_change_evenly_on_the_way():
@@ -56,17 +56,22 @@ def test_the_plants_are_the_blade_at_the_stations_and_the_design_knows_of_none()
 
 
 def test_a_current_of_pyroelectric_charge_flows_while_the_blade_warms():
-    """p A dT/dt in the middle of the drift, and none before and after."""
+    """In the middle of the drift, and none before and after."""
     env = RotatingBeamEnv(scenario=QUIET | {"plants": RISING | {"pyroelectric": True}}, duration=0.04, dtype="float64")
     still = RotatingBeamEnv(scenario=QUIET | {"plants": RISING}, duration=0.04, dtype="float64")
     readings = [[each.reset(seed=0)[0]] for each in (env, still)]
     for shown, each in zip(readings, (env, still), strict=True):
         shown += [each.step(np.zeros(4))[0] for _ in range(79)]
     current = (np.array(readings[0]) - np.array(readings[1])) * env.task.design_blade.plant.sensor_full_scale
-    expected = MFC.pyroelectric * AREA * 1.0 / 0.02
-    np.testing.assert_allclose(current[25:55], expected, rtol=1e-9)
+    np.testing.assert_allclose(current[25:55], np.tile(charges() * 1.0 / 0.02, (30, 1)), rtol=1e-9)
     np.testing.assert_allclose(current[:20], 0.0, atol=1e-12)
     np.testing.assert_allclose(current[62:], 0.0, atol=1e-12)
+
+
+def charges():
+    """C/K of the default blade's sensors."""
+    config = BladeConfig(beam=BeamConfig(temperature=300.0))
+    return charge_per_kelvin(config.beam.build(config.patches), config.patches.only("sensors"))
 
 
 def test_a_charge_amplifier_shows_the_charge_gathered():
@@ -76,7 +81,7 @@ def test_a_charge_amplifier_shows_the_charge_gathered():
     for each in (env, still):
         each.reset(seed=0)
     last = [[each.step(np.zeros(4))[0] for _ in range(79)][-1] for each in (env, still)]
-    np.testing.assert_allclose((last[0] - last[1])[:4] * 1e-4, MFC.pyroelectric * AREA * 1.0, rtol=1e-9)
+    np.testing.assert_allclose((last[0] - last[1])[:4] * 1e-4, charges() * 1.0, rtol=1e-9)
     assert last[0][4] == last[1][4]
 
 
@@ -113,7 +118,7 @@ def test_pyroelectricity_that_no_sensor_would_show_is_refused_in_a_sentence():
 
 
 def test_a_blade_too_hot_for_its_patches_is_refused_in_a_sentence():
-    with pytest.raises(ValueError, match=r"temperature is 450.0, but must be a number from 173.15 to 403.15 \(K\)"):
+    with pytest.raises(ValueError, match=r"blade.beam.temperature is 450.0, but must be a number from 173.15 to 403.15 \(K\)"):
         _ = resolve_task(
             blade={"beam": {"material": "aluminium"}}, scenario={"plants": {"temperature": [300.0, 450.0], "bank": 2}}
         ).bank

@@ -198,6 +198,22 @@ def test_stepped_beam_has_the_frequencies_of_its_transcendental_equation():
     assert deviation(replace(beam, terms=30).natural_frequencies(0.0, 4, ("flap",)), exact) == pytest.approx(2.0e-3, rel=0.1)
 
 
+@pytest.mark.parametrize(
+    ("table", "sixteen"),
+    [
+        ({"chord_table": ((0.0, 1.0), (0.5, 1.0), (0.55, 0.5), (1.0, 0.5))}, 2.2e-2),
+        ({"twist_table": ((0.0, 0.0), (0.4, 30.0), (1.0, 20.0))}, 3.1e-3),
+    ],
+    ids=["chord", "twist"],
+)
+def test_elements_follow_corners_of_tables_that_polynomials_cannot(table, sixteen):
+    """Eight frequencies at rest, against twice as many elements: within 3e-5."""
+    beam = BeamConfig(**table)
+    fine = replace(beam, **ELEMENTS, elements=24).build().natural_frequencies(0.0, 8)
+    assert deviation(replace(beam, **ELEMENTS).build().natural_frequencies(0.0, 8), fine) < 4e-5
+    assert deviation(beam.build().natural_frequencies(0.0, 8), fine) == pytest.approx(sixteen, rel=0.1)
+
+
 def test_mesh_does_not_matter():
     """Of the default blade with its patches, at 200 rad/s: six frequencies by an uneven mesh and an even one within 2e-6."""
     beam = Blade(BladeConfig()).beam

@@ -143,6 +143,32 @@ def test_more_terms_never_raise_a_frequency_without_gyroscopic_coupling(beam, sh
 
 
 @fewer
+@given(
+    beam=blades(terms=st.none()),
+    inside=st.lists(st.floats(0.05, 0.95), min_size=1, max_size=3, unique_by=lambda share: round(share, 2)),
+    order=st.integers(2, 3),
+)
+def test_finer_mesh_never_raises_a_frequency_at_rest(beam, inside, order):
+    """Rayleigh and Ritz: with every element cut in half the spaces are nested, whatever the mesh."""
+    shares = np.array([0.0, *sorted(inside), 1.0])
+    halved = np.sort([*shares, *(0.5 * (shares[1:] + shares[:-1]))])
+    ways = {"discretisation": "finite-elements", "element_order": order}
+    coarse, fine = (replace(beam, mesh=tuple(mesh.tolist()), **ways) for mesh in (shares, halved))
+    lower, upper = (each.natural_frequencies(0.0, coarse.space.size) for each in (fine, coarse))
+    assert np.all(lower <= upper * (1.0 + 1e-7) + 1e-9 * upper[-1])
+
+
+@fewer
+@given(beam=blades(terms=st.none()), share=st.floats(0.0, MODERATE))
+def test_elements_and_polynomials_agree_on_any_blade(beam, share):
+    """Four frequencies; in the thesis' model sheared blades have a layer at the clamp that polynomials miss by 2/(N + 1)²."""
+    polynomials, elements = replace(beam, terms=20), replace(beam, discretisation="finite-elements", elements=6)
+    one, other = (each.natural_frequencies(share * runaway(beam), 4) for each in (elements, polynomials))
+    layer = beam.model == "thesis" and beam.shear != "rigid"
+    assert one == pytest.approx(other, rel=2.0 / 21.0**2 if layer else 1e-3)
+
+
+@fewer
 @given(beam=blades(pretwist=st.just(0.0)), angle=st.floats(-180.0, 180.0))
 def test_presetting_changes_no_frequency_at_rest(beam, angle):
     turned = replace(beam, presetting_deg=angle)

@@ -167,7 +167,7 @@ def reproduce(
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
 ) -> None:
-    """Regenerate the thesis' tables and figures and judge its statements. About two minutes on two cores.
+    """Regenerate the thesis' tables and figures and judge its statements twice. About a minute on two cores.
 
     An interrupted run resumes from what its folder holds.
     """

@@ -24,9 +24,9 @@ INTRODUCTION = (
     "its figures. Where the thesis leaves a configuration open or misprints it, the one used is named."
 )
 TWO_COLUMNS = (
-    "Every statement is judged twice. *In nature* asks whether it is so: of the thesis' model, derived again from its energies, "
+    "Every statement is judged twice. “In nature” asks whether it is so: of the thesis' model, derived again from its energies, "
     "with the shear flow that a closed cell asks for, and checked against what others measured and computed (what that model "
-    "still leaves out of nature is listed in the errata). *By the thesis' equations* asks whether the thesis computed it rightly "
+    "still leaves out of nature is listed in the errata). “By the thesis' equations” asks whether the thesis computed it rightly "
     "from what it prints: the same computation with the equations of the table below in place of ours, all of those that bear on "
     "a figure together. Where a statement then holds better than in nature, the equation is named that does it alone, the first in "
     "the table's order, or those that are needed together. Misprints that the thesis' own tables or equations refute are tried "

@@ -1,19 +1,22 @@
 """What sensor patches show of their own warming: charge that the change of their polarisation sets free.
 
 A sheet of area A, free to expand, gives the charge p A ΔT. In the unit that charges are counted in here, that of Eq. 4.37 of the
-thesis, ∫ D dA over its face, it is that whatever the way of its electrodes. What a bonded sheet, which the blade beneath strains
-otherwise than it would expand, adds by its piezoelectric effect is left out.
+thesis, ∫ D dA over its face, it is that whatever the way of its electrodes. The blade strains a sheet in its walls otherwise than
+it would expand: the piezoelectric charge of the difference comes on top (secondary pyroelectricity).
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
 from beamenv.configuration import Refused
-from beamenv.patches.group import PatchGroup
+from beamenv.patches.operators import charge_per_kelvin
 from beamenv.sensors.kinds import PatchCharge, PatchCurrent, Sensor
+from beamenv.structure.walls.curves import ROOM
 
 Array = NDArray[np.float64]
 
@@ -22,7 +25,8 @@ def pyroelectric_readings(blade: Blade) -> Array:
     """(2, p): readings in full scales per K and control interval, and per K; ``ValueError`` where no patch is read."""
     config, scale = blade.config, blade.truth.sensor_full_scale
     groups = config.patches.groups("sensors")
-    charges = [_charges(group) for group in groups]
+    warm = blade.beam if config.beam.temperatures is not None else replace(blade.beam, temperature=ROOM)
+    charges = [charge_per_kelvin(warm, group) for group in groups]
     per_rate = 1.0 / config.control_interval
     parts = [(each, per_rate, 0.0) for each in charges]
     if config.sensors:
@@ -40,9 +44,3 @@ def _of_sensor(sensor: Sensor, charges: list[Array], per_rate: float) -> tuple[A
     if isinstance(sensor, PatchCharge):
         return charges[sensor.group], 0.0, 1.0
     return np.zeros(1), 0.0, 0.0
-
-
-def _charges(group: PatchGroup) -> Array:
-    """(channels,), C/K."""
-    each = np.full(group.count, group.patch.pyroelectric * group.length * group.width)
-    return each.sum(keepdims=True) if group.ganged else each

@@ -45,6 +45,10 @@ class Heat:
         mean = sections.planform.temperature(z) - self.reference
         return np.stack([mean - slope * 0.5 * (high + low), slope], axis=-1)
 
+    def face_strain(self, z: Array, sections: SectionsAlong) -> Array:
+        """(S, F): spanwise strain at the faces by the warping that heat brings about."""
+        return np.asarray((sections.at(z, sections.solid.face_strain_by_heat) @ self.rises(z, sections)[..., None])[..., 0])
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FreeStrains(Sealed):

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from beamenv.configuration.read_only import Sealed
 from beamenv.structure.section.central_solution import Factorised, equilibrium, mean_motion, without
 from beamenv.structure.section.element_sums import distinct_elements
-from beamenv.structure.section.elements import layers, strain_of_tables, turn_of_strains
+from beamenv.structure.section.elements import RIGID, layers, strain_of_tables, turn_of_strains
 from beamenv.structure.section.integrals import integrals
 from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.section.ply_parts import thermal_stress
@@ -31,6 +31,9 @@ Array = NDArray[np.float64]
 
 HEATS = 2
 """1 K everywhere, and 1 K per m along y."""
+
+WARPING = slice(RIGID, RIGID + HEATS)
+"""Where shapes are the warping of heat: that, among strains of a section."""
 
 BY_HEAT = np.array([0, 2])
 """Of 1, x and y, those that the temperature follows."""
@@ -46,6 +49,8 @@ class Expansion(Sealed):
     """(V, AMPLITUDES, HEATS): work of the balanced stresses, per metre, on the shapes' amplitudes that change by 1 a metre."""
     moments: Array
     """∫σ_zz (1, x, y, x², xy, y²) dA of them (V, 6, HEATS); the first three are zero."""
+    warping: Array
+    """w (V, K, size, HEATS), of each element's nodes."""
 
     @classmethod
     def joined(cls, parts: Sequence[Expansion], order: NDArray[np.intp]) -> Expansion:
@@ -54,7 +59,7 @@ class Expansion(Sealed):
 
     def turned(self, turn: Array) -> Expansion:
         """The same of shapes mixed by ``turn`` (AMPLITUDES, AMPLITUDES)."""
-        return Expansion(self.strain, turn.T @ self.onward, self.moments)
+        return Expansion(self.strain, turn.T @ self.onward, self.moments, self.warping)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,4 +118,4 @@ def expansion_of(system: Factorised, heat: ThermalSums, shapes: Array, pretwist:
     size = sums.size
     by_warping, by_strain = sums.moments[..., :size], sums.moments[..., 2 * size :]
     moments = (by_warping @ here + by_strain @ strain[:, None] - heat.moments).sum(axis=1)
-    return Expansion(strain, (shapes.swapaxes(-1, -2) @ onward).sum(axis=1), moments)
+    return Expansion(strain, (shapes.swapaxes(-1, -2) @ onward).sum(axis=1), moments, here)

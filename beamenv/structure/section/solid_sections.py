@@ -20,7 +20,7 @@ from beamenv.structure.section.central_solution import Factorised, central_solut
 from beamenv.structure.section.distortion import distortion_shapes
 from beamenv.structure.section.element_sums import ElementSums, element_sums
 from beamenv.structure.section.elements import ACROSS, RIGID, Places, places, strain_of_tables, turn_of_strains
-from beamenv.structure.section.expansion import Expansion, ThermalSums, expansion_of
+from beamenv.structure.section.expansion import WARPING, Expansion, ThermalSums, expansion_of
 from beamenv.structure.section.integrals import MONOMIALS
 from beamenv.structure.section.mesh import Mesh
 from beamenv.structure.stations import gauss_rule
@@ -182,13 +182,13 @@ class SolidSections(Sealed):
         sections, count = self.mesh.points.shape[:2]
         found = []
         for elements, last, side in faces_of(self.mesh):
-            strain = np.empty((sections, len(elements), STRAINS))
+            strain = np.empty((sections, len(elements), self._strains))
             for thickness in np.unique(self.mesh.thickness[elements]):
                 own = np.flatnonzero(self.mesh.thickness[elements] == thickness)
                 members = (np.arange(sections)[:, None] * count + elements[own]).ravel()
                 along, depth, one = np.array([1.0 if last else -1.0]), np.array([side * 0.5 * thickness]), np.ones(1)
                 at = places(self.mesh, members, along, depth, one, one)
-                strain[:, own] = self._strain(at, members)[..., 0, 5, :].reshape(sections, len(own), STRAINS)
+                strain[:, own] = self._strain(at, members)[..., 0, 5, :].reshape(sections, len(own), -1)
             found.append(strain)
         return np.concatenate(found, axis=1)
 
@@ -211,10 +211,32 @@ class SolidSections(Sealed):
         turned = turn_of_strains(self.mesh.tangents.reshape(-1, 2)[members]).swapaxes(-1, -2)[..., [0, 5, 3]] @ stress
         strain = self._strain(here, members)
         work = np.einsum("eqkn,eq,ek->en", strain, here.weight, turned, optimize=True)
-        return np.asarray(work.reshape(len(self.shapes), -1, STRAINS).sum(axis=1))
+        return np.asarray(work.reshape(len(self.shapes), -1, self._strains).sum(axis=1))
+
+    @property
+    def _strains(self) -> int:
+        """STRAINS, or fewer where other shapes are looked at."""
+        return RIGID + 2 * self.shapes.shape[-1]
+
+    @sealed_property
+    def face_strain_by_heat(self) -> Array:
+        """(V, F, HEATS): spanwise strain there by the warping that heat brings about, beside that of the beam strains."""
+        return np.array(self._as_heated.face_strain[..., WARPING])
+
+    def layer_work_by_heat(self, strip: Strip, low: float, high: float, stress: tuple[float, float, float]) -> Array:
+        """(V, HEATS): as ``layer_force``, of the free strains and the warping of heat."""
+        assert self.expansion is not None
+        moved = self._as_heated._layer_force(strip, low, high, np.array(stress))
+        return moved[:, WARPING] + (moved[:, None, :RIGID] @ self.expansion.strain)[:, 0]
+
+    @sealed_property
+    def _as_heated(self) -> SolidSections:
+        """With the warping of heat as shapes."""
+        assert self.expansion is not None
+        return replace(self, shapes=self.expansion.warping, expansion=None, _forces={})
 
     def _strain(self, here: Places, members: NDArray[np.intp]) -> Array:
-        """(E, Q, 6, STRAINS) at points of some elements, by their flat indices."""
+        """(E, Q, 6, STRAINS) at points of some elements, by their flat indices, of the shapes."""
         shapes = self.shapes.reshape(-1, *self.shapes.shape[2:])[members]
         e, q, nodes = here.value.shape
         tables = here.tables()
@@ -231,7 +253,7 @@ class SolidSections(Sealed):
         return np.concatenate([beam, strained, onward], axis=-1)
 
     def _strain_by_rate(self, here: Places, members: NDArray[np.intp], rates: Array) -> Array:
-        strain = np.empty((*here.x.shape, 6, STRAINS))
+        strain = np.empty((*here.x.shape, 6, self._strains))
         for rate in np.unique(rates):
             own = rates == rate
             parts = {each.name: getattr(here, each.name)[own] for each in fields(here)}

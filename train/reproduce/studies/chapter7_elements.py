@@ -103,13 +103,14 @@ def converging(model: Model) -> Outcome:
         curves = [Curve(counts[errors[p] > 0], errors[p][errors[p] > 0], f"order {p}") for p in ORDERS]
         panels.append(Panel(title, "elements", "error of eigenvalue 2", curves, True, x_linear_within=1.0))
     by = {
-        "polynomials": [worst(replace(BeamConfig(), terms=terms)) for terms in POLYNOMIALS],
-        **{f"order {p}": [worst(elements(BeamConfig(), count, p)) for count in MESHES] for p in ORDERS},
+        "polynomials": np.array([worst(replace(BeamConfig(), terms=terms)) for terms in POLYNOMIALS]),
+        **{f"order {p}": np.array([worst(elements(BeamConfig(), count, p)) for count in MESHES]) for p in ORDERS},
     }
-    curves = [Curve(np.array(found)[:, 0], np.array(found)[:, 1], label) for label, found in by.items()]
+    lines = {"polynomials": "dashed"}
+    curves = [Curve(each[:, 0], each[:, 1], label, lines.get(label, "solid")) for label, each in by.items()]
     label = "coefficients", "worst of 8 frequencies"
     panels.append(Panel("the thesis' blade at rest, bare", *label, curves, logarithmic=True))
-    falling = np.array([[found for _, found in by[f"order {p}"]] for p in ORDERS])
+    falling = np.stack([by[f"order {p}"][:, 1] for p in ORDERS])
     return Outcome({"rates": rates, "above": np.array(above), "blade": falling}, panels)
 
 

@@ -271,9 +271,9 @@ STUDIES = (
         "patches that feel their own warming",
         "the default blade at 27 °C, LQG of all modes; 3 K in 0.3 s, nothing else happens",
         (
-            Statement("reading", "A patch's current shows less than 15 % of its range", Below(15.0, "%")),
+            Statement("reading", "A patch's current shows less than 5 % of its range", Below(5.0, "%")),
             Statement(
-                "moved", "LQG, misled, moves the tip by less than a tenth of what a step of 30 N/m does", Below(0.1, "of it")
+                "moved", "LQG, misled, moves the tip by less than a twentieth of what a step of 30 N/m does", Below(0.05, "of it")
             ),
         ),
         pyroelectric,
