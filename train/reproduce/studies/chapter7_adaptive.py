@@ -189,7 +189,8 @@ STUDIES = (
     Study(
         "adaptive-feedback",
         "an LQG that a neural network augments",
-        f"the default blade, law designed for {DESIGNED:g} rad/s and run at {TURNING:g}: step of {LOAD[1]:g} N/m in flap, white load, noise",
+        f"the default blade, its law designed for {DESIGNED:g} rad/s and run at {TURNING:g}; a step of {LOAD[1]:g} N/m in flap, "
+        "white load, sensor noise",
         (
             Statement("off", "Switched off it is LQG to the last bit", Small(0.0, 0.0)),
             Statement("cost", "On, it lowers LQG's J on the blade that turns slower", Holds()),
