@@ -32,6 +32,7 @@ for _room in (
     "figures.screen_heat_map",
     "figures.section",
     "identification.files",
+    "placement.front_picture",
     "placement.picture",
 ):
     import_module(f"train.{_room}")  # what they import sets itself up, once

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from train.cli.bars import fleeting
 from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence, print_json, print_table, say
+from train.cli.place_sizes import Written, place_sizes, place_together
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 from train.shared.files import check_picture
 
@@ -34,23 +35,47 @@ def place(
         bool,
         typer.Option("--leave-unreached", help="Leave modes that no patch moves to their own damping."),
     ] = False,
-    picture: Annotated[Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span.")] = None,
+    together: Annotated[bool, typer.Option("--together", help="Place both sides at once, by the closed loop's cost.")] = False,
+    size: Annotated[
+        bool,
+        typer.Option("--size", help="Size patches too, and as many at most: the trade-off between the loop's cost and mass."),
+    ] = False,
+    mass: Annotated[float | None, typer.Option(help="With --size: kg of piezo sheet at most.")] = None,
+    channels: Annotated[int | None, typer.Option(help="With --size: voltages at most.")] = None,
+    power: Annotated[float | None, typer.Option(help="With --size: W at most, ½CV²f of all actuators.")] = None,
+    frequency: Annotated[float | None, typer.Option(help="With --size: f in Hz; the first mode's if left out.")] = None,
+    save: Annotated[
+        Path | None,
+        typer.Option(help="With --size: JSON file of the best blade within the mass, or no heavier than its own patches."),
+    ] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span; with --size of the trade-off.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Where the patches belong: least tr(P) of the regulator for actuators, least tr(S) of the filter for sensors.
 
     Both sides are placed, with as many patches as the blade has, unless the options name one.
     """
-    drawn = picture or (None if as_json else Path("results/placement.png"))
+    drawn = picture or (None if as_json or together else Path("results/sizes.png" if size else "results/placement.png"))
     with one_sentence():
         from beamenv.blade.files import load_config
         from beamenv.blade.layouts import SIDES, positions_of
         from beamenv.blade.presets import blade_config
 
+        budget = {"mass": mass, "channels": channels, "power": power, "frequency": frequency}
+        check_alone(together, size, picture, {**budget, "save": save})
         if drawn is not None:
             check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
         config = config if passive else replace(config, patches=config.patches.without_mass())
+        wanted = {"actuators": actuators, "sensors": sensors}
+        if size:
+            place_sizes(config, wanted, budget, seed, Written(save, drawn, as_json))
+            return
+        if together:
+            place_together(config, wanted, seed, leave_unreached, as_json)
+            return
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: count for side in SIDES if (count := len(positions_of(config, side)))}
         with bars(counts) as report:
@@ -64,6 +89,15 @@ def place(
 
             draw_placement(sides, drawn)
             Console(stderr=as_json).print(f"picture in {drawn}", soft_wrap=True, markup=False)
+
+
+def check_alone(together: bool, size: bool, picture: Path | None, of_sizes: dict[str, Any]) -> None:
+    """``ValueError`` for options that do not go together."""
+    if together and (size or picture):
+        raise ValueError(f"--together places patches as they are and draws nothing: leave --{'size' if size else 'picture'} out.")
+    given = [name for name, value in of_sizes.items() if value is not None]
+    if given and not size:
+        raise ValueError(f"--{given[0]} limits patches that are sized: add --size.")
 
 
 @contextmanager

@@ -25,6 +25,7 @@ from train.reproduce.studies import (
     chapter7_equations,
     chapter7_graded,
     chapter7_heat,
+    chapter7_sizing,
 )
 
 Chapter = tuple[str, tuple[Study, ...]]
@@ -56,6 +57,7 @@ FUTURE_WORK: Chapter = (
         *chapter7_adaptive.STUDIES,
         *chapter7_heat.STUDIES,
         *chapter7_elements.STUDIES,
+        *chapter7_sizing.STUDIES,
         *chapter7_equations.STUDIES,
     ),
 )

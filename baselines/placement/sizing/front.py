@@ -14,6 +14,9 @@ from baselines.placement.sizing.problem import SizingProblem
 
 Array = NDArray[np.float64]
 
+APART = 0.01
+"""Shares of mass and of cost by which points of a front differ."""
+
 Progress = Callable[[float, float], None]
 """Called now and then with the share of the search that is done (0 … 1) and the least cost so far, J."""
 
@@ -100,9 +103,11 @@ class Archive:
             self.progress(min(done, 1.0), float(self.cost.min(initial=np.inf)))
 
     def front(self, seed: int, complete: bool) -> Front:
-        """What has been found."""
-        designs = self.designs
-        points = () if designs is None else tuple(point(self.problem, designs[[k]], c) for k, c in enumerate(self.cost.tolist()))
+        """What has been found, told apart by a per cent."""
+        if self.designs is None:
+            return Front((), seed, self.evaluations, complete)
+        kept = told_apart(self.problem.mass(self.designs), self.cost)
+        points = tuple(point(self.problem, self.designs[[k]], float(self.cost[k])) for k in kept)
         return Front(points, seed, self.evaluations, complete)
 
 
@@ -113,6 +118,18 @@ def unbeaten(mass: Array, cost: Array) -> NDArray[np.intp]:
     better = np.ones(len(order), dtype=bool)
     better[1:] = cost[order][1:] < least[:-1]
     return np.asarray(order[better])
+
+
+def told_apart(mass: Array, cost: Array) -> list[int]:
+    """Which designs of a front (N,), by mass, are a hundredth cheaper than the one before; of about one mass the cheapest."""
+    kept: list[int] = []
+    for k in range(len(mass)):
+        if kept and cost[k] > (1.0 - APART) * cost[kept[-1]]:
+            continue
+        if kept and mass[k] < (1.0 + APART) * mass[kept[-1]]:
+            kept.pop()
+        kept.append(k)
+    return kept
 
 
 def point(problem: SizingProblem, design: Designs, cost: float) -> FrontPoint:

@@ -23,7 +23,10 @@ SPREAD = (0.5, 2.0)
 """Shares of the blade's own sizes between which patches are cut unless said otherwise."""
 
 NODES = (3, 3)
-"""Widths and thicknesses at which sections are computed: the cost is then within 0.1 % of that of sections of their own."""
+"""Widths and thicknesses at which sections are computed: what is in between costs what sections of its own do within 10⁻⁴."""
+
+WIDEST = 4.0
+"""Times the blade's own width or thickness, up and down: as far as that holds."""
 
 MOST = Count(1, 8)
 
@@ -88,9 +91,12 @@ class Limits:
             widths.append(sizes.width or spread(group.width, room))
             thick = np.inf if group.bonded else 0.5 * bare.section.thickness_of(group.wall)
             thicknesses.append(sizes.thickness or spread(group.patch.thickness, thick))
-            largest = cut_to(group.patch, thicknesses[-1][1])
-            inlay = largest.inlay(group.wall, 0.0, length[1], widths[-1][1], group.offset, group.face, group.bonded)
-            bare.room.check_fit(inlay)
+            near("width", widths[-1], group.width)
+            near("thickness", thicknesses[-1], group.patch.thickness)
+            for at in (1, 0):
+                sheet = cut_to(group.patch, thicknesses[-1][at])
+                where = group.offset, group.face, group.bonded
+                bare.room.check_fit(sheet.inlay(group.wall, 0.0, length[at], widths[-1][at], *where))
         allowed = min(counts[0], channels or counts[0]), counts[1]
         return cls(allowed, end, length, (widths[0], widths[1]), (thicknesses[0], thicknesses[1]))
 
@@ -125,6 +131,13 @@ class Limits:
 def spread(own: float, room: float) -> Span:
     """Half to twice a size, as far as there is room."""
     return min(SPREAD[0] * own, room), max(min(SPREAD[1] * own, room), own if own <= room else room)
+
+
+def near(name: str, span: Span, own: float) -> None:
+    """``ValueError`` for sizes too far from the blade's own."""
+    low, high = own / WIDEST, own * WIDEST
+    if span[0] < low * (1.0 - 1e-9) or span[1] > high * (1.0 + 1e-9):
+        raise Refused(f"sizes.{name}", list(span), f"between {low:.4g} and {high:.4g} m, a quarter and four times the blade's own")
 
 
 def around(span: Sequence[float], own: float) -> Span:

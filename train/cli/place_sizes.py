@@ -1,0 +1,118 @@
+"""``beamenv place --size`` and ``--together``: patches sized with their places, and both sides placed at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from beamenv.configuration.files import checked_path
+from train.cli.bars import fleeting
+from train.cli.options import print_json, print_table, say
+from train.placement.sized import SizedFront, size_patches
+from train.shared.files import check_file, write_json
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """Where a front goes."""
+
+    save: Path | None
+    """The file of its chosen blade."""
+    drawn: Path | None
+    """Its picture."""
+    as_json: bool
+
+
+def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, Any], seed: int, to: Written) -> None:
+    """Search for the front, tell it, and write what is asked for; an interruption ends it with what was found."""
+    from baselines.placement import Budget, Sizes
+
+    if to.save is not None:
+        check_file(checked_path("save", to.save, (".json",)), "save")
+    with one_bar("sizes") as report:
+        sized = size_patches(
+            config, Sizes(actuators=counts["actuators"], sensors=counts["sensors"]), Budget(**budget), seed, report
+        )
+    if to.as_json:
+        print_json(sized.to_dict())
+    else:
+        show_front(sized)
+    if to.save is not None:
+        save_chosen(sized, to.save, to.as_json)
+    if to.drawn is not None:
+        from train.placement.front_picture import draw_front
+
+        draw_front(sized, to.drawn)
+        Console(stderr=to.as_json).print(f"picture in {to.drawn}", soft_wrap=True, markup=False)
+    if not sized.front.complete:
+        raise KeyboardInterrupt
+
+
+def place_together(config: Any, counts: dict[str, int | None], seed: int, leave_unreached: bool, as_json: bool) -> None:
+    """Place both sides by the closed loop's cost, and tell what that gains over one after the other."""
+    from baselines.placement import JointProblem, place_jointly
+
+    problem = JointProblem.of(config, **counts)
+    with one_bar("both sides") as report:
+        found = place_jointly(problem, seed, report, leave_unreached)
+    if as_json:
+        print_json({**asdict(found), "unit": "J", "gain": found.gain})
+        return
+    table = Table(title=f"both sides, {problem.config.speed:g} rad/s: root-side edges, m")
+    for column in ("placed", "actuators", "sensors", "cost of the loop, J"):
+        table.add_column(column, justify="left" if column == "placed" else "right")
+    for label, above, below, cost in (
+        ("one after the other", found.in_turn["actuators"], found.in_turn["sensors"], found.in_turn_cost),
+        ("together", found.actuators, found.sensors, found.cost),
+    ):
+        table.add_row(label, *(" ".join(f"{z:.4f}" for z in side) for side in (above, below)), f"{cost:.4g}")
+    print_table(table)
+    say(f"together they cost {100.0 * found.gain:.2f} % less")
+
+
+@contextmanager
+def one_bar(name: str) -> Iterator[Callable[[float, float], None]]:
+    """A bar of the share that is done, with the least cost so far."""
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[cost]}"), TimeElapsedColumn()
+    with fleeting(*columns) as progress:
+        task = progress.add_task(name, total=1.0, cost="")
+        yield lambda done, cost: progress.update(task, completed=done, cost=f"least cost {cost:.4g} J")
+
+
+def show_front(sized: SizedFront) -> None:
+    """A line for each point, and for the blade's own patches."""
+    table = Table(title="patches sized and placed: stationary cost of LQG over mass")
+    columns = ("g", "J", "on its plant", "W", "actuators", "mm", "sensors", "mm")
+    for column in ("", *columns):
+        table.add_column(column, justify="right" if column else "left")
+    for number, (each, cost) in enumerate(zip(sized.front.points, sized.on_plants, strict=True)):
+        power = "" if each.power is None else f"{each.power:.3g}"
+        sides = [text for side in (each.actuators, each.sensors) for text in (str(len(side.patches)), sheet(side))]
+        mark = "chosen" if number == sized.chosen else ""
+        table.add_row(mark, f"{1e3 * each.mass:.4g}", f"{each.cost:.4g}", f"{cost:.4g}", power, *sides)
+    print_table(table)
+    for layout in sized.layouts:
+        say(f"own size, {layout.name}: {1e3 * layout.mass:.4g} g, {layout.cost:.4g} J")
+    say(f"{sized.front.evaluations} designs; power is that of ½CV²f at {sized.problem.frequency:.4g} Hz")
+
+
+def sheet(side: Any) -> str:
+    """Lengths × width × thickness of a side's patches, mm."""
+    lengths = "/".join(f"{1e3 * each.length:.0f}" for each in side.patches)
+    return f"{lengths} × {1e3 * side.width:.0f} × {1e3 * side.thickness:.2g}"
+
+
+def save_chosen(sized: SizedFront, path: Path, as_json: bool) -> None:
+    """The chosen point's blade, as a file that ``gymnasium.make`` and ``--blade`` take."""
+    from baselines.placement import sized_blade
+    from beamenv.blade.files import to_dict
+
+    write_json(path, to_dict(sized_blade(sized.problem, sized.front.points[sized.chosen])))
+    Console(stderr=as_json).print(f"blade in {path}", soft_wrap=True, markup=False)
