@@ -277,7 +277,7 @@ def test_other_arguments_of_a_placed_batch_are_refused_in_one_sentence(envs, nam
         check_sentence(told)
 
 
-@pytest.mark.parametrize(("beam", "named"), [({"temperature": 320.0}, "temperature"), ({"tip_springs": [1e3] * 6}, "tip_springs")])
+@pytest.mark.parametrize(("beam", "named"), [({"temperature": 320.0}, "temperature"), ({"tip_springs": (1e3,) * 6}, "tip_springs")])
 def test_a_blade_that_is_heated_or_held_is_refused_in_a_sentence(beam, named):
     with pytest.raises(ValueError, match=f"blade.beam.{named} is .* but must be None where patches are placed"):
-        contributions(blade_config(None, {"beam": beam}))
+        contributions(replace(CONFIG, beam=replace(CONFIG.beam, **beam)))
