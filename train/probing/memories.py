@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import beamenv
-from baselines.evaluation.loop import instants
+from baselines.evaluation.loop import attribute, instants
 from beamenv.configuration import Refused
 from beamenv.knowledge import on_validation_bank
 from beamenv.scenarios.scenario import SCENARIOS
@@ -73,9 +73,11 @@ class _Watched:
         self.window: list[Array] = []
         self._last: list[Array] = []
 
-    def predict(self, observation: Any, state: Any = None, **given: Any) -> Any:
+    def predict(
+        self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = True
+    ) -> tuple[Any, Any]:
         """The policy's own."""
-        action, memory = self._policy.predict(observation, state, **given)
+        action, memory = self._policy.predict(observation, state, episode_start, deterministic)
         self._last = [np.hstack([observation, action]), *self._last][: -(-self._units // (observation.shape[1] + action.shape[1]))]
         self._instant += 1
         if self._instant % EVERY == 0:
@@ -93,9 +95,8 @@ def recorded(policy: Policy, question: Question, seeds: Sequence[int]) -> Record
     scenario = on_validation_bank(SCENARIOS[question.scenario])
     with closing(gym.make_vec(beamenv.ENV_ID, num_envs=len(seeds), scenario=scenario, dtype="float64")) as env:
         watched, truth = _Watched(policy, units), None
-        for instant in instants(watched, env, seeds):
+        for _ in instants(watched, env, seeds):
             truth = question.answer(env) if truth is None else truth
-            del instant
-        interval = env.unwrapped.plant.control_interval
+        interval = attribute(env, "plant")[0].control_interval
     time = interval * EVERY * np.arange(1, len(watched.hidden) + 1)
     return Recorded(time, np.stack(watched.hidden, axis=1), np.stack(watched.window, axis=1), np.asarray(truth))

@@ -115,7 +115,7 @@ _STYLES = {"on": "solid", "off": "dotted", "switched off at half time": "dashed"
 
 
 def _panels(runs: dict[str, Run], interval: float) -> list[Panel]:
-    time = interval * np.arange(1, INSTANTS + 1)
+    time: Array = np.asarray(interval * np.arange(1, INSTANTS + 1), dtype=np.float64)
 
     def panel(title: str, unit: str, shown: Callable[[Run], Array], names: tuple[str, ...] = tuple(_STYLES)) -> Panel:
         curves = [Curve(time, shown(runs[name]), line=_STYLES[name]) for name in names]
