@@ -12,9 +12,11 @@ from beamenv.patches.group import PatchGroup
 from beamenv.patches.material import PZT
 from beamenv.patches.operators import charge_per_kelvin
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam, StripSection
+from beamenv.task import resolve_task
 
 ALUMINIUM = Layup.uniform(Lamina.isotropic(70e9, 0.33, 2700.0, alpha=23e-6), [0.0])
 MADE_AT = 300.0
+UNKNOWN = replace(MFC, lamina=replace(MFC.lamina, alpha1=None, alpha2=None))
 LAYOUT = PatchLayout(actuators=(0.3, 0.9), sensors=(0.9,), passive=False)
 
 
@@ -106,6 +108,29 @@ def test_a_sheet_that_loses_its_permittivity_is_refused_by_the_temperature():
     layout = PatchLayout(material=replace(MFC, permittivity_per_K=-0.02))
     with pytest.raises(ValueError, match=r"blade.beam.temperature is 370.0, but must be one at which permittivity_per_K = -0.02"):
         BladeConfig(beam=BeamConfig(temperature=370.0), patches=layout)
+
+
+@pytest.mark.parametrize(
+    ("patches", "path"),
+    [
+        ({"material": UNKNOWN}, "blade.patches.material.lamina.alpha1"),
+        (
+            {"sensors": [{"positions": 1}, {"positions": [1.0], "material": UNKNOWN}]},
+            r"blade.patches.sensors\[1\].material.lamina.alpha1",
+        ),
+    ],
+)
+def test_a_sheet_of_unknown_expansion_is_refused_by_its_path(patches, path):
+    with pytest.raises(ValueError, match=f"{path} is None, but must be a number"):
+        resolve_task(blade={"beam": {"temperature": 310.0}, "patches": patches})
+
+
+def test_a_sheet_that_is_not_in_the_wall_needs_no_expansion_until_its_charge_is_asked_for():
+    blade = {"patches": {"material": UNKNOWN, "passive": False}}
+    plants = {"temperature": 310.0, "bank": 2}
+    assert len(resolve_task(blade=blade, scenario={"plants": plants}).bank) == 2
+    with pytest.raises(ValueError, match="blade.patches.material.lamina.alpha1 is None"):
+        _ = resolve_task(blade=blade, scenario={"plants": plants | {"pyroelectric": True}}).bank
 
 
 def test_a_sheet_without_data_is_the_same_at_any_temperature():

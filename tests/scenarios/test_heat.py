@@ -137,3 +137,9 @@ def test_a_material_of_unknown_expansion_is_refused_as_the_material():
     plants = {"temperature": 310.0, "bank": 2}
     with pytest.raises(ValueError, match="blade.beam.material.inner.alpha1 is None, but must be a number"):
         _ = resolve_task(blade={"beam": {"material": material}}, scenario={"plants": plants}).bank
+
+
+def test_charge_is_asked_for_where_the_materials_have_data():
+    hot = Lamina.isotropic(69e9, 0.33, 2700.0, 23e-6, curves={"E1": [(350.0, 1.0), (420.0, 0.95)]})
+    plants = {"temperature": [360.0, 390.0], "bank": 2, "pyroelectric": True}
+    assert resolve_task(blade={"beam": {"material": hot}}, scenario={"plants": plants}).bank.pyroelectric.any()
