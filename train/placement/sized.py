@@ -16,7 +16,7 @@ class SizedFront:
     front: Any
     """The ``Front``."""
     layouts: tuple[Any, ...]
-    """``Layout``s of the blade's own patches; none where they are more than may be."""
+    """``Layout``s of the blade's own patches."""
     on_plants: tuple[float, ...]
     """J of each point of the front on the plant that is built of it."""
 
@@ -36,7 +36,14 @@ class SizedFront:
         points = [{**each, "cost_on_plant": cost} for each, cost in zip(front["points"], self.on_plants, strict=True)]
         budget = {**asdict(problem.budget), "frequency": problem.frequency}
         layouts = [asdict(each) for each in self.layouts]
-        return {**front, "points": points, "chosen": self.chosen, "layouts": layouts, "budget": budget, "r": problem.drive_weight}
+        return {
+            **front,
+            "points": points,
+            "chosen": self.chosen,
+            "layouts": layouts,
+            "budget": budget,
+            "drive_weight": problem.drive_weight,
+        }
 
 
 def size_patches(

@@ -43,8 +43,8 @@ def size(
 ) -> Front:
     """The designs of least cost at every mass that a search finds; the same seed gives the same front.
 
-    An ``archive`` made for the problem holds what has been found even where the search is interrupted. Raises ``ValueError`` for
-    what is no problem, seed or search.
+    Modes beyond the patches' reach are left to their own damping. An ``archive`` made for the problem holds what has been found even
+    where the search is interrupted. Raises ``ValueError`` for what is no problem, seed or search.
     """
     checked("problem", problem, Instance(SizingProblem))
     seed = checked("seed", seed, Count(0, 2**31 - 1))
