@@ -166,7 +166,7 @@ class RotatingBeam:
     def space(self) -> SpanSpace:
         """What the fields are made of along the span."""
         rigid, warping = self.shear == "rigid", self.model == "blade"
-        plane, reach = not self.layup.walls and self.section.stays_plane, CLAMP_REACH * self.section.perimeter
+        plane, reach = not self.layup.walls and self.section.stays_plane, self.clamp_reach
         if self.discretisation == "finite-elements":
             edges = [*self._edges, *(piece.start for piece in self.planform.pieces)]
             return element_space(
@@ -182,10 +182,15 @@ class RotatingBeam:
             breaks=breaks(self.section, self.length, self.inlays) if warping and not rigid else (),
         )
 
+    @property
+    def clamp_reach(self) -> float:
+        """m: distance from the clamp over which sections come to warp at will."""
+        return CLAMP_REACH * self.section.perimeter
+
     @cached_property
     def exact(self) -> ExactBeam:
         """The geometrically exact beam on solid sections: what the blade's model computes with."""
-        beside_clamp = CLAMP_PIECE * CLAMP_REACH * self.section.perimeter
+        beside_clamp = CLAMP_PIECE * self.clamp_reach
         changes = [piece.start for piece in self.planform.pieces]
         ends = self.breakpoints([*self._edges, *changes, beside_clamp])
         return ExactBeam(

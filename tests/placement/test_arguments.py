@@ -10,6 +10,7 @@ import pytest
 from baselines.placement import PlacementProblem, check_reach, optimal_layout, optimal_positions, place, reach
 from baselines.placement import optimal as optimal_module
 from baselines.placement.cost.damping import design_poles, open_loop_poles
+from baselines.placement.model.contributions import contributions
 from baselines.placement.search.evolution import Evolution
 from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
@@ -274,3 +275,9 @@ def test_other_arguments_of_a_placed_batch_are_refused_in_one_sentence(envs, nam
         with pytest.raises(ValueError) as told:
             VectorPlacementWrapper(wrong) if name == "env" else VectorPlacementWrapper(envs, bank=wrong)
         check_sentence(told)
+
+
+@pytest.mark.parametrize(("beam", "named"), [({"temperature": 320.0}, "temperature"), ({"tip_springs": (1e3,) * 6}, "tip_springs")])
+def test_a_blade_that_is_heated_or_held_is_refused_in_a_sentence(beam, named):
+    with pytest.raises(ValueError, match=f"blade.beam.{named} is .* but must be None where patches are placed"):
+        contributions(replace(CONFIG, beam=replace(CONFIG.beam, **beam)))

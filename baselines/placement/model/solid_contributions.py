@@ -28,11 +28,12 @@ from baselines.placement.model.chebyshev import ChebyshevSpan
 from beamenv.blade.config import BladeConfig
 from beamenv.patches.operators import work_on_section
 from beamenv.structure import RotatingBeam
-from beamenv.structure.geometrically_exact.at_stations import SHAPE, without_shear
+from beamenv.structure.geometrically_exact.at_stations import SHAPE
 from beamenv.structure.geometrically_exact.exact_beam import ExactBeam
 from beamenv.structure.geometrically_exact.inertia import SpinningSections
 from beamenv.structure.geometrically_exact.kinematics import FibreExtension, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
+from beamenv.structure.geometrically_exact.rigid_theory import without_shear
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.geometrically_exact.tables import increment_rows
 from beamenv.structure.section.elements import RIGID

@@ -19,6 +19,7 @@ from beamenv.structure.geometrically_exact.heat import FreeStrains, Heat
 from beamenv.structure.geometrically_exact.inertia import SpinningSections
 from beamenv.structure.geometrically_exact.kinematics import INCREMENT, SPIN, FibreExtension, Placement, under_stress
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint, SteadyState
+from beamenv.structure.geometrically_exact.rigid_theory import moments_without_shear, without_shear
 from beamenv.structure.geometrically_exact.rotations import rotation, rotation_vector
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.geometrically_exact.tables import FIELD_COUNT, field_tables, increment_rows
@@ -326,20 +327,3 @@ class Stressed:
     stiffness: Array
     """(S, 6, 6), with what the fibres' quadratic extension adds."""
     fibres: FibreExtension
-
-
-SHEARS = slice(0, 2)
-
-
-def without_shear(energy: Array) -> Array:
-    """Energies (V, STRAINS, STRAINS) of sections that shear as they please, their shear strains held to cost nothing."""
-    free = energy - energy[:, :, SHEARS] @ np.linalg.solve(energy[:, SHEARS, SHEARS], energy[:, SHEARS, :])
-    free[:, SHEARS, :] = free[:, :, SHEARS] = 0.0
-    return free
-
-
-def moments_without_shear(moments: Array, energy: Array) -> Array:
-    """Moments (V, 6, STRAINS) of the spanwise stress in such sections."""
-    free = moments - moments[:, :, SHEARS] @ np.linalg.solve(energy[:, SHEARS, SHEARS], energy[:, SHEARS, :])
-    free[:, :, SHEARS] = 0.0
-    return free
