@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 
@@ -19,6 +19,8 @@ class SizedFront:
     """``Layout``s of the blade's own patches."""
     on_plants: tuple[float, ...]
     """J of each point of the front on the plant that is built of it."""
+    left_out: int
+    """How many points are left out, as no blade can be computed with their patches: thick sheets whose edges nearly meet."""
 
     @property
     def chosen(self) -> int:
@@ -43,6 +45,7 @@ class SizedFront:
             "layouts": layouts,
             "budget": budget,
             "drive_weight": problem.drive_weight,
+            "left_out": self.left_out,
         }
 
 
@@ -59,7 +62,6 @@ def size_patches(
     where they are best, which takes some seconds the first time.
     """
     from baselines.placement import SizingProblem, size
-    from baselines.placement.sizing.blades import cost_on_plant
     from baselines.placement.sizing.front import Archive
     from baselines.placement.sizing.own_layouts import layouts_of
 
@@ -71,5 +73,20 @@ def size_patches(
         front = archive.front(seed, complete=False)
         if not front.points:
             raise
+    on_plants = [plant_cost(problem, each) for each in front.points]
+    built = [k for k, cost in enumerate(on_plants) if cost is not None]
+    if not built:
+        raise ValueError(f"none of {len(on_plants)} designs makes a blade that can be computed: take thinner sheets.")
+    told = replace(front, points=tuple(front.points[k] for k in built))
     layouts = layouts_of(problem, config, placed and front.complete)
-    return SizedFront(problem, front, layouts, tuple(cost_on_plant(problem, each) for each in front.points))
+    return SizedFront(problem, told, layouts, tuple(on_plants[k] for k in built), len(on_plants) - len(built))
+
+
+def plant_cost(problem: Any, point: Any) -> float | None:
+    """J on the plant that is built of a point; None where none can be computed."""
+    from baselines.placement.sizing.blades import cost_on_plant
+
+    try:
+        return cost_on_plant(problem, point)
+    except ValueError:
+        return None
