@@ -36,15 +36,15 @@ class AdaptationSettings:
     """Hidden units of each force."""
     forces: Annotated[int, Count(1, 100)] = 11
     """Modes, the first, whose forces it foresees; voltages instead where a plant has no modes of its own coordinates."""
-    outer_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.1
+    outer_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.3
     """γ_W."""
     inner_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.1
     """γ_V."""
     bias_rate: Annotated[float, Number(ge=0.0, lt=2.0)] = 0.1
     """γ_b."""
-    forgetting: Annotated[float, Number(ge=0.0, le=0.1)] = 0.0
+    forgetting: Annotated[float, Number(ge=0.0, le=0.1)] = 1e-3
     """κ of the e-modification."""
-    outer_bound: Annotated[float, Number(gt=0.0, le=1e3)] = 10.0
+    outer_bound: Annotated[float, Number(gt=0.0, le=1e3)] = 4.0
     """Largest norm of W."""
     inner_bound: Annotated[float, Number(gt=0.0, le=1e3)] = 1.0
     """Largest norm of V − V₀."""

@@ -108,6 +108,13 @@ def _laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lam
     return [(path, each) for path, each in parts if isinstance(each, Lamina)]
 
 
+def _check_expansion(path: str, lamina: Lamina) -> None:
+    try:
+        _ = lamina.expansion
+    except Refused as error:
+        raise Refused(error.name.replace("material", path, 1), error.value, error.allowed) from None
+
+
 @configuration("blade.beam")
 class BeamConfig:
     """The bare blade: a box of the thesis (§3.5) unless said otherwise."""
@@ -171,9 +178,11 @@ class BeamConfig:
             for name in MODULI:
                 if getattr(lamina, name) < SOFTEST:
                     raise Refused(f"{path}.{name}", getattr(lamina, name), f"at least {SOFTEST:g} (Pa)")
-        check_held_and_heated("blade", self.temperatures, self.tip_springs, "blade.beam")
+        check_held_and_heated("blade", self, "blade.beam")
         if self.temperatures is not None:
-            check_data(self.temperatures, [self.wall_material], "blade.beam")
+            check_data(self, [self.wall_material], "blade.beam")
+            for path, lamina in _laminae(self.material):
+                _check_expansion(path, lamina)
 
     @property
     def temperatures(self) -> Steps | None:
@@ -278,9 +287,9 @@ class BladeConfig:
 
     def __post_init__(self) -> None:
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
-        check_held_and_heated(self.model, self.beam.temperatures, self.beam.tip_springs, "blade.beam")
+        check_held_and_heated(self.model, self.beam, "blade.beam")
         sheets = (group.patch for side in SIDES for group in self.patches.groups(side))
-        check_data(self.beam.temperatures, sheets, "blade.beam")
+        check_data(self.beam, sheets, "blade.beam")
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

@@ -74,9 +74,8 @@ class PatchMaterial:
             )
         share = 1.0 + self.permittivity_per_K * (temperature_K - ROOM)
         if share <= 0.0:
-            raise Refused(
-                "patch_material.permittivity_per_K", self.permittivity_per_K, f"one that leaves some at {temperature_K:g} K"
-            )
+            per_K = self.permittivity_per_K
+            raise Refused("temperature", temperature_K, f"one at which permittivity_per_K = {per_K:g} leaves some permittivity (K)")
         strained, stored = float(np.sqrt(share)), None if self.permittivity is None else share * self.permittivity
         lamina = self.lamina.at(temperature_K)
         warm = replace(self, lamina=lamina, d11=strained * self.d11, d12=strained * self.d12, permittivity=stored)

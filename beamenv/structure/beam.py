@@ -134,9 +134,9 @@ class RotatingBeam:
                 if getattr(self, name) is not None:
                     raise Refused(f"beam.{name}", getattr(self, name), "None in the thesis' model")
         check_steady_state(self.model, self.steady_state)
-        check_held_and_heated(self.model, self.temperatures, self.tip_springs)
+        check_held_and_heated(self.model, self)
         plies = (ply for wall in self.section.wall_names for ply in self.layup.plies(wall))
-        check_data(self.temperatures, (ply.material for ply in (*plies, *(inlay.ply for inlay in self.inlays))), "beam")
+        check_data(self, (ply.material for ply in (*plies, *(inlay.ply for inlay in self.inlays))), "beam")
         self.room.check(self.inlays)
 
     @property

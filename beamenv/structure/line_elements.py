@@ -17,6 +17,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from beamenv.configuration.read_only import sealed
+from beamenv.structure.inlays import SHORTEST
 from beamenv.structure.section.elements import inverse_vandermonde
 from beamenv.structure.span_space import SpanSpace, Table
 from beamenv.structure.stations import Stations
@@ -110,15 +111,12 @@ class ElementSpace(SpanSpace):
         """On every piece between ends of elements too, as many as the elements need."""
         inside = [node for node in self.nodes if breakpoints[0] < node < breakpoints[-1]]
         ends = np.unique([*breakpoints, *inside])
-        apart = np.append(True, np.diff(ends) > SAME * self.length)
+        apart = np.append(True, np.diff(ends) > SHORTEST * self.length)
         return Stations.between(ends[apart], self.order + 1 + EXTRA_POINTS)
 
 
 AMPLITUDE = Elements(bent=False, held=1)
 """Elements of the amplitudes of sections' shapes."""
-
-SAME = 1e-9
-"""Of the span: what lies closer together is in one place."""
 
 
 def _slopes(order: int) -> NDArray[np.bool_]:

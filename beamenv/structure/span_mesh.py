@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 FINEST = 0.5
 """Of the reach of the clamp: the element beside it. Further out elements grow with the distance from it."""
 
-SHORTEST = 1e-3
+LEAST_SHARE = 1e-3
 """Of the length of elements elsewhere, at least: what a clamp does within less of a slender blade counts for nothing."""
 
 GROWTH = 1.0
@@ -29,7 +29,7 @@ def even_mesh(length: float, edges: Sequence[float], elements: int, reach: float
     """
     size = length / elements
     ends = _joined([0.0, *edges, length], length)
-    finest = min(size, max(FINEST * reach, SHORTEST * size))
+    finest = min(size, max(FINEST * reach, LEAST_SHARE * size))
     counts = _elements_to(np.array(ends), size, finest)
     found = [0.0]
     for first, last, low, high in zip(ends[:-1], ends[1:], counts[:-1], counts[1:], strict=True):

@@ -1,5 +1,7 @@
 """An LQG that a neural network augments: what it is without the network, what bounds it, and what it is good for."""
 
+from contextlib import closing
+
 import gymnasium
 import numpy as np
 import pytest
@@ -93,7 +95,7 @@ def test_its_voltages_are_finite_whatever_is_broken(scenario):
 
 @pytest.mark.slow
 def test_on_the_design_it_costs_within_two_per_cent_of_its_base():
-    with gymnasium.make_vec(beamenv.ENV_ID, num_envs=32, dtype="float64") as envs:
+    with closing(gymnasium.make_vec(beamenv.ENV_ID, num_envs=32, dtype="float64")) as envs:
         plant = envs.unwrapped.design.full_plant
         base = evaluate(reference_lqg(plant), envs, seeds=validation(32))
         law = evaluate(adaptive_neural(plant), envs, seeds=validation(32), reference=base.reference)

@@ -102,6 +102,12 @@ def test_a_blade_hotter_than_its_patches_may_be_is_refused_in_a_sentence(name, w
         BladeConfig(beam=BeamConfig(temperature=460.0, material="aluminium"), patches=layout)
 
 
+def test_a_sheet_that_loses_its_permittivity_is_refused_by_the_temperature():
+    layout = PatchLayout(material=replace(MFC, permittivity_per_K=-0.02))
+    with pytest.raises(ValueError, match=r"blade.beam.temperature is 370.0, but must be one at which permittivity_per_K = -0.02"):
+        BladeConfig(beam=BeamConfig(temperature=370.0), patches=layout)
+
+
 def test_a_sheet_without_data_is_the_same_at_any_temperature():
     sheet = replace(PZT, permittivity_per_K=0.0, warmest=None)
     warm = sheet.at(900.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from beamenv import RotatingBeamEnv, RotatingBeamVectorEnv
+from beamenv import Lamina, RotatingBeamEnv, RotatingBeamVectorEnv
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches.operators import charge_per_kelvin
 from beamenv.scenarios.scenario import SCENARIOS
@@ -118,7 +118,22 @@ def test_pyroelectricity_that_no_sensor_would_show_is_refused_in_a_sentence():
 
 
 def test_a_blade_too_hot_for_its_patches_is_refused_in_a_sentence():
-    with pytest.raises(ValueError, match=r"blade.beam.temperature is 450.0, but must be a number from 173.15 to 403.15 \(K\)"):
+    with pytest.raises(
+        ValueError, match=r"scenario.plants.temperature is \[300.0, 450.0\], but must be a number from 173.15 to 403.15 \(K\)"
+    ):
         _ = resolve_task(
             blade={"beam": {"material": "aluminium"}}, scenario={"plants": {"temperature": [300.0, 450.0], "bank": 2}}
         ).bank
+
+
+def test_a_change_beyond_the_data_is_refused_with_what_it_reaches():
+    plants = {"temperature": 370.0, "temperature_change": [0.0, 30.0], "bank": 2}
+    with pytest.raises(ValueError, match=r"scenario.plants.temperature is \[370.0, 370.0\].* with its change it reaches 400 K"):
+        _ = resolve_task(scenario={"plants": plants}).bank
+
+
+def test_a_material_of_unknown_expansion_is_refused_as_the_material():
+    material = {"inner": Lamina.isotropic(69e9, 0.33, 2700.0), "outer": "aluminium", "exponent": 1.0}
+    plants = {"temperature": 310.0, "bank": 2}
+    with pytest.raises(ValueError, match="blade.beam.material.inner.alpha1 is None, but must be a number"):
+        _ = resolve_task(blade={"beam": {"material": material}}, scenario={"plants": plants}).bank

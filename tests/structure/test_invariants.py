@@ -5,7 +5,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from beamenv.structure import GRAPHITE_EPOXY, BoxSection, Layup, RotatingBeam, assembly
@@ -158,7 +158,7 @@ def test_finer_mesh_never_raises_a_frequency_at_rest(beam, inside, order):
     assert np.all(lower <= upper * (1.0 + 1e-7) + 1e-9 * upper[-1])
 
 
-@fewer
+@settings(fewer, suppress_health_check=[HealthCheck.too_slow])
 @given(beam=blades(terms=st.none()), share=st.floats(0.0, MODERATE))
 def test_elements_and_polynomials_agree_on_any_blade(beam, share):
     """Four frequencies; in the thesis' model sheared blades have a layer at the clamp that polynomials miss by 2/(N + 1)²."""

@@ -20,6 +20,7 @@ from train.reproduce.studies import (
     chapter5_passive,
     chapter6_layouts,
     chapter6_tables,
+    chapter7_adaptive,
     chapter7_elements,
     chapter7_equations,
     chapter7_graded,
@@ -53,6 +54,7 @@ FUTURE_WORK: Chapter = (
     "7.2, done",
     (
         *chapter7_graded.STUDIES,
+        *chapter7_adaptive.STUDIES,
         *chapter7_heat.STUDIES,
         *chapter7_elements.STUDIES,
         *chapter7_sizing.STUDIES,

@@ -13,6 +13,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.changed import changed_blade
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.blade.model_blade import ModelBlade
+from beamenv.configuration import Refused
 from beamenv.scenarios.tables import PlantVariation
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
@@ -85,8 +86,20 @@ def varied_blades(blade: Blade, variation: PlantVariation) -> Iterator[Blade]:
     ranged = blade.with_fixed_range().with_fixed_order()
     built: dict[BeamConfig, Blade] = {}
     for row in varied(variation, blade.config):
-        config = changed_blade(ranged.config, *row)
+        try:
+            config = changed_blade(ranged.config, *row)
+        except Refused as error:
+            raise _of_scenario(error, variation, row[-1]) from None
         yield built.setdefault(config.beam, ranged.changed(config)).changed(config)
+
+
+def _of_scenario(error: Refused, variation: PlantVariation, temperature: float) -> Refused:
+    """What is said of a scenario where a blade refuses one of its temperatures (K)."""
+    if variation.temperature is None or not error.name.startswith("blade.beam.temperature"):
+        return error
+    low, high = variation.temperature
+    reached = "" if low <= temperature <= high else f"; with its change it reaches {temperature:g} K"
+    return Refused("scenario.plants.temperature", [low, high], error.allowed + reached)
 
 
 def varied(variation: PlantVariation, config: BladeConfig) -> Array:

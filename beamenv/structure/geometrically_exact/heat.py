@@ -32,11 +32,14 @@ class Heat:
     def buckles(self, planform: Planform) -> Refused:
         """What is said where no steady state is stable."""
         assert planform.temperatures is not None
-        hot = [temperature for _, temperature in planform.temperatures]
-        where = hot[0] if len(set(hot)) == 1 else [list(each) for each in planform.temperatures]
-        return Refused(
-            "beam.temperature", where, f"nearer to {self.reference:g} K, where the blade neither buckles nor bends out of reach (K)"
-        )
+        hot, path = {temperature for _, temperature in planform.temperatures}, "beam.temperature"
+        within_reach = "where the blade neither buckles nor bends out of reach (K)"
+        if hot == {self.reference}:
+            return Refused(f"{path}_difference", self.difference, f"nearer to 0, {within_reach}")
+        nearer = f"nearer to {self.reference:g} K, {within_reach}"
+        if len(hot) > 1:
+            return Refused(f"{path}_table", [list(each) for each in planform.temperatures], nearer)
+        return Refused(path, hot.pop(), nearer)
 
     def rises(self, z: Array, sections: SectionsAlong) -> Array:
         """(S, HEATS): K at the sections' axes beyond the reference, and K per m along y."""

@@ -1,0 +1,1 @@
+"""What a recurrent agent remembers of the blade: linear probes of its hidden units."""
