@@ -73,13 +73,13 @@ def size_patches(
         front = archive.front(seed, complete=False)
         if not front.points:
             raise
-    on_plants = [plant_cost(problem, each) for each in front.points]
-    built = [k for k, cost in enumerate(on_plants) if cost is not None]
+    every = [(each, plant_cost(problem, each)) for each in front.points]
+    built = [(each, cost) for each, cost in every if cost is not None]
     if not built:
-        raise ValueError(f"none of {len(on_plants)} designs makes a blade that can be computed: take thinner sheets.")
-    told = replace(front, points=tuple(front.points[k] for k in built))
+        raise ValueError(f"none of {len(every)} designs makes a blade that can be computed: take thinner sheets.")
+    told = replace(front, points=tuple(each for each, _ in built))
     layouts = layouts_of(problem, config, placed and front.complete)
-    return SizedFront(problem, told, layouts, tuple(on_plants[k] for k in built), len(on_plants) - len(built))
+    return SizedFront(problem, told, layouts, tuple(cost for _, cost in built), len(every) - len(built))
 
 
 def plant_cost(problem: Any, point: Any) -> float | None:
