@@ -182,6 +182,7 @@ ROOMS_OF_TRAIN = (
     {"shared"},
     {"workers"},
     {"controllers", "figures", "speed", "tools"},
+    {"probing"},
     {"datasets", "export", "identification", "learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore", "rllib", "tuning"},
     {"cli"},

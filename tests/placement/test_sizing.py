@@ -255,3 +255,24 @@ def test_power_of_sheets_of_unknown_permittivity_is_refused():
     assert SizingProblem.of(config).power(SizingProblem.of(config).own()) is None
     with pytest.raises(ValueError, match=r"budget\.power is 1\.0, but must be None where the actuators' permittivity is unknown"):
         SizingProblem.of(config, budget=Budget(power=1.0))
+
+
+@pytest.mark.slow
+def test_areas_under_the_fronts_of_several_seeds_differ_by_a_per_cent_at_most():
+    """In logarithms of mass and cost, up to the heaviest design and the dearest."""
+    problem = SizingProblem.of(blade_config())
+    fronts = [size(problem, seed) for seed in (0, 1)]
+    dearest, heaviest = (max(getattr(each, name) for front in fronts for each in front.points) for name in ("cost", "mass"))
+    areas = []
+    for front in fronts:
+        mass, cost = (np.log([getattr(each, name) for each in front.points]) for name in ("mass", "cost"))
+        areas.append(np.diff(np.append(mass, np.log(heaviest))) @ (np.log(dearest) - cost))
+    assert areas[0] == pytest.approx(areas[1], rel=0.01)
+
+
+@pytest.mark.parametrize("preset", ["aluminium-cantilever", "chandra-chopra"])
+def test_strips_and_small_boxes_have_fronts_too(preset):
+    problem = SizingProblem.of(blade_config(preset), Sizes(actuators=1, sensors=1))
+    front = size(problem, 0, QUICK)
+    assert front.points[-1].cost < 0.7 * front.points[0].cost
+    assert build_plant(sized_blade(problem, front.points[-1])).C.shape[0] == 1

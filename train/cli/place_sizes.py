@@ -100,6 +100,8 @@ def show_front(sized: SizedFront) -> None:
     print_table(table)
     for layout in sized.layouts:
         say(f"own size, {layout.name}: {1e3 * layout.mass:.4g} g, {layout.cost:.4g} J")
+    if sized.left_out:
+        say(f"{sized.left_out} designs of thick sheets whose edges nearly meet are left out: no blade can be computed with them")
     say(f"{sized.front.evaluations} designs; power is that of ½CV²f at {sized.problem.frequency:.4g} Hz")
 
 

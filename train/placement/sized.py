@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 
@@ -16,9 +16,11 @@ class SizedFront:
     front: Any
     """The ``Front``."""
     layouts: tuple[Any, ...]
-    """``Layout``s of the blade's own patches; none where they are more than may be."""
+    """``Layout``s of the blade's own patches."""
     on_plants: tuple[float, ...]
     """J of each point of the front on the plant that is built of it."""
+    left_out: int
+    """How many points are left out, as no blade can be computed with their patches: thick sheets whose edges nearly meet."""
 
     @property
     def chosen(self) -> int:
@@ -36,7 +38,15 @@ class SizedFront:
         points = [{**each, "cost_on_plant": cost} for each, cost in zip(front["points"], self.on_plants, strict=True)]
         budget = {**asdict(problem.budget), "frequency": problem.frequency}
         layouts = [asdict(each) for each in self.layouts]
-        return {**front, "points": points, "chosen": self.chosen, "layouts": layouts, "budget": budget, "r": problem.drive_weight}
+        return {
+            **front,
+            "points": points,
+            "chosen": self.chosen,
+            "layouts": layouts,
+            "budget": budget,
+            "drive_weight": problem.drive_weight,
+            "left_out": self.left_out,
+        }
 
 
 def size_patches(
@@ -52,7 +62,6 @@ def size_patches(
     where they are best, which takes some seconds the first time.
     """
     from baselines.placement import SizingProblem, size
-    from baselines.placement.sizing.blades import cost_on_plant
     from baselines.placement.sizing.front import Archive
     from baselines.placement.sizing.own_layouts import layouts_of
 
@@ -64,5 +73,20 @@ def size_patches(
         front = archive.front(seed, complete=False)
         if not front.points:
             raise
+    every = [(each, plant_cost(problem, each)) for each in front.points]
+    built = [(each, cost) for each, cost in every if cost is not None]
+    if not built:
+        raise ValueError(f"none of {len(every)} designs makes a blade that can be computed: take thinner sheets.")
+    told = replace(front, points=tuple(each for each, _ in built))
     layouts = layouts_of(problem, config, placed and front.complete)
-    return SizedFront(problem, front, layouts, tuple(cost_on_plant(problem, each) for each in front.points))
+    return SizedFront(problem, told, layouts, tuple(cost for _, cost in built), len(every) - len(built))
+
+
+def plant_cost(problem: Any, point: Any) -> float | None:
+    """J on the plant that is built of a point; None where none can be computed."""
+    from baselines.placement.sizing.blades import cost_on_plant
+
+    try:
+        return cost_on_plant(problem, point)
+    except ValueError:
+        return None

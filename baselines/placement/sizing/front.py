@@ -138,7 +138,8 @@ def point(problem: SizingProblem, design: Designs, cost: float) -> FrontPoint:
     sides = []
     for side in (0, 1):
         there = np.flatnonzero((problem.limits.side_of == side) & (design.lengths[0] > 0.0))
-        patches = [Patch(float(design.starts[0, k]), float(design.lengths[0, k])) for k in there]
+        starts, lengths = (np.round(each[0], 12) for each in (design.starts, design.lengths))  # 1e-18 m is 0
+        patches = [Patch(float(starts[k]), float(lengths[k])) for k in there]
         width, thickness = design.sizes[0, 2 * side : 2 * side + 2].tolist()
         sides.append(SizedPatches(width, thickness, tuple(sorted(patches, key=lambda patch: patch.start))))
     mass, drawn = float(problem.mass(design)[0]), None if power is None else float(power[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from baselines.placement.optimal import optimal_layout
 from baselines.placement.sizing.problem import SizingProblem
@@ -25,12 +25,14 @@ class Layout:
 
 
 def layouts_of(problem: SizingProblem, config: BladeConfig, placed: bool) -> tuple[Layout, ...]:
-    """Those of a blade, none where its patches are more than may be; ``placed`` by ``optimal_layout``, which takes seconds once."""
-    places = {"as configured": [positions_of(config, side) for side in SIDES]}
+    """Those of a blade, whatever its budget; ``placed`` by ``optimal_layout``, which takes seconds once."""
+    counts = [max(each) for each in zip(problem.limits.counts, map(len, configured(config)), strict=True)]
+    problem = replace(problem, limits=replace(problem.limits, counts=(counts[0], counts[1])))
+    places = {"as configured": configured(config)}
     thesis = thesis_places(config)
     if thesis is not None:
         places[THESIS] = thesis
-    if placed and problem.with_own_sizes(places["as configured"]) is not None:
+    if placed:
         best = optimal_layout(config)
         places["placed"] = [best[side] for side in SIDES]
     found = []
@@ -39,6 +41,11 @@ def layouts_of(problem: SizingProblem, config: BladeConfig, placed: bool) -> tup
         if designs is not None:
             found.append(Layout(name, float(problem.mass(designs)[0]), float(problem.cost(designs)[0])))
     return tuple(found)
+
+
+def configured(config: BladeConfig) -> list[Positions]:
+    """Positions of both sides, m."""
+    return [positions_of(config, side) for side in SIDES]
 
 
 def thesis_places(config: BladeConfig) -> list[Positions] | None:

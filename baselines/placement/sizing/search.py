@@ -43,8 +43,8 @@ def size(
 ) -> Front:
     """The designs of least cost at every mass that a search finds; the same seed gives the same front.
 
-    An ``archive`` made for the problem holds what has been found even where the search is interrupted. Raises ``ValueError`` for
-    what is no problem, seed or search.
+    Modes beyond the patches' reach are left to their own damping. An ``archive`` made for the problem holds what has been found,
+    even where the search is interrupted. Raises ``ValueError`` for what is no problem, seed or search.
     """
     checked("problem", problem, Instance(SizingProblem))
     seed = checked("seed", seed, Count(0, 2**31 - 1))
@@ -75,8 +75,13 @@ def refine(archive: Archive, search: SizingSearch) -> None:
 
 
 def masses_of(problem: SizingProblem, count: int) -> list[float]:
-    """So many masses, kg, from the lightest design to what the budget or the largest sizes allow, ever further apart."""
-    return np.geomspace(float(problem.mass(problem.least())[0]), problem.most_mass(), count).tolist()
+    """So many masses, kg, from the lightest design to what the budget or the largest sizes allow, ever further apart, and that of
+    the blade's own patches.
+    """
+    lightest, heaviest, own = float(problem.mass(problem.least())[0]), problem.most_mass(), problem.own()
+    masses: list[float] = np.geomspace(lightest, heaviest, count).tolist()
+    mass = heaviest if own is None else float(problem.mass(own)[0])
+    return sorted([*masses, mass]) if lightest < mass < heaviest else masses
 
 
 def next_to(problem: SizingProblem, designs: Designs, mass: float, beyond: bool) -> Designs:
