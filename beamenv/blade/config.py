@@ -40,6 +40,7 @@ from beamenv.structure.held_and_heated import (
     KELVIN,
     SPRINGS,
     check_data,
+    check_expansion,
     check_held_and_heated,
     temperatures_of,
 )
@@ -106,13 +107,6 @@ def _laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lam
     else:
         parts = [("material", material)]
     return [(path, each) for path, each in parts if isinstance(each, Lamina)]
-
-
-def _check_expansion(path: str, lamina: Lamina) -> None:
-    try:
-        _ = lamina.expansion
-    except Refused as error:
-        raise Refused(error.name.replace("material", path, 1), error.value, error.allowed) from None
 
 
 @configuration("blade.beam")
@@ -182,7 +176,7 @@ class BeamConfig:
         if self.temperatures is not None:
             check_data(self, [self.wall_material], "blade.beam")
             for path, lamina in _laminae(self.material):
-                _check_expansion(path, lamina)
+                check_expansion(path, lamina)
 
     @property
     def temperatures(self) -> Steps | None:
@@ -290,6 +284,10 @@ class BladeConfig:
         check_held_and_heated(self.model, self.beam, "blade.beam")
         sheets = (group.patch for side in SIDES for group in self.patches.groups(side))
         check_data(self.beam, sheets, "blade.beam")
+        if self.beam.temperatures is not None:
+            for path, group in self.patches.named_groups():
+                if group.passive:
+                    check_expansion(f"{path}.material.lamina", group.patch.lamina)
         check_steady_state(self.model, self.beam.steady_state, "beam.steady_state")
         if self.strain_limit == "total" and self.model == "thesis":
             raise Refused("strain_limit", self.strain_limit, "'vibration' with model = 'thesis', which has no steady state")

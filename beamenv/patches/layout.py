@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, Literal, get_args
@@ -84,6 +84,14 @@ class PatchLayout:
     def groups(self, side: Side) -> Groups:
         """The groups of one side."""
         return self._actuators if side == "actuators" else self._sensors
+
+    def named_groups(self) -> Iterator[tuple[str, PatchGroup]]:
+        """All groups, with the paths of the tables that say what they are made of."""
+        for side in SIDES:
+            given = getattr(self, side)
+            listed = isinstance(given, tuple) and any(isinstance(each, PatchGroup) for each in given)
+            for k, group in enumerate(self.groups(side)):
+                yield f"patches.{side}[{k}]" if listed else "patches", group
 
     @cached_property
     def _actuators(self) -> Groups:

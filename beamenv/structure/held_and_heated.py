@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from beamenv.configuration import Number, Numbers, Refused, checked
 from beamenv.structure.planform import Steps, check_table
+from beamenv.structure.walls.materials import Lamina
 
 KELVIN = Number(ge=100.0, le=5000.0, unit="K")
 """Lower ones, in which no blade turns, are degrees Celsius or Fahrenheit."""
@@ -47,6 +48,14 @@ def _check_at(material: Material, temperature: float, path: str) -> None:
         at_fault = error.name != "temperature"
         allowed = f"one at which {error.name} is {error.allowed}, not {error.value:g}" if at_fault else error.allowed
         raise Refused(path, temperature, allowed) from None
+
+
+def check_expansion(path: str, lamina: Lamina) -> None:
+    """``ValueError`` for a lamina, called by its path, whose expansion is unknown."""
+    try:
+        _ = lamina.expansion
+    except Refused as error:
+        raise Refused(error.name.replace("material", path, 1), error.value, error.allowed) from None
 
 
 def _said_by(beam: Any) -> str:

@@ -7,14 +7,16 @@ import pytest
 
 from beamenv.blade.build import Blade
 from beamenv.blade.config import BeamConfig, BladeConfig
-from beamenv.patches import MFC, PATCH_MATERIALS, PatchLayout, actuation, local_response
+from beamenv.patches import MFC, PATCH_MATERIALS, PatchLayout, actuation, local_response, sensing
 from beamenv.patches.group import PatchGroup
 from beamenv.patches.material import PZT
 from beamenv.patches.operators import charge_per_kelvin
 from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam, StripSection
+from beamenv.task import resolve_task
 
 ALUMINIUM = Layup.uniform(Lamina.isotropic(70e9, 0.33, 2700.0, alpha=23e-6), [0.0])
 MADE_AT = 300.0
+UNKNOWN = replace(MFC, lamina=replace(MFC.lamina, alpha1=None, alpha2=None))
 LAYOUT = PatchLayout(actuators=(0.3, 0.9), sensors=(0.9,), passive=False)
 
 
@@ -64,6 +66,10 @@ def test_springs_take_of_the_energy_what_they_hold_of_the_tip():
     found = local_response(held, LAYOUT).energy
     assert found == pytest.approx(local_response(free, LAYOUT).energy - taken, rel=1e-6, abs=1e-9 * np.abs(found).max())
     assert np.abs(taken).max() > 0.04 * np.abs(found).max()
+    either = local_response(free, LAYOUT).charges, local_response(held, LAYOUT).charges
+    shown = sensing(free, LAYOUT) @ static[:, 2:] @ np.linalg.solve(np.diag(1.0 / springs) + compliance, moved)
+    assert either[1] == pytest.approx(either[0] - shown, rel=1e-6, abs=1e-9 * np.abs(either[0]).max())
+    assert np.abs(shown).max() > 0.04 * np.abs(either[0]).max()
 
 
 def test_a_sheet_that_expands_less_bends_a_strip_as_two_layers():
@@ -106,6 +112,33 @@ def test_a_sheet_that_loses_its_permittivity_is_refused_by_the_temperature():
     layout = PatchLayout(material=replace(MFC, permittivity_per_K=-0.02))
     with pytest.raises(ValueError, match=r"blade.beam.temperature is 370.0, but must be one at which permittivity_per_K = -0.02"):
         BladeConfig(beam=BeamConfig(temperature=370.0), patches=layout)
+
+
+@pytest.mark.parametrize(
+    ("patches", "path"),
+    [
+        ({"material": UNKNOWN}, "blade.patches.material"),
+        ({"sensors": [{"positions": 1}, {"positions": [1.0], "material": UNKNOWN}]}, r"blade.patches.sensors\[1\].material"),
+    ],
+)
+def test_a_sheet_of_unknown_expansion_is_refused_by_its_path(patches, path):
+    with pytest.raises(ValueError, match=f"{path}.lamina.alpha1 is None, but must be a number"):
+        resolve_task(blade={"beam": {"temperature": 310.0}, "patches": patches})
+
+
+def test_a_sheet_that_is_not_in_the_wall_needs_no_expansion_until_its_charge_is_asked_for():
+    blade = {"patches": {"material": UNKNOWN, "passive": False}}
+    plants = {"temperature": 310.0, "bank": 2}
+    assert len(resolve_task(blade=blade, scenario={"plants": plants}).bank) == 2
+    with pytest.raises(ValueError, match="blade.patches.material.lamina.alpha1 is None"):
+        _ = resolve_task(blade=blade, scenario={"plants": plants | {"pyroelectric": True}}).bank
+
+
+def test_a_sheet_is_as_stiff_as_it_is_warm():
+    softens = ((200.0, 1.0), (300.0, 1.0), (400.0, 0.5))
+    lamina = replace(MFC.lamina, curves=dict.fromkeys(("E1", "E2", "G12"), softens))
+    warm = replace(MFC, lamina=lamina, permittivity_per_K=0.0).at(380.0)
+    assert warm.piezoelectric_stress() == pytest.approx(0.6 * MFC.piezoelectric_stress(), rel=1e-12)
 
 
 def test_a_sheet_without_data_is_the_same_at_any_temperature():

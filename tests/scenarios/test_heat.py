@@ -8,7 +8,7 @@ from beamenv import Lamina, RotatingBeamEnv, RotatingBeamVectorEnv
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches.operators import charge_per_kelvin
 from beamenv.scenarios.scenario import SCENARIOS
-from beamenv.simulation.plants.banks import varied
+from beamenv.simulation.plants.banks import varied, varied_blades
 from beamenv.simulation.plants.walks import Warming, walk_of
 from beamenv.task import resolve_task
 
@@ -137,3 +137,25 @@ def test_a_material_of_unknown_expansion_is_refused_as_the_material():
     plants = {"temperature": 310.0, "bank": 2}
     with pytest.raises(ValueError, match="blade.beam.material.inner.alpha1 is None, but must be a number"):
         _ = resolve_task(blade={"beam": {"material": material}}, scenario={"plants": plants}).bank
+
+
+def test_charge_is_asked_for_where_the_materials_have_data():
+    hot = Lamina.isotropic(69e9, 0.33, 2700.0, 23e-6, curves={"E1": [(350.0, 1.0), (420.0, 0.95)]})
+    plants = {"temperature": [360.0, 390.0], "bank": 2, "pyroelectric": True}
+    assert resolve_task(blade={"beam": {"material": hot}}, scenario={"plants": plants}).bank.pyroelectric.any()
+
+
+def test_the_plant_of_an_interval_is_that_of_its_middle():
+    """10 K an interval, stations every 5 K: 5 K beyond where it begins."""
+    walk = Warming((300.0, 300.0), (60.0, 60.0), (0.0, 0.0), (6.0, 6.0), 13)
+    courses = walk.courses(np.zeros((6, walk.draws)))
+    np.testing.assert_array_equal(walk.places(courses, np.arange(6.0)), [1, 3, 5, 7, 9, 11])
+
+
+def test_a_temperature_that_is_drawn_takes_the_place_of_a_table():
+    plants = {"temperature": [305.0, 315.0], "bank": 2}
+    beams = ({"temperature_table": [[0.0, 300.0], [1.0, 330.0]]}, {"temperature": 340.0})
+    tabled, even = (resolve_task(blade={"beam": beam}, scenario={"plants": plants}) for beam in beams)
+    either = [[each.beam for each in varied_blades(task.design_blade, task.scenario.plants)] for task in (tabled, even)]
+    for one, other in zip(*either, strict=True):
+        np.testing.assert_array_equal(one.natural_frequencies(), other.natural_frequencies())

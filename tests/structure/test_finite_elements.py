@@ -262,3 +262,9 @@ def test_what_elements_cannot_be_is_said_in_one_sentence(options, sentence):
     with pytest.raises(ValueError) as refused:
         replace(UNIFORM.build(), **options)
     assert str(refused.value) == f"beam.{sentence}"
+
+
+def test_stations_of_elements_integrate_products_times_what_varies_to_the_fourth_power():
+    beam = replace(UNIFORM.build(), **ELEMENTS, mesh=(0.0, 0.3, 1.0), element_order=3)
+    stations = beam.space.stations(np.array([0.0, beam.length]), 0)
+    assert stations.weight @ stations.z**10 == pytest.approx(beam.length**11 / 11.0, rel=1e-12)

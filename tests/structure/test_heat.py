@@ -315,6 +315,15 @@ def test_a_table_that_buckles_is_refused_by_its_name():
         blade(temperature_table=((0.0, 600.0), (1.0, 590.0)), tip_springs=CLAMPED).at(0.0)
 
 
+def test_fibres_along_the_span_leave_a_box_free_of_stress():
+    """All of it expands alike across them, its corners and through its walls too."""
+    beam = blade(layup=Layup.uniform(GRAPHITE, [90.0]), temperature=MADE_AT + 1.0)
+    sections = beam.exact.sections.solid
+    assert sections.expansion.strain[0, :, 0] == pytest.approx(GRAPHITE.alpha1 * np.eye(6)[2], abs=1e-9 * GRAPHITE.alpha2)
+    of_tension = np.abs(sections.stress_moments[0, :, 2]) * GRAPHITE.alpha2
+    assert np.abs(sections.expansion.moments[0, [3, 5], 0]) == pytest.approx(0.0, abs=1e-8 * of_tension[3])
+
+
 def test_a_curve_that_leaves_no_stiffness_is_refused_by_the_temperature():
     melts = replace(ALUMINIUM, curves={"E1": [(200.0, 1.0), (310.0, 1.0), (373.0, -1.0)]})
     with pytest.raises(

@@ -5,6 +5,7 @@ import pytest
 
 from beamenv.blade import blade_config, from_dict, to_dict
 from beamenv.structure import ALUMINIUM, AS4_3501_6, GRAPHITE_EPOXY, Lamina, Layup
+from beamenv.structure.walls.curves import Touloukian
 from beamenv.structure.walls.named import ALUMINA, MATERIALS, SILICON_NITRIDE, SUS304, TI_6AL_4V, ZIRCONIA
 
 AT_300_K = {
@@ -113,3 +114,34 @@ def test_all_named_materials_store_energy_throughout_their_range():
         for temperature in np.linspace(*material.range_K, 15) if material.range_K else ():
             there = material.at(temperature)
             assert np.linalg.eigvalsh(there.solid_stiffness()).min() > 0.0
+
+
+def test_expansion_of_aluminium_below_room_is_nists():
+    """Mean from 293 K of Δl/l = (−412.77 − 0.30389 T + 8.7696·10⁻³ T² − 9.9821·10⁻⁶ T³)·10⁻⁵ (NIST, 6061-T6)."""
+    for temperature in (100.0, 150.0, 200.0, 250.0):
+        T = temperature
+        shrunk = 1e-5 * (-412.77 - 0.30389 * T + 8.7696e-3 * T**2 - 9.9821e-6 * T**3)
+        assert ALUMINIUM.at(T).alpha1 == pytest.approx(shrunk / (T - 293.15), rel=5e-3)
+
+
+def test_modulus_of_aluminium_below_room_is_nists():
+    """77.71221 + 1.030646·10⁻² T − 2.9241·10⁻⁴ T² + 8.9936·10⁻⁷ T³ − 1.0709·10⁻⁹ T⁴ GPa (NIST, 6061-T6)."""
+
+    def nist(T):
+        return 77.71221 + 1.030646e-2 * T - 2.924100e-4 * T**2 + 8.993600e-7 * T**3 - 1.070900e-9 * T**4
+
+    for temperature in (100.0, 150.0, 200.0, 250.0):
+        found = ALUMINIUM.at(temperature).E1 / ALUMINIUM.E1
+        assert found == pytest.approx(nist(temperature) / nist(293.15), rel=2e-3)
+
+
+def test_all_that_the_resin_bears_softens_alike():
+    hot = GRAPHITE_EPOXY.at(360.0)
+    shares = [getattr(hot, name) / getattr(GRAPHITE_EPOXY, name) for name in ("E2", "G12", "G13", "G23")]
+    assert shares == pytest.approx([np.sqrt((472.0 - 360.0) / 172.0)] * 4, rel=1e-6)
+    assert hot.E1 == GRAPHITE_EPOXY.E1
+
+
+def test_touloukians_first_coefficient_is_over_the_temperature():
+    curve = Touloukian(300.0, 1000.0, P_minus1=-60.0)
+    assert curve.share(600.0) == pytest.approx(0.9 / 0.8, rel=1e-12)

@@ -53,8 +53,9 @@ def drawn_bank(blade: Blade, design: Blade, variation: PlantVariation) -> Bank:
         bank = replace(
             bank, speeds=np.full(len(blades), blade.config.speed), walk=walk, to_common=passage[0], from_common=passage[1]
         )
-    if variation.pyroelectric:
-        bank = replace(bank, pyroelectric=np.tile(pyroelectric_readings(blade), (len(blades), 1, 1)))
+    if variation.pyroelectric and variation.temperature is not None:
+        readings = pyroelectric_readings(blade, variation.temperature)
+        bank = replace(bank, pyroelectric=np.tile(readings, (len(blades), 1, 1)))
     return about_steady_states(bank.in_cost_axes(), blades)
 
 

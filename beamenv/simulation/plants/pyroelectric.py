@@ -16,16 +16,22 @@ from beamenv.blade.build import Blade
 from beamenv.configuration import Refused
 from beamenv.patches.operators import charge_per_kelvin
 from beamenv.sensors.kinds import PatchCharge, PatchCurrent, Sensor
+from beamenv.structure.held_and_heated import check_expansion
 from beamenv.structure.walls.curves import ROOM
 
 Array = NDArray[np.float64]
 
 
-def pyroelectric_readings(blade: Blade) -> Array:
-    """(2, p): readings in full scales per K and control interval, and per K; ``ValueError`` where no patch is read."""
+def pyroelectric_readings(blade: Blade, drawn: tuple[float, float]) -> Array:
+    """(2, p): readings in full scales per K and control interval, and per K, of a blade at its own temperature, else at the one
+    nearest to room temperature of those that are ``drawn`` (K); ``ValueError`` where no patch is read.
+    """
     config, scale = blade.config, blade.truth.sensor_full_scale
     groups = config.patches.groups("sensors")
-    warm = blade.beam if config.beam.temperatures is not None else replace(blade.beam, temperature=ROOM)
+    for path, group in config.patches.named_groups():
+        if group in groups:
+            check_expansion(f"blade.{path}.material.lamina", group.patch.lamina)
+    warm = blade.beam if config.beam.temperatures is not None else replace(blade.beam, temperature=float(np.clip(ROOM, *drawn)))
     charges = [charge_per_kelvin(warm, group) for group in groups]
     per_rate = 1.0 / config.control_interval
     parts = [(each, per_rate, 0.0) for each in charges]
