@@ -210,6 +210,7 @@ class RotatingBeam:
             matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
             self._check_terms()
+            self._check_springs()
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
         return matrices
 
@@ -225,6 +226,18 @@ class RotatingBeam:
         beside = f" beside two for each of {count} breaks along the span" if (count := len(space.breaks)) else ""
         raise Refused(
             "beam.terms", space.terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not"
+        )
+
+    def _check_springs(self) -> None:
+        """``ValueError`` names the springs where they are why there are no matrices."""
+        if self.tip_springs is None:
+            return
+        try:
+            _ = replace(self, tip_springs=None).matrices
+        except ValueError:
+            return
+        raise Refused(
+            "beam.tip_springs", list(self.tip_springs), "softer: beside them the blade's own stiffness is lost in rounding"
         )
 
     def _wall_matrices(self) -> BeamMatrices:

@@ -10,6 +10,7 @@ from beamenv.blade import BeamConfig, BladeConfig
 from beamenv.blade.build import Blade
 from beamenv.patches import PatchLayout
 from beamenv.structure import BoxSection, Inlay, Lamina, Layup, Ply, RotatingBeam
+from beamenv.structure.span_mesh import given_mesh
 from beamenv.structure.walls.wall_kinematics import TX, VV
 
 ELEMENTS = {"discretisation": "finite-elements"}
@@ -268,3 +269,9 @@ def test_stations_of_elements_integrate_products_times_what_varies_to_the_fourth
     beam = replace(UNIFORM.build(), **ELEMENTS, mesh=(0.0, 0.3, 1.0), element_order=3)
     stations = beam.space.stations(np.array([0.0, beam.length]), 0)
     assert stations.weight @ stations.z**10 == pytest.approx(beam.length**11 / 11.0, rel=1e-12)
+
+
+def test_elements_of_a_given_mesh_are_as_short_as_they_are_said_to_be():
+    """Beside an edge the edge takes the place of an end; all others stay."""
+    shares = (0.0, 0.3, 0.302, 0.60004, 1.0)
+    assert given_mesh(2.0, [1.2], shares) == pytest.approx([0.0, 0.6, 0.604, 1.2, 2.0])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from beamenv.structure import BoxSection, Lamina, Layup, PolygonSection, RotatingBeam, StripSection
+from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.walls.laminate import Ply
 
 ALPHA = 23e-6
@@ -77,3 +78,24 @@ def test_along_a_table_walls_have_the_modulus_of_their_place():
     assert found == pytest.approx(moduli * whole.classical_stiffness[0, 0, 0], rel=0.02)  # cubics follow a kink so far
     straight = z > 1.0
     assert found[~straight] == pytest.approx((moduli * whole.classical_stiffness[0, 0, 0])[~straight], rel=1e-9)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_spring_that_holds_a_turn_pulls_with_the_sine_of_its_angle(axis):
+    """Whatever the others hold, and about any axis the stiffness is what the force changes by."""
+    springs = TipSprings(np.eye(6), np.array([1.0, 2.0, 3.0, 5.0, 7.0, 11.0]))
+    turned = np.zeros(6)
+    turned[3 + axis] = 0.8
+    force = springs.force(turned)
+    assert force[3 + axis] == pytest.approx(springs.stiffness[3 + axis] * np.sin(0.8), rel=1e-12)
+    assert springs.tangent(turned)[3 + axis, 3 + axis] == pytest.approx(springs.stiffness[3 + axis] * np.cos(0.8), rel=1e-12)
+    tangent = springs.tangent(np.array([0.1, 0.2, 0.3, 0.4, -0.5, 0.6]))
+    assert tangent == pytest.approx(tangent.T, abs=1e-14)
+
+
+def test_springs_beside_which_a_blades_stiffness_is_lost_are_refused():
+    strip = RotatingBeam(StripSection(0.03, 0.002), Layup.uniform(ALUMINIUM, [0.0]), 0.3, tip_springs=(1e14,) * 6)
+    with pytest.raises(ValueError, match=r"beam.tip_springs is \[100000000000000.0, .*, but must be softer: beside them"):
+        strip.natural_frequencies()
+    held = replace(strip, tip_springs=(1e7,) * 6).natural_frequencies()
+    assert held[0] == pytest.approx(4.73004**2 * np.sqrt(70e9 / 2700.0 / 12.0) * 0.002 / 0.3**2, rel=0.02)  # both ends clamped

@@ -145,3 +145,11 @@ def test_all_that_the_resin_bears_softens_alike():
 def test_touloukians_first_coefficient_is_over_the_temperature():
     curve = Touloukian(300.0, 1000.0, P_minus1=-60.0)
     assert curve.share(600.0) == pytest.approx(0.9 / 0.8, rel=1e-12)
+
+
+def test_curves_that_hold_at_no_temperature_together_are_refused():
+    curves = {"E1": [(300.0, 1.0), (400.0, 0.9)], "nu12": [(500.0, 1.0), (600.0, 1.1)]}
+    with pytest.raises(
+        ValueError, match=r"lamina.curves is \['E1', 'nu12'\], but must be curves that all hold at some temperature"
+    ):
+        Lamina.isotropic(69e9, 0.33, 2700.0, curves=curves)

@@ -62,6 +62,8 @@ class Lamina:
                 raise Refused(name, None, "a number (1/K) where it has a curve over temperature")
             if self.is_isotropic and name not in FOLLOWED:
                 raise Refused("curves", [name], f"of {', '.join(FOLLOWED)} alone in an isotropic material")
+        if self.range_K is not None and self.range_K[0] > self.range_K[1]:
+            raise Refused("curves", [name for name, _ in self.curves], "curves that all hold at some temperature (K)")
 
     @classmethod
     def isotropic(
