@@ -7,6 +7,9 @@ from typing import Any
 
 from pydantic_core import ErrorDetails, ValidationError
 
+CLASS_EXPECTED = {"dataclass_exact_type": "class_name", "is_instance_of": "class"}
+"""Complaints that something is no instance of a class, and where they have its name."""
+
 LONGEST = 160
 """Characters of a value that are shown."""
 
@@ -48,7 +51,9 @@ def unknown_field(path: str, name: Any, known: Sequence[str]) -> ValueError:
 
 def sentence(error: ValidationError, path: str, known: Sequence[str]) -> ValueError:
     """The first of pydantic's complaints as a ``ValueError`` of one sentence about ``path`` and its fields."""
-    first = error.errors(include_url=False)[0]
+    first, *others = error.errors(include_url=False)
+    if _is_member(first):
+        return _none_of_several(first, others, path, known)
     name = ".".join(str(part) for part in _named(first["loc"], known))
     where = f"{path}.{name}" if path and name else path or name
     if first["type"] in ("unexpected_keyword_argument", "unexpected_positional_argument"):
@@ -61,6 +66,19 @@ def sentence(error: ValidationError, path: str, known: Sequence[str]) -> ValueEr
             return Refused(joined(where, cause.name), cause.value, cause.allowed)
         return ValueError(str(cause))
     return Refused(where, first["input"], _allowed(first))
+
+
+def _is_member(error: ErrorDetails) -> bool:
+    """Whether it is the complaint of one of several classes that may stand there."""
+    return error["type"] in CLASS_EXPECTED and len(error["loc"]) > 1 and error["loc"][-1] == _class_of(error)
+
+
+def _none_of_several(first: ErrorDetails, others: Sequence[ErrorDetails], path: str, known: Sequence[str]) -> Refused:
+    """What is said of what is none of the classes that may stand there."""
+    where = first["loc"][:-1]
+    classes = [_class_of(each) for each in (first, *others) if _is_member(each) and each["loc"][:-1] == where]
+    name = ".".join([path, *(str(part) for part in _named(where, known))] if path else map(str, where))
+    return Refused(name, first["input"], " or ".join(map(an, classes)))
 
 
 def joined(path: str, name: str) -> str:
@@ -77,11 +95,13 @@ def _named(location: tuple[int | str, ...], known: Sequence[str]) -> tuple[int |
 
 
 def _allowed(error: ErrorDetails) -> str:
-    if error["type"] == "dataclass_exact_type":
-        return an(error["ctx"]["class_name"])
-    if error["type"] == "is_instance_of":
-        return an(error["ctx"]["class"])
+    if error["type"] in CLASS_EXPECTED:
+        return an(_class_of(error))
     return error["msg"].removeprefix("Input should be ")
+
+
+def _class_of(error: ErrorDetails) -> str:
+    return str(error["ctx"][CLASS_EXPECTED[error["type"]]])
 
 
 def an(name: str) -> str:

@@ -179,7 +179,7 @@ class RotatingBeam:
             warping=warping,
             plane=plane,
             clamp_reach=reach,
-            breaks=breaks(self.section, self.length, self.inlays) if warping and not rigid else (),
+            breaks=breaks(self.section, self.planform, self.inlays) if warping and not rigid else (),
         )
 
     @property

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.structure.inlays import SHORTEST
+from beamenv.structure.planform import Planform
 from beamenv.structure.section.section import Section
 from beamenv.structure.walls.inlay import Inlay
 
@@ -28,10 +29,11 @@ TOO_CLOSE = 3.5e-3
 two sheets on a strip, edges 2e-3 to 3.3e-3 apart left its matrices singular to rounding. Frequencies are then 0.4 % off at most."""
 
 
-def breaks(section: Section, length: float, inlays: Sequence[Inlay]) -> tuple[float, ...]:
-    """Where inlays begin and end that change their walls much, m."""
+def breaks(section: Section, planform: Planform, inlays: Sequence[Inlay]) -> tuple[float, ...]:
+    """Where inlays begin and end that change their walls much, and at corners of tables along the span, m."""
+    length = planform.length
     thick = [each for each in inlays if each.thickness > _follows(each) * section.thickness_of(each.wall)]
-    edges = breakpoints([edge for each in thick for edge in (each.start, each.start + each.length)], length)
+    edges = breakpoints([*(edge for each in thick for edge in (each.start, each.start + each.length)), *planform.corners], length)
     found = [0.0]
     for edge in edges[1:-1].tolist():
         found += [edge] if edge - found[-1] > TOO_CLOSE * length else []

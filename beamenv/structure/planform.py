@@ -28,6 +28,13 @@ TEMPERATURES = 4
 LEAST_PIECE = 0.02
 """Of the span."""
 
+SHARP = 0.05
+"""Change of a table's slope, of the twist in rad or of the size over that there, per span, from which a corner is one to the trial
+functions: those of a smooth curve in many points are not."""
+
+MOST_CORNERS = 8
+"""The sharpest."""
+
 TABLE = Points(least=2, most=100)
 """Pairs of a share of the span and what is there, from 0 to 1."""
 
@@ -106,6 +113,17 @@ class Planform:
     def turned(self) -> float:
         """rad: by how much the section turns on its way, forth and back."""
         return sum(abs(piece.rate) * (piece.end - piece.start) for piece in self.pieces)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """m: where tables of twist and size bend sharply."""
+        bends: dict[float, float] = {}
+        for table, unit in ((self.twists, np.ones_like), (self.chords, np.abs)):
+            shares, values = np.array(table or ((0.0, 1.0), (1.0, 1.0))).T
+            bend = np.abs(np.diff(np.diff(values) / np.diff(shares))) / unit(values[1:-1])
+            bends |= {share: max(bends.get(share, 0.0), by) for share, by in zip(shares[1:-1].tolist(), bend.tolist(), strict=True)}
+        sharpest = sorted((share for share in bends if bends[share] > SHARP), key=lambda share: -bends[share])[:MOST_CORNERS]
+        return tuple(self.length * share for share in sorted(sharpest))
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:

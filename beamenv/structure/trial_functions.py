@@ -28,7 +28,8 @@ class TrialSpace(SpanSpace):
     clamp_reach: float = 1.0
     """m: distance from the clamp over which sections come to warp at will."""
     breaks: tuple[float, ...] = ()
-    """m: where the blade's stiffness jumps, and strains with it. Every field has a ramp and a parabola that begin there."""
+    """m: where the blade's stiffness, or its rate of twist, jumps, and strains with it. Every field has a ramp and a parabola that
+    begin there, every amplitude a ramp and a step, smooth within the clamp's reach."""
 
     held: ClassVar[float] = 1e-10
 
@@ -44,8 +45,8 @@ class TrialSpace(SpanSpace):
 
     @property
     def amplitude_terms(self) -> int:
-        """Those without breaks."""
-        return self.terms
+        """The same as of each field."""
+        return self.each
 
     def kind(self, field: str) -> int:
         """The power of z with which the functions leave the clamp."""
@@ -60,8 +61,17 @@ class TrialSpace(SpanSpace):
         return Stations.graded(breakpoints, points) if graded else Stations.between(breakpoints, points)
 
     def amplitude_table(self, z: Array) -> tuple[Array, Array]:
-        """Polynomials less what their value at the clamp decays to within its reach."""
-        return clamped_table(z / self.length, self.terms, self.length, self.clamp_reach)
+        """Polynomials less what their value at the clamp decays to within its reach, and at breaks steps within it and ramps."""
+        smooth = clamped_table(z / self.length, self.terms, self.length, self.clamp_reach)
+        if not self.breaks:
+            return smooth
+        apart = z[:, None] - np.array(self.breaks)
+        near = 0.5 * np.exp(-np.abs(apart) / self.clamp_reach)
+        beyond = np.maximum(apart, 0.0) / self.length
+        steps = np.where(apart > 0.0, 1.0 - near, near), near / self.clamp_reach
+        ramps = beyond, (beyond > 0.0) / self.length
+        value, slope = (np.hstack(parts) for parts in zip(smooth, steps, ramps, strict=True))
+        return value, slope
 
     def table(self, z: Array, kind: int) -> Table:
         """Values and first two derivatives (stations, each) of a field's functions, that leave the clamp with a power of z."""

@@ -202,12 +202,12 @@ def test_stepped_beam_has_the_frequencies_of_its_transcendental_equation():
 @pytest.mark.parametrize(
     ("table", "sixteen"),
     [
-        ({"chord_table": ((0.0, 1.0), (0.5, 1.0), (0.55, 0.5), (1.0, 0.5))}, 2.2e-2),
-        ({"twist_table": ((0.0, 0.0), (0.4, 30.0), (1.0, 20.0))}, 3.1e-3),
+        ({"chord_table": ((0.0, 1.0), (0.5, 1.0), (0.55, 0.5), (1.0, 0.5))}, 3.6e-3),
+        ({"twist_table": ((0.0, 0.0), (0.4, 30.0), (1.0, 20.0))}, 4.7e-4),
     ],
     ids=["chord", "twist"],
 )
-def test_elements_follow_corners_of_tables_that_polynomials_cannot(table, sixteen):
+def test_elements_follow_corners_of_tables_closer_than_polynomials_that_break_there(table, sixteen):
     """Eight frequencies at rest, against twice as many elements: within 3e-5."""
     beam = BeamConfig(**table)
     fine = replace(beam, **ELEMENTS, elements=24).build().natural_frequencies(0.0, 8)
