@@ -20,6 +20,7 @@ from baselines.design.law import Law
 from baselines.design.linear import LinearController
 from baselines.design.matrix import keep_matrices, real_matrix, rows
 from baselines.design.objects import instance
+from beamenv.configuration import Flag, checked
 
 FADES = 0.05
 """Share of its weights that the network forgets at each instant once it is switched off: within 20 instants the voltage is the
@@ -116,7 +117,11 @@ class AdaptiveNeural(Law):
         return (self.base.order,), (n,), (n,), (n,), (h, n), (2 * q, n), (h,), (h,), (h, 2), (p,), (), (m,)
 
     def switched(self, on: bool) -> AdaptiveNeural:
-        """The same law with its adaptation on or off; either goes on from what the other remembers, without a jump."""
+        """The same law with its adaptation on or off; either goes on from what the other remembers, without a jump.
+
+        Raises ``ValueError`` for what is neither True nor False.
+        """
+        on = checked("on", on, Flag())
         return self if on is self.adapts else replace(self, adapts=on)
 
     def in_physical_units(self) -> AdaptiveNeural:
@@ -169,7 +174,7 @@ class AdaptiveNeural(Law):
         new.departure[...] = departure @ model.transition.T + forces
         new.error[...] = (error - innovation @ gain.T) @ model.transition.T
         new.by_units[...] = model.moved(old.by_units, new.units)
-        new.by_inputs[...] = model.moved(old.by_inputs, inputs.reshape(len(inputs), -1))
+        new.by_inputs[...] = model.moved(old.by_inputs, inputs.reshape(len(inputs), old.by_inputs.shape[1]))
         return action
 
     def _driven(self, observation: Array, old: Memory, new: Memory) -> Array:

@@ -83,11 +83,13 @@ class ErrorModel(ReadOnly):
 
     def network_inputs(self, estimate: Array) -> Array:
         """μ (N, q, 2) of states (N, n)."""
-        return np.asarray((estimate @ self.shown).reshape(len(estimate), -1, 2))
+        return np.asarray((estimate @ self.shown).reshape(len(estimate), self.shown.shape[1] // 2, 2))
 
     def felt(self, units: Array, inputs: Array) -> Filtered:
         """What states (N, h, n) and (N, 2 q, n) that units and inputs brought about show in whitened innovations."""
-        return Filtered(units @ self._felt, (inputs @ self._felt).reshape(len(inputs), -1, 2, self._felt.shape[1]))
+        return Filtered(
+            units @ self._felt, (inputs @ self._felt).reshape(len(inputs), inputs.shape[1] // 2, 2, self._felt.shape[1])
+        )
 
     def moved(self, states: Array, forces: Array) -> Array:
         """Ā of states (N, k, n), which are brought about by ``forces`` (N, k) of one of the q each, in equal groups of k."""

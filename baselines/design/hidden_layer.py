@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -64,7 +65,7 @@ def hidden_units(start: Array, weights: Weights, inputs: Array, saturation: floa
 
 def outputs(weights: Weights, units: Array, count: int) -> Array:
     """Wᵀ σ (N, q), q = ``count``."""
-    return (weights.outer * units).reshape(len(units), count, -1).sum(axis=-1)
+    return (weights.outer * units).reshape(len(units), count, units.shape[1] // count).sum(axis=-1)
 
 
 def prediction_error(weights: Weights, felt: Filtered, innovation: Array) -> Array:
@@ -105,5 +106,5 @@ def onto_ball(numbers: Array, radius: float) -> Array:
 
 def norms(numbers: Array) -> Array:
     """(N,) of arrays (N, …)."""
-    flat = numbers.reshape(len(numbers), -1)
+    flat = numbers.reshape(len(numbers), prod(numbers.shape[1:]))
     return np.asarray(np.sqrt(np.einsum("nk,nk->n", flat, flat)))

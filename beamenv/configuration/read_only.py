@@ -41,7 +41,7 @@ class ReadOnly:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Made anew: NumPy forgets on the way that an array was read-only."""
-        return type(self), tuple(getattr(self, each.name) for each in fields(self))  # type: ignore[arg-type]
+        return type(self), tuple(getattr(self, each.name) for each in fields(self) if each.init)  # type: ignore[arg-type]
 
 
 class Sealed:

@@ -1,5 +1,6 @@
 """An LQG that a neural network augments: what it is without the network, what bounds it, and what it is good for."""
 
+import pickle
 from contextlib import closing
 
 import gymnasium
@@ -75,6 +76,24 @@ def test_a_batch_is_its_blades_one_by_one_and_in_volts_the_same(small_plant, rea
     scales = law.instruments
     volts = driven(law.in_physical_units(), readings * scales.measurement_scale)[0]
     np.testing.assert_allclose(volts, together * scales.voltage_scale, rtol=1e-9, atol=1e-9)
+
+
+def test_unpickled_as_by_another_process_it_is_the_same_law(small_plant, readings):
+    law = adaptive_neural(small_plant())
+    copied = pickle.loads(pickle.dumps(law))
+    np.testing.assert_array_equal(driven(copied, readings)[0], driven(law, readings)[0])
+
+
+def test_of_no_blades_it_decides_nothing(small_plant):
+    law = adaptive_neural(small_plant())
+    action, memory = law.predict(np.zeros((0, 2)))
+    assert action.shape == (0, 2) and law.adaptation(memory).effort.shape == (0,)
+
+
+@pytest.mark.parametrize("on", [None, 1, "on"])
+def test_what_is_neither_on_nor_off_is_refused(small_plant, on):
+    with pytest.raises(ValueError, match="on is .*, but must be True or False"):
+        adaptive_neural(small_plant()).switched(on)
 
 
 def test_a_plant_without_modes_of_its_own_learns_voltages(scalar_plant, readings):

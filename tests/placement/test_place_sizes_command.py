@@ -96,6 +96,13 @@ def test_together_tells_both_sides_and_the_gain():
         (["--mass", "0.1"], "--mass limits patches that are sized: add --size."),
         (["--together", "--size"], "--together places patches as they are and draws nothing: leave --size out."),
         (["--together", "--picture", "x.png"], "leave --picture out."),
+        (["--together", "--method", "ga"], "--together has a search of its own: leave --method out."),
+        (["--size", "--method", "multistart"], "--size has a search of its own: leave --method out."),
+        (
+            ["--size", "--leave-unreached"],
+            "--size leaves modes that no patch reaches to their own damping: leave --leave-unreached out.",
+        ),
+        (["--save", "blade.json"], "--save is for the blade of patches that are sized: add --size."),
         (["--size", "--mass", "0.0001"], "budget.mass is 0.0001, but must be at least 0.001977 kg"),
         (["--size", "--power", "nan"], "budget.power is nan, but must be"),
         (["--size", "--actuators", "9"], "sizes.actuators is 9, but must be"),

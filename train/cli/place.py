@@ -28,8 +28,9 @@ def place(
     blade: BladeOption = None,
     passive: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
     method: Annotated[
-        str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
-    ] = "multistart",
+        str | None,
+        typer.Option(help="multistart (if left out), ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two."),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
@@ -59,12 +60,14 @@ def place(
     """
     drawn = picture or (None if as_json or together else Path("results/sizes.png" if size else "results/placement.png"))
     with one_sentence():
+        from baselines.placement.optimal import METHOD
         from beamenv.blade.files import load_config
         from beamenv.blade.layouts import SIDES, positions_of
         from beamenv.blade.presets import blade_config
 
         budget = {"mass": mass, "channels": channels, "power": power, "frequency": frequency}
         check_alone(together, size, picture, {**budget, "save": save})
+        check_search(together, size, method, leave_unreached)
         if drawn is not None:
             check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
@@ -79,7 +82,7 @@ def place(
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: count for side in SIDES if (count := len(positions_of(config, side)))}
         with bars(counts) as report:
-            sides = place_sides(config, counts, method, seed, report, leave_unreached)
+            sides = place_sides(config, counts, method or METHOD, seed, report, leave_unreached)
         if as_json:
             print_json([side.to_dict() for side in sides])
         else:
@@ -97,7 +100,16 @@ def check_alone(together: bool, size: bool, picture: Path | None, of_sizes: dict
         raise ValueError(f"--together places patches as they are and draws nothing: leave --{'size' if size else 'picture'} out.")
     given = [name for name, value in of_sizes.items() if value is not None]
     if given and not size:
-        raise ValueError(f"--{given[0]} limits patches that are sized: add --size.")
+        what = "is for the blade of" if given[0] == "save" else "limits"
+        raise ValueError(f"--{given[0]} {what} patches that are sized: add --size.")
+
+
+def check_search(together: bool, size: bool, method: str | None, leave_unreached: bool) -> None:
+    """``ValueError`` for options of the search that would have no effect."""
+    if method is not None and (together or size):
+        raise ValueError(f"--{'size' if size else 'together'} has a search of its own: leave --method out.")
+    if leave_unreached and size:
+        raise ValueError("--size leaves modes that no patch reaches to their own damping: leave --leave-unreached out.")
 
 
 @contextmanager
