@@ -159,3 +159,11 @@ def test_a_temperature_that_is_drawn_takes_the_place_of_a_table():
     either = [[each.beam for each in varied_blades(task.design_blade, task.scenario.plants)] for task in (tabled, even)]
     for one, other in zip(*either, strict=True):
         np.testing.assert_array_equal(one.natural_frequencies(), other.natural_frequencies())
+
+
+def test_what_a_blade_warms_is_the_mean_of_the_interval_around_a_reading():
+    walk = Warming((300.0, 300.0), (4.0, 4.0), (2.0, 2.0), (4.0, 4.0), 2)
+    courses = walk.courses(np.zeros((9, walk.draws)))
+    rates, since = walk.warming(courses, np.arange(9.0)).T
+    np.testing.assert_allclose(rates, [0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 0.5, 0.0, 0.0])
+    np.testing.assert_allclose(since, [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 4.0, 4.0])

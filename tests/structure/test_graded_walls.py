@@ -400,3 +400,15 @@ def test_uniform_layers_expand_as_the_graded_wall():
     off = [np.abs(curvature_and_strain(in_layers(material, n)) / exact - 1.0).max() for n in (24, 48)]
     assert off[1] < 1e-3
     assert off[0] / off[1] == pytest.approx(4.0, rel=0.02)
+
+
+@pytest.mark.parametrize("scheme", ["voigt", "mori-tanaka"])
+def test_mass_goes_by_volume_and_scales_by_itself(scheme):
+    graded = FunctionallyGraded("sus304", "silicon-nitride", 2.0, scheme)
+    inner, outer = graded.constituents
+    volume = np.array([0.0, 0.3, 1.0])
+    found, scaled = graded.mixture(volume), graded.scaled(1.2, 0.9).mixture(volume)
+    assert found.density == pytest.approx((1.0 - volume) * inner.density + volume * outer.density, rel=1e-12)
+    assert scaled.density == pytest.approx(0.9 * found.density, rel=1e-12)
+    np.testing.assert_allclose(scaled.E, 1.2 * found.E, rtol=1e-12)
+    assert scaled.nu == pytest.approx(found.nu, rel=1e-12)
