@@ -148,6 +148,20 @@ def test_mass_and_power_are_those_of_the_sheets():
     assert problem.power(own)[0] == pytest.approx(4 * 0.5 * 0.30e-9 * 48.45 * 1500.0**2 * 10.0)
 
 
+def test_power_is_that_of_the_larger_voltage_of_either_sign():
+    of = [SizingProblem.of(blade_config("thesis", {"voltage_limits": limits})) for limits in ((-500.0, 1500.0), (-1500.0, 500.0))]
+    assert of[0].power_per_volume == of[1].power_per_volume > 0.0
+
+
+def test_blade_of_larger_sensors_has_a_larger_range_and_the_noise_of_the_problem():
+    problem = problem_of()
+    sizes = problem.limits.largest_sizes[None]
+    design = Designs(np.array([[0.0, 0.3, 0.0, 0.3]]), np.full((1, 4), problem.limits.length[1]), sizes)
+    blade = sized_blade(problem, point(problem, design, 0.0))
+    assert blade.sensor_full_scale > problem.config.sensor_full_scale
+    np.testing.assert_allclose(build_plant(blade).sensor_noise, problem.sensor_noise * np.eye(2), rtol=1e-12)
+
+
 def test_repaired_designs_can_be_made_and_what_can_be_made_stays():
     problem, generator = problem_of(), np.random.default_rng(0)
     wild = Designs(generator.uniform(-1, 2, (200, 4)), generator.uniform(0, 2, (200, 4)), generator.uniform(0, 0.3, (200, 4)))
