@@ -20,6 +20,10 @@ from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 from train.shared.files import check_picture
 
 
+METHOD = "multistart"
+"""Of placing one side, unless told otherwise."""
+
+
 def place(
     actuators: Annotated[int | None, typer.Option(help="How many actuators to place.")] = None,
     sensors: Annotated[int | None, typer.Option(help="How many sensors to place.")] = None,
@@ -29,7 +33,7 @@ def place(
     passive: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
     method: Annotated[
         str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
-    ] = "multistart",
+    ] = METHOD,
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
@@ -65,6 +69,7 @@ def place(
 
         budget = {"mass": mass, "channels": channels, "power": power, "frequency": frequency}
         check_alone(together, size, picture, {**budget, "save": save})
+        check_searched("size" if size else "together" if together else "", method)
         if drawn is not None:
             check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
@@ -98,6 +103,12 @@ def check_alone(together: bool, size: bool, picture: Path | None, of_sizes: dict
     given = [name for name, value in of_sizes.items() if value is not None]
     if given and not size:
         raise ValueError(f"--{given[0]} limits patches that are sized: add --size.")
+
+
+def check_searched(way: str, method: str) -> None:
+    """``ValueError`` for a method of one side's search beside ``way``, "size" or "together", which has a search of its own."""
+    if way and method != METHOD:
+        raise ValueError(f"--{way} searches in a way of its own: leave --method out.")
 
 
 @contextmanager
