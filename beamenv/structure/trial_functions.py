@@ -9,7 +9,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
+from beamenv.configuration.read_only import sealed
 from beamenv.structure.span_space import SpanSpace, Table
 from beamenv.structure.stations import Stations
 
@@ -61,29 +63,49 @@ class TrialSpace(SpanSpace):
         return Stations.graded(breakpoints, points) if graded else Stations.between(breakpoints, points)
 
     def amplitude_table(self, z: Array) -> tuple[Array, Array]:
-        """Polynomials less what their value at the clamp decays to within its reach, and at breaks steps within it and ramps."""
+        """Polynomials, and at breaks ramps and steps that are smooth within the clamp's reach; less what decays within it from
+        their value at the clamp.
+        """
         smooth = clamped_table(z / self.length, self.terms, self.length, self.clamp_reach)
         if not self.breaks:
             return smooth
         apart = z[:, None] - np.array(self.breaks)
         near = 0.5 * np.exp(-np.abs(apart) / self.clamp_reach)
+        held = 0.5 * np.exp(-(z[:, None] + np.array(self.breaks)) / self.clamp_reach)
         beyond = np.maximum(apart, 0.0) / self.length
-        steps = np.where(apart > 0.0, 1.0 - near, near), near / self.clamp_reach
+        steps = np.where(apart > 0.0, 1.0 - near, near) - held, (near + held) / self.clamp_reach
         ramps = beyond, (beyond > 0.0) / self.length
         value, slope = (np.hstack(parts) for parts in zip(smooth, steps, ramps, strict=True))
         return value, slope
 
     def table(self, z: Array, kind: int) -> Table:
-        """Values and first two derivatives (stations, each) of a field's functions, that leave the clamp with a power of z."""
-        smooth = polynomial_table(z / self.length, kind, self.terms, self.length)
+        """Values and first two derivatives (stations, each) of a field's functions, that leave the clamp with a power of z.
+
+        With breaks they are orthonormal over the span.
+        """
         if not self.breaks:
-            return smooth
+            return polynomial_table(z / self.length, kind, self.terms, self.length)
+        value, first, second = (each @ orthonormal(self, kind) for each in self.broken_table(z, kind))
+        return value, first, second
+
+    def broken_table(self, z: Array, kind: int) -> Table:
+        """Polynomials, then ramps and parabolas that begin at breaks: near the clamp or each other they are all but polynomials."""
+        smooth = polynomial_table(z / self.length, kind, self.terms, self.length)
         beyond = np.maximum(z[:, None] - np.array(self.breaks), 0.0) / self.length
         there = (beyond > 0.0) / self.length
         ramps = beyond, there, np.zeros_like(there)
         parabolas = beyond**2, 2.0 * beyond * there, 2.0 * there**2
         value, first, second = (np.hstack(parts) for parts in zip(smooth, ramps, parabolas, strict=True))
         return value, first, second
+
+
+@lru_cache
+def orthonormal(space: TrialSpace, kind: int) -> Array:
+    """R⁻¹ (each, each) of the QR factors of a field's functions with breaks, whose masses would else be singular to rounding."""
+    rule = Stations.between(np.array([0.0, *space.breaks, space.length]), space.terms + 2)
+    value = space.broken_table(rule.z, kind)[0]
+    factor = np.linalg.qr(np.sqrt(rule.weight / space.length)[:, None] * value, mode="r")
+    return sealed(np.asarray(solve_triangular(factor, np.eye(len(factor)))))
 
 
 def polynomial_table(xi: Array, power: int, terms: int, length: float) -> tuple[Array, Array, Array]:
