@@ -11,6 +11,7 @@ from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Matches
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import run
+from train.reproduce.section import own_rule
 
 
 def outcome(model):
@@ -35,8 +36,19 @@ def records(tmp_path, monkeypatch):
 def test_own_work_is_counted_apart(records):
     page = markdown_page(records)
     assert "| tables and figures, in nature | 1 | 0 | 0 | 0 |" in page and "| their statements, in nature | 1 | 0 | 0 | 0 |" in page
-    assert "| checks of “7.2, done” | 2 | 0 | 0 | 0 |" in page
+    assert "Of the 2 checks of “7.2, done” 2 hold." in page
     assert "checks of" not in markdown_page(records[:1])
+
+
+def test_own_work_holds_or_does_not_and_reproduces_nothing(records):
+    thesis, own = markdown_page(records).split("## 7.2, done")
+    assert "Check: ● holds (1 of 1 statements)." in own and "| ● holds | holds within 1 % of every number, nearly within" in own
+    assert "reproduced" not in own.replace("Nothing of the thesis is reproduced", "") and "● reproduced" in thesis
+    assert "regression check" in own
+
+
+def test_rules_are_worded_for_own_work():
+    assert own_rule("reproduced if above, trend if so, else not reproduced") == "holds if above, nearly if so, else does not hold"
 
 
 def test_own_work_has_a_heading_of_its_name_and_expectations_where_the_thesis_has_statements(records):

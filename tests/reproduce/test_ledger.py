@@ -1,8 +1,11 @@
+import re
+
 import numpy as np
 import pytest
 
 from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIES, chosen
 from train.reproduce.judging.ledger import ROWS
+from train.reproduce.judging.stumbling import STUMBLING
 from train.reproduce.judging.verdicts import Below, Changes, Holds, Large, Marginal, Matches, Small, Substantial, Verdict
 
 BY_NAME = {study.name: study for study in STUDIES}
@@ -68,7 +71,7 @@ def test_conclusion_stands_on_numbers_in_favour_and_falls_with_any_one_against(r
         assert row.verdict(judged(row, against)) is Verdict.NOT_REPRODUCED
 
 
-@pytest.mark.parametrize("row", DECIDED, ids=lambda row: f"{row.section}: {row.text[:40]}")
+@pytest.mark.parametrize("row", [*DECIDED, *STUMBLING], ids=lambda row: f"{row.section}: {row.text[:40]}")
 def test_conclusions_are_decided_by_what_the_thesis_states(row):
     assert not any(statement(study, key).aside for study, key in row.decided_by)
 
@@ -77,6 +80,13 @@ def test_conclusion_without_a_result_cannot_be_tested_and_one_that_was_not_run_h
     empty = [row for row in ROWS if not row.decided_by]
     assert empty and all(row.verdict({}) is Verdict.UNTESTABLE and row.remark for row in empty)
     assert DECIDED[0].verdict({}) is None
+
+
+def test_what_is_stumbled_over_is_explained_and_decided_by_the_tables_and_figures_that_it_names():
+    for row in STUMBLING:
+        assert row.remark and row.decided_by
+        numbers = {study.split("-")[1] for study, _ in row.decided_by}
+        assert numbers == set(re.findall(r"\d\.\d+", row.section))
 
 
 def test_every_section_of_conclusions_is_there():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import typer
@@ -17,9 +17,12 @@ from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.overview import first_verdicts, second_verdicts, verdicts_of
 from train.reproduce.report import html_page, markdown_page
 from train.reproduce.runner import Record, load, run
+from train.reproduce.section import OWN_WORDS
 from train.shared.files import check_folder
 from train.shared.lock import alone_in
 from train.workers.workers import Workers
+
+THEIR_WORDS = {verdict: verdict.value for verdict in Verdict}
 
 
 def reproduce(
@@ -105,7 +108,7 @@ def report(records: list[Record], output: Path) -> None:
     everything = with_earlier(output, records)
     told("Statements", verdicts_of(THESIS_STUDIES, first_verdicts(records)))
     told("By the thesis' equations", verdicts_of(THESIS_STUDIES, second_verdicts(records)))
-    told(f"Checks of {FUTURE_WORK[0]!r}", verdicts_of(FUTURE_WORK[1], first_verdicts(records)))
+    told(f"Checks of {FUTURE_WORK[0]!r}", verdicts_of(FUTURE_WORK[1], first_verdicts(records)), OWN_WORDS)
     rows = [row.verdict(first_verdicts(everything)) for row in ROWS if row.decided_by]
     if any(rows):
         told("Conclusions", [*rows, *(Verdict.UNTESTABLE for row in ROWS if not row.decided_by)])
@@ -115,7 +118,7 @@ def report(records: list[Record], output: Path) -> None:
     typer.echo(f"{output / 'report.html'}")
 
 
-def told(what: str, verdicts: Sequence[Verdict | None]) -> None:
+def told(what: str, verdicts: Sequence[Verdict | None], words: Mapping[Verdict, str] = THEIR_WORDS) -> None:
     """How many of each, if there are any."""
     if verdicts:
-        typer.echo(f"{what}: " + ", ".join(f"{number} {verdict.value}" for verdict, number in counts(verdicts).items()))
+        typer.echo(f"{what}: " + ", ".join(f"{number} {words[verdict]}" for verdict, number in counts(verdicts).items()))

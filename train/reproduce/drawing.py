@@ -78,7 +78,7 @@ def labels_of(panels: Sequence[Panel | Grid]) -> list[str]:
 
 
 def appearances(outcome: Outcome) -> Looks:
-    """Colour and sign of each label: a sign of its own, and a lightness that falls from dark to light within its panel."""
+    """Colour and sign of each label: a sign of its own, and a lightness from dark to light within the panels that share labels."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
@@ -86,13 +86,23 @@ def appearances(outcome: Outcome) -> Looks:
     if len(labels) < 2:
         return {}
     looks: Looks = {}
-    for panel in outcome.panels:
-        together = labels_of([panel])
+    for together in shared_labels(outcome.panels):
         for place, label in enumerate(together):
             lightness = 0.78 * place / max(1, len(together) - 1)
             marker = Marker(SIGNS[labels.index(label) % len(SIGNS)])
-            looks.setdefault(label, Look(to_hex(colormaps["viridis"](lightness)), marker=marker))
+            looks[label] = Look(to_hex(colormaps["viridis"](lightness)), marker=marker)
     return looks
+
+
+def shared_labels(panels: Sequence[Panel | Grid]) -> list[list[str]]:
+    """Labels that are to be told apart: those of a panel, together with those of panels that share some with it."""
+    groups: list[list[str]] = []
+    for panel in panels:
+        own = labels_of([panel])
+        joined = [group for group in groups if set(group) & set(own)]
+        groups = [group for group in groups if group not in joined]
+        groups.append(list(dict.fromkeys([label for group in joined for label in group] + own)))
+    return groups
 
 
 def legend_entries(outcome: Outcome, looks: Looks) -> list[Curve]:
@@ -101,15 +111,28 @@ def legend_entries(outcome: Outcome, looks: Looks) -> list[Curve]:
     used = {label: {curve.line for curve in curves if curve.label == label} for label in labels}
     solid = PALE if "dotted" in outcome.lines else PLAIN
     known: dict[str, Look] = {"points": replace(PLAIN, marker=Marker()), "solid": solid}
+    signed = signed_labels(outcome.panels)
     entries = [Curve(NOTHING, NOTHING, text, line, known.get(line, PLAIN)) for line, text in outcome.lines.items()]
     scatters = all(lines == {"points"} for lines in used.values())
     for label in labels:
         line = "points" if used[label] == {"points"} else "solid" if len(used[label]) > 1 else next(iter(used[label]))
         look = looks.get(label, replace(PLAIN, marker=Marker()))
+        if label not in signed:
+            look = replace(look, marker=None)
         if scatters and label != labels[0] and look.marker:
             look = replace(look, marker=replace(look.marker, fill="none"))
         entries.append(Curve(NOTHING, NOTHING, label, line, look))
     return entries
+
+
+def signed_labels(panels: Sequence[Panel | Grid]) -> set[str]:
+    """Labels that signs are drawn for: of points, and of lines where no points are."""
+    signed: set[str] = set()
+    for panel in panels:
+        curves = curves_of([panel])
+        points = {curve.label for curve in curves if curve.line == "points"}
+        signed |= points or {curve.label for curve in curves}
+    return signed
 
 
 def dressed(panel: Panel, looks: Looks, in_pairs: bool) -> Panel:
@@ -134,11 +157,13 @@ def point_look(curve: Curve, looks: Looks, hollow: bool) -> Look:
 
 
 def line_look(curve: Curve, looks: Looks, in_pairs: bool, marked: bool) -> Look:
-    """Its signs are sparse and begin at a place of its own, so that they do not pile up.
+    """Its signs are sparse and begin at a place of its own, so that they do not pile up. A curve that is faint itself has none.
 
     Where points of the same label mean something (not ``marked``) the line goes without signs.
     """
     look = looks.get(curve.label, PLAIN)
+    if curve.look.opacity < 1.0:
+        return replace(look, width=curve.look.width, opacity=curve.look.opacity, marker=None)
     if look.marker is not None:
         place, points = list(looks).index(curve.label), len(curve.x)
         spacing = max(1, points // 7)

@@ -13,6 +13,13 @@ from train.reproduce.runner import Record
 from train.reproduce.thesis.equations import TOGETHER
 
 SYMBOL = {Verdict.REPRODUCED: "●", Verdict.TREND: "◐", Verdict.NOT_REPRODUCED: "○", Verdict.UNTESTABLE: "–"}
+OWN_WORDS = {
+    Verdict.REPRODUCED: "holds",
+    Verdict.TREND: "holds nearly",
+    Verdict.NOT_REPRODUCED: "does not hold",
+    Verdict.UNTESTABLE: "cannot be tested",
+}
+"""Of our own work, where nothing of the thesis is reproduced."""
 IN_NATURE, BY_EQUATIONS = "in nature", "by the thesis' equations"
 """The two columns of verdicts."""
 
@@ -25,6 +32,19 @@ def shown_verdict(verdict: Verdict) -> str:
 def shown_second(verdict: Verdict) -> str:
     """The same of a second verdict."""
     return f"{SYMBOL[verdict]} cannot be evaluated" if verdict is Verdict.UNTESTABLE else shown_verdict(verdict)
+
+
+def shown_own(verdict: Verdict) -> str:
+    """The same of our own work, in its words."""
+    return f"{SYMBOL[verdict]} {OWN_WORDS[verdict]}"
+
+
+def own_rule(words: str) -> str:
+    """A rule's words for our own work."""
+    changed = (("not reproduced", OWN_WORDS[Verdict.NOT_REPRODUCED]), ("reproduced", OWN_WORDS[Verdict.REPRODUCED]))
+    for theirs, ours in (*changed, ("trend", "nearly")):
+        words = words.replace(theirs, ours)
+    return words
 
 
 def section(study: Study, record: Record, markup: Markup) -> list[str]:
@@ -44,7 +64,9 @@ def section(study: Study, record: Record, markup: Markup) -> list[str]:
 
 def own_verdict(study: Study, record: Record) -> str:
     """The verdict of our own work, with how many of its statements hold."""
-    return f"Verdict: {shown_verdict(study.verdict(record.judgements))} ({share(study.verdicts(record.judgements))})."
+    verdicts = study.verdicts(record.judgements)
+    held = f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements"
+    return f"Check: {shown_own(study.verdict(record.judgements))} ({held})."
 
 
 def both_verdicts(study: Study, record: Record) -> str:
@@ -85,8 +107,8 @@ def own_table(study: Study, record: Record, markup: Markup) -> str:
     rows = []
     for statement in study.statements:
         found = record.judgements[statement.key]
-        rows.append([worded(statement), *numbers(found), shown_verdict(found.verdict), statement.rule.words])
-    return markup.table(["statement", "expected", "ours", "deviation", "verdict", "rule"], rows)
+        rows.append([worded(statement), *numbers(found), shown_own(found.verdict), own_rule(statement.rule.words)])
+    return markup.table(["statement", "expected", "ours", "deviation", "check", "rule"], rows)
 
 
 def worded(statement: Statement) -> str:

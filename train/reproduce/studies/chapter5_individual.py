@@ -13,7 +13,7 @@ from beamenv.blade.config import BladeConfig
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import WITH_AND_WITHOUT, Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Below, Changes, Holds, Large
-from train.reproduce.studies.chapter5_one_voltage import EACH, LOOP, WHY_PLIES, WHY_TAPER
+from train.reproduce.studies.chapter5_one_voltage import EACH, LOOP, UNDER_PRESSURE, WHY_PLIES, WHY_TAPER
 from train.reproduce.studies.closed_loop import (
     PULSE,
     UNLIMITED,
@@ -25,6 +25,7 @@ from train.reproduce.studies.closed_loop import (
     response_panels,
     settling_times,
     simulate,
+    under_pressure,
     weighed,
 )
 from train.reproduce.thesis import Model
@@ -50,10 +51,12 @@ def individual_ply_angle(model: Model) -> Outcome:
 def individual_taper(model: Model) -> Outcome:
     """Figure 5.15."""
     blades = {f"η = {t:g}": blade(model, model.blade(30.0, taper=t, pretwist_deg=30.0)) for t in (1.0, 2.0, 3.0)}
-    found = controlled(model, blades)
+    found, falling = controlled(model, blades), controlled(model, blades, loaded=under_pressure)
     voltage = peak_voltages(found)
     evidence = {
         "tip": peaks(found),
+        "pressure-tip": peaks(falling),
+        "pressure-voltage": peak_voltages(falling)[:, [0, 2, 3]].T,
         "voltage": voltage[:, [0, 2, 3]].T,
         "second": voltage[:, 1],
         "limit": voltages_over_what_is_open(model, blades["η = 1"]),
@@ -143,6 +146,7 @@ STUDIES = (
             Statement("tip", "Taper lowers the tip displacement", Changes(-1), WHY_TAPER),
             Statement("voltage", "Taper lowers the peak voltage on actuators 1, 3 and 4", Changes(-1), WHY_TAPER),
             Statement("second", "Taper raises the voltage on actuator 2", Changes(+1)),
+            *UNDER_PRESSURE,
             Statement(
                 "limit",
                 "Voltages stay well below 1500 V",

@@ -20,6 +20,7 @@ from train.reproduce.studies.closed_loop import (
     response_panels,
     settling_times,
     simulate,
+    under_pressure,
 )
 from train.reproduce.studies.study_patches import FIELD_OVER_THICKNESS, covering
 from train.reproduce.thesis import Model
@@ -94,10 +95,15 @@ def two_plies(speed: float) -> Compute:
 
 def ganged_taper(model: Model) -> Outcome:
     """Figure 5.12."""
-    found = controlled(
-        model, {f"η = {t:g}": blade(model, model.blade(30.0, taper=t), patches(ganged=True)) for t in (1.0, 2.0, 3.0)}
-    )
-    evidence = {"tip": peaks(found), "voltage": peak_voltages(found).T, "settling": settling_times(found)}
+    blades = {f"η = {t:g}": blade(model, model.blade(30.0, taper=t), patches(ganged=True)) for t in (1.0, 2.0, 3.0)}
+    found, falling = controlled(model, blades), controlled(model, blades, loaded=under_pressure)
+    evidence = {
+        "tip": peaks(found),
+        "voltage": peak_voltages(found).T,
+        "settling": settling_times(found),
+        "pressure-tip": peaks(falling),
+        "pressure-voltage": peak_voltages(falling).T,
+    }
     return Outcome(evidence, response_panels(found))
 
 
@@ -115,9 +121,14 @@ LQG = f"sampled LQG from summed sensors, step of 30 N/m in flap; {ASKED}"
 GANGED = f"one voltage on four MFC actuators of 80 mm × 57 mm; {LQG}"
 EACH = f"four MFC actuators with a voltage each; sampled LQG, step of 30 N/m in flap; {ASKED}"
 WHY_TAPER = (
-    "The load per metre is the same while the blade gets thinner and lighter. By the thesis' equations, too, the tip would go less "
-    "far only under a load that falls with the chord: see Figure 3.16."
+    "The load per metre is the same while the blade gets thinner and lighter. By the thesis' equations, too, the tip goes less far "
+    "only under a load that falls with the chord, see Figure 3.16."
 )
+UNDER_PRESSURE = (
+    Statement("pressure-tip", "The tip displacement under a load that falls with the chord", Changes(-1), aside=True),
+    Statement("pressure-voltage", "The voltages under such a load", Changes(-1), aside=True),
+)
+"""What taper does where the load is a pressure's: the thesis does not say how its own is spread."""
 WHY_COVERAGE = (
     "The input weight is the energy the sheets can store, so larger ones are driven with less voltage to about the same effect; "
     "with the whole span covered, their stiffness lowers the peak."
@@ -198,6 +209,7 @@ STUDIES = (
             Statement("tip", "Taper lowers the tip displacement", Changes(-1), WHY_TAPER),
             Statement("voltage", "Taper lowers the voltage", Changes(-1), WHY_TAPER),
             Statement("settling", "Taper lengthens the settling time", Changes(+1)),
+            *UNDER_PRESSURE,
         ),
         ganged_taper,
         rests_on=(*LOOP, UNIFORM_TENSION),

@@ -15,7 +15,6 @@ from beamenv.blade import BladeConfig
 from beamenv.blade.build import Blade
 from beamenv.plant.plant import Plant, sample
 from train.figures.figure import Curve, Look, Panel
-from train.figures.palette import NEUTRAL, colour
 from train.probing.memories import QUESTIONS
 from train.probing.table import FEATURES, Row, read_rows
 from train.reproduce.judging.study import Outcome, Statement, Study
@@ -156,7 +155,7 @@ def remembered(model: Model) -> Outcome:
         for name, found in best.items()
     ]
     panels = [_memory_panel([row for row in rows if row.question == question.name]) for question in QUESTIONS]
-    return Outcome(evidence, panels, notes=notes)
+    return Outcome(evidence, panels, {"dashed": "its 95 % interval"}, notes=notes)
 
 
 def mean_score(rows: list[Row], question: str, features: str) -> float:
@@ -170,16 +169,15 @@ def _peak(rows: list[Row], question: str, features: str) -> float:
 
 def _memory_panel(rows: list[Row]) -> Panel:
     """Scores over time, with their intervals as thin lines."""
-    looks = (Look(colour(0), width=1.8), Look(colour(1)), Look(colour(2)), Look(NEUTRAL))
     curves = []
-    for name, look in zip(FEATURES, looks, strict=True):
+    for name in FEATURES:
         of = [row for row in rows if row.features == name]
         time = np.array([row.time for row in of])
-        curves.append(Curve(time, np.array([row.score.value for row in of]), name, look=look))
+        curves.append(Curve(time, np.array([row.score.value for row in of]), name))
         if name in ("memory", "magnitudes"):
             for bound in ("low", "high"):
-                faint = replace(look, width=0.6, opacity=0.5)
-                curves.append(Curve(time, np.array([getattr(row.score, bound) for row in of]), line="dotted", look=faint))
+                faint = Look(width=0.9, opacity=0.6)
+                curves.append(Curve(time, np.array([getattr(row.score, bound) for row in of]), name, "dashed", faint))
     first = rows[0]
     unit = f"balanced accuracy (guess {first.chance:.2f})" if first.classes else "R²"
     return Panel(f"{first.question} (scenario {first.scenario})", "time (s)", unit, curves, y_limits=(-0.2, 1.0))
@@ -206,7 +204,7 @@ STUDIES = (
         "recurrent-memory",
         "what the gated recurrent unit of a trained agent tells of the blade",
         "`gradient` trained on all scenarios, run 0, 48 units; ridge probes of the units over 50 ms, on episodes they were not "
-        "fitted to; 128 validation episodes each, as `python -m train.probing` recorded them; dotted: 95 % intervals",
+        "fitted to; 128 validation episodes each, as `python -m train.probing` recorded them",
         (
             Statement("above", "Speed, delay and dead actuator are told better than by guessing, always after 0.1 s", Holds()),
             Statement("window", "The memory tells more than as many of the latest readings and voltages do", Holds()),

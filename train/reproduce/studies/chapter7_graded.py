@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 EXPONENTS = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0, 1e6)
 """Silicon nitride alone, ever more steel, and steel alone."""
+CONTROLLED = (0.0, 0.1, 0.5, 1.0, 2.0, 10.0, 1e6)
 DRAWN = slice(1, -1)
 AT = (0.0, 200.0)
 """rad/s."""
@@ -84,10 +85,14 @@ def turning_strips(model: Model) -> Outcome:
     exponents = (0.5, 1.0, 10.0)
     found, hand = zip(*(turning_strip(exponent) for exponent in exponents), strict=True)
     curves = [Curve(np.array(SPEEDS), row, f"exponent {p:g}", "points") for p, row in zip(exponents, found, strict=True)]
-    panel = Panel("first flap", "speed × T", "frequency × T", [Curve(np.array(SPEEDS), np.array(PRINTED), "printed"), *curves])
+    apart = [Curve(np.array(SPEEDS), 1e6 * (row / np.array(PRINTED) - 1.0), c.label) for c, row in zip(curves, found, strict=True)]
+    panels = [
+        Panel("first flap", "speed × T", "frequency × T", [Curve(np.array(SPEEDS), np.array(PRINTED), "printed"), *curves]),
+        Panel("what hides there", "speed × T", "off what is printed (10⁻⁶)", apart),
+    ]
     rows = [[f"{speed:g}", printed, *numbers] for speed, printed, *numbers in zip(SPEEDS, PRINTED, *found, strict=True)]
     header = ["speed × T", "printed", *(f"exponent {p:g}" for p in exponents)]
-    return Outcome({"printed": np.concatenate(found), "hand": np.concatenate(hand)}, [panel], header=header, rows=rows)
+    return Outcome({"printed": np.concatenate(found), "hand": np.concatenate(hand)}, panels, header=header, rows=rows)
 
 
 def free(model: Model) -> Outcome:
@@ -117,7 +122,7 @@ def free(model: Model) -> Outcome:
 def controlled(model: Model) -> Outcome:
     """A step of load, with and without LQG, and the settled J of both under the white load."""
     tips, costs, curves, still = [], [], [], []
-    for exponent in EXPONENTS:
+    for exponent in CONTROLLED:
         plant = plant_of(blade(graded(exponent)))
         laws = (no_control(plant), lqg(plant))
         responses = [simulate(plant, law, model.load) for law in laws]
@@ -130,7 +135,7 @@ def controlled(model: Model) -> Outcome:
             for response, line in zip(responses, ("dotted", "solid"), strict=True):
                 curves.append(Curve(response.times[shown], 1e6 * response.tip[shown], f"exponent {exponent:g}", line))
     peaks, settled = np.array(tips), np.array(costs)
-    x = np.array(EXPONENTS[DRAWN])
+    x = np.array(CONTROLLED[DRAWN])
     share = Panel(
         "settled J, LQG over none",
         "exponent",
@@ -147,7 +152,7 @@ def controlled(model: Model) -> Outcome:
     }
     header = ["exponent", "peak at rest (µm)", "peak (µm)", "peak with LQG (µm)", "settled J (J/s)", "settled J with LQG (J/s)"]
     numbers = np.column_stack([1e6 * np.array(still), 1e6 * peaks, settled])
-    rows = [[f"{p:g}", *row.tolist()] for p, row in zip(EXPONENTS, numbers, strict=True)]
+    rows = [[f"{p:g}", *row.tolist()] for p, row in zip(CONTROLLED, numbers, strict=True)]
     panels = [Panel("step in flap", "time (s)", "tip displacement (µm)", curves), share]
     return Outcome(evidence, panels, {"solid": "LQG", "dotted": "no control"}, header=header, rows=rows)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -11,15 +11,16 @@ from numpy.typing import NDArray
 
 from baselines import Instruments, LinearController, lqg
 from baselines.analysis.response import linear_response
-from beamenv.blade.build import build_plant
+from beamenv.blade.build import Blade, build_plant
 from beamenv.blade.config import BeamConfig, BladeConfig
 from beamenv.patches import PatchLayout
 from beamenv.plant.plant import Plant, sample
+from beamenv.plant.reduction import acting_on_velocities
 from train.figures.figure import Curve, Panel
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.configurations import WORLD
 from train.reproduce.thesis.equations import INPUT_WEIGHT
-from train.reproduce.thesis.response import settling_time
+from train.reproduce.thesis.response import ForcedBlade, settling_time
 
 Array = NDArray[np.float64]
 
@@ -136,17 +137,35 @@ def simulate(
 
 
 def controlled(
-    model: Model, blades: Mapping[str, BladeConfig], pulse: float | None = None, direction: str = "flap"
+    model: Model,
+    blades: Mapping[str, BladeConfig],
+    pulse: float | None = None,
+    direction: str = "flap",
+    loaded: Callable[[Plant, BladeConfig], Plant] = lambda plant, config: plant,
 ) -> dict[str, Response]:
-    """LQG-controlled responses to the model's load, by label."""
+    """LQG-controlled responses to the model's load, by label; the law is that of uniform loads, however the blade is ``loaded``."""
     responses = {}
     for label, config in blades.items():
         plant = weighed(model, plant_of(config))
         law = lqg(plant)
+        plant = loaded(plant, config)
         found = simulate(plant, law, model.load, pulse=pulse, direction=direction)
         asked = simulate(*without_limits(plant, law), model.load, SHOWN, pulse, direction).asked
         responses[label] = replace(found, asked=asked)
     return responses
+
+
+@lru_cache(maxsize=16)
+def pressure_of(config: BladeConfig) -> Array:
+    """(2r,): what a load in flap that falls with the chord, 1 N/m at the root, does to the plant of a blade."""
+    whole = Blade(config)
+    force = ForcedBlade(whole.beam, config.speed, "flap", config.damping_ratio, pressure=True).force
+    return acting_on_velocities(whole.modal.mode_shapes.T @ force[:, None])[:, 0]
+
+
+def under_pressure(plant: Plant, config: BladeConfig) -> Plant:
+    """The plant of a blade whose load in flap falls with the chord."""
+    return replace(plant, disturbance_input=np.column_stack([plant.disturbance_input[:, 0], pressure_of(config)]))
 
 
 def without_limits(plant: Plant, law: LinearController) -> tuple[Plant, LinearController]:

@@ -19,10 +19,8 @@ class Equation:
     name: str
     place: str
     words: str
-    misprint: bool = False
-    """Whether it may be an error of print alone, that the thesis did not compute with."""
     refuted: str = ""
-    """What the thesis prints that it contradicts: then it is tried and told, but counts for nothing."""
+    """What the thesis prints that it contradicts: then it is tried by itself and told, but counts for nothing."""
 
 
 EQUATIONS = (
@@ -33,15 +31,20 @@ EQUATIONS = (
     Equation(
         INPUT_WEIGHT, "Eq. 5.9", "R = η FᵀΨᵀKΨF with F in modal coordinates; η, not printed, such that tr R of θ = 30° is ours"
     ),
-    Equation(SIX_TERMS, "Table 3.3", "six trial functions of each field, which the table betrays, not ten", misprint=True),
-    Equation(PRINTED_Q12, "Eq. 4.5", "Q22 in place of Q12 in Q̄12, of plies and sheets", True, "Tables 3.3 and 3.4 refute it"),
-    Equation(PRINTED_Q, "Eq. 4.5", "Q̄12, Q̄16, Q̄26 and Q̄66 as printed", True, "Tables 3.3 and 3.4 refute it"),
-    Equation(FIBRES_ACROSS, "Eqs. 4.5 and 4.6", "θp = 0: the MFC's fibres along the contour", True, "Eq. 4.39 refutes it"),
+    Equation(
+        SIX_TERMS,
+        "Table 3.3",
+        "six trial functions of each field, which the table betrays, not ten",
+        "the text, which says ten, refutes it",
+    ),
+    Equation(PRINTED_Q12, "Eq. 4.5", "Q22 in place of Q12 in Q̄12, of plies and sheets", "Tables 3.3 and 3.4 refute it"),
+    Equation(PRINTED_Q, "Eq. 4.5", "Q̄12, Q̄16, Q̄26 and Q̄66 as printed", "Tables 3.3 and 3.4 refute it"),
+    Equation(FIBRES_ACROSS, "Eqs. 4.5 and 4.6", "θp = 0: the MFC's fibres along the contour", "Eq. 4.39 refutes it"),
 )
 """In the order in which they are tried."""
 
-TOGETHER: Reading = tuple(equation.name for equation in EQUATIONS if not equation.misprint)
-MISPRINTS: Reading = tuple(equation.name for equation in EQUATIONS if equation.misprint)
+TOGETHER: Reading = tuple(equation.name for equation in EQUATIONS if not equation.refuted)
+REFUTED: Reading = tuple(equation.name for equation in EQUATIONS if equation.refuted)
 
 
 def refutation(reading: Reading) -> str:
@@ -50,14 +53,14 @@ def refutation(reading: Reading) -> str:
 
 
 def together(rests_on: Reading) -> Reading:
-    """All of the thesis' equations but its misprints that something rests on."""
+    """All of the thesis' equations but those it refutes that something rests on."""
     return tuple(name for name in TOGETHER if name in rests_on)
 
 
 def readings(rests_on: Reading) -> tuple[Reading, ...]:
-    """How something is computed by the thesis' equations, in their order: all together, then with each misprint in addition."""
+    """How something is computed by the thesis' equations, in their order: all together, then with each refuted one in addition."""
     whole = together(rests_on)
-    return (whole, *((*whole, name) for name in MISPRINTS if name in rests_on))
+    return (whole, *((*whole, name) for name in REFUTED if name in rests_on))
 
 
 HOST: Reading = (SHEAR_FLOW,)
