@@ -50,7 +50,8 @@ def test_the_screen_shows_the_front_and_a_picture_is_drawn(quick, tmp_path):
     picture = tmp_path / "sizes.png"
     result = run("--size", "--picture", str(picture))
     assert result.exit_code == 0, result.output
-    for word in ("stationary cost of LQG over mass", "chosen", "chosen, root-side edges: actuators 0.", "own size, as configured: 63.26 g", "½CV²f at"):
+    edges = "chosen, root-side edges: actuators 0."
+    for word in ("stationary cost of LQG over mass", "chosen", edges, "own size, as configured: 63.26 g", "½CV²f at"):
         assert word in result.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")
 

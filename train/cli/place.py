@@ -19,7 +19,6 @@ from train.cli.place_sizes import Written, place_sizes, place_together
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 from train.shared.files import check_picture
 
-
 METHOD = "multistart"
 """Of placing one side, unless told otherwise."""
 
