@@ -50,7 +50,8 @@ def test_the_screen_shows_the_front_and_a_picture_is_drawn(quick, tmp_path):
     picture = tmp_path / "sizes.png"
     result = run("--size", "--picture", str(picture))
     assert result.exit_code == 0, result.output
-    for word in ("stationary cost of LQG over mass", "chosen", "own size, as configured: 63.26 g", "½CV²f at"):
+    edges = "chosen, root-side edges: actuators 0."
+    for word in ("stationary cost of LQG over mass", "chosen", edges, "own size, as configured: 63.26 g", "½CV²f at"):
         assert word in result.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")
 
@@ -96,13 +97,9 @@ def test_together_tells_both_sides_and_the_gain():
         (["--mass", "0.1"], "--mass limits patches that are sized: add --size."),
         (["--together", "--size"], "--together places patches as they are and draws nothing: leave --size out."),
         (["--together", "--picture", "x.png"], "leave --picture out."),
-        (["--together", "--method", "ga"], "--together has a search of its own: leave --method out."),
-        (["--size", "--method", "multistart"], "--size has a search of its own: leave --method out."),
-        (
-            ["--size", "--leave-unreached"],
-            "--size leaves modes that no patch reaches to their own damping: leave --leave-unreached out.",
-        ),
-        (["--save", "blade.json"], "--save is for the blade of patches that are sized: add --size."),
+        (["--size", "--method", "sqp"], "--size searches in a way of its own: leave --method out."),
+        (["--size", "--leave-unreached"], "--size leaves modes that no patch reaches alone: leave --leave-unreached out."),
+        (["--together", "--method", "ga"], "--together searches in a way of its own: leave --method out."),
         (["--size", "--mass", "0.0001"], "budget.mass is 0.0001, but must be at least 0.001977 kg"),
         (["--size", "--power", "nan"], "budget.power is nan, but must be"),
         (["--size", "--actuators", "9"], "sizes.actuators is 9, but must be"),

@@ -155,3 +155,17 @@ def test_on_the_true_blade_five_mode_lqg_is_worse_than_none():
         costs[name] = total
     assert costs["five"] > 2.0 * costs["none"]
     assert costs["all"] < 0.7 * costs["none"]
+
+
+def test_a_bank_of_one_plant_steps_one_blade_as_it_steps_a_batch():
+    """By itself such a blade met operators with an axis too many."""
+    slower = {"plants": {"speed_ratio": 0.9, "bank": 1}}
+    one, two = RotatingBeamEnv(scenario=slower), RotatingBeamVectorEnv(2, scenario=slower)
+    one.reset(seed=3)
+    two.reset(seed=[3, 4])
+    action = np.full(one.action_space.shape, 0.5)
+    for _ in range(5):
+        alone, reward, *_ = one.step(action)
+        batch, rewards, *_ = two.step(np.stack([action, action]))
+        np.testing.assert_allclose(batch[0], alone, rtol=1e-5, atol=1e-6)
+        assert rewards[0] == pytest.approx(reward, rel=1e-5) and rewards[0] != rewards[1]

@@ -119,7 +119,7 @@ def test_pyroelectricity_that_no_sensor_would_show_is_refused_in_a_sentence():
 
 def test_a_blade_too_hot_for_its_patches_is_refused_in_a_sentence():
     with pytest.raises(
-        ValueError, match=r"scenario.plants.temperature is \[300.0, 450.0\], but must be a number from 173.15 to 403.15 \(K\)"
+        ValueError, match=r"scenario.plants.temperature is \[300.0, 450.0\], but must be two numbers from 173.15 to 403.15 \(K\)"
     ):
         _ = resolve_task(
             blade={"beam": {"material": "aluminium"}}, scenario={"plants": {"temperature": [300.0, 450.0], "bank": 2}}

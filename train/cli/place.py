@@ -19,6 +19,9 @@ from train.cli.place_sizes import Written, place_sizes, place_together
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 from train.shared.files import check_picture
 
+METHOD = "multistart"
+"""Of placing one side, unless told otherwise."""
+
 
 def place(
     actuators: Annotated[int | None, typer.Option(help="How many actuators to place.")] = None,
@@ -28,9 +31,8 @@ def place(
     blade: BladeOption = None,
     passive: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
     method: Annotated[
-        str | None,
-        typer.Option(help="multistart (if left out), ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two."),
-    ] = None,
+        str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
+    ] = METHOD,
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
@@ -60,14 +62,15 @@ def place(
     """
     drawn = picture or (None if as_json or together else Path("results/sizes.png" if size else "results/placement.png"))
     with one_sentence():
-        from baselines.placement.optimal import METHOD
         from beamenv.blade.files import load_config
         from beamenv.blade.layouts import SIDES, positions_of
         from beamenv.blade.presets import blade_config
 
         budget = {"mass": mass, "channels": channels, "power": power, "frequency": frequency}
         check_alone(together, size, picture, {**budget, "save": save})
-        check_search(together, size, method, leave_unreached)
+        if size and leave_unreached:
+            raise ValueError("--size leaves modes that no patch reaches alone: leave --leave-unreached out.")
+        check_searched("size" if size else "together" if together else "", method)
         if drawn is not None:
             check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
@@ -82,7 +85,7 @@ def place(
         counts = {side: count for side, count in zip(SIDES, (actuators, sensors), strict=True) if count is not None}
         counts = counts or {side: count for side in SIDES if (count := len(positions_of(config, side)))}
         with bars(counts) as report:
-            sides = place_sides(config, counts, method or METHOD, seed, report, leave_unreached)
+            sides = place_sides(config, counts, method, seed, report, leave_unreached)
         if as_json:
             print_json([side.to_dict() for side in sides])
         else:
@@ -100,16 +103,13 @@ def check_alone(together: bool, size: bool, picture: Path | None, of_sizes: dict
         raise ValueError(f"--together places patches as they are and draws nothing: leave --{'size' if size else 'picture'} out.")
     given = [name for name, value in of_sizes.items() if value is not None]
     if given and not size:
-        what = "is for the blade of" if given[0] == "save" else "limits"
-        raise ValueError(f"--{given[0]} {what} patches that are sized: add --size.")
+        raise ValueError(f"--{given[0]} limits patches that are sized: add --size.")
 
 
-def check_search(together: bool, size: bool, method: str | None, leave_unreached: bool) -> None:
-    """``ValueError`` for options of the search that would have no effect."""
-    if method is not None and (together or size):
-        raise ValueError(f"--{'size' if size else 'together'} has a search of its own: leave --method out.")
-    if leave_unreached and size:
-        raise ValueError("--size leaves modes that no patch reaches to their own damping: leave --leave-unreached out.")
+def check_searched(way: str, method: str) -> None:
+    """``ValueError`` for a method of one side's search beside ``way``, "size" or "together", which has a search of its own."""
+    if way and method != METHOD:
+        raise ValueError(f"--{way} searches in a way of its own: leave --method out.")
 
 
 @contextmanager

@@ -98,6 +98,8 @@ def show_front(sized: SizedFront) -> None:
         mark = "chosen" if number == sized.chosen else ""
         table.add_row(mark, f"{1e3 * each.mass:.4g}", f"{each.cost:.4g}", f"{cost:.4g}", power, *sides)
     print_table(table)
+    chosen = sized.front.points[sized.chosen]
+    say(f"chosen, root-side edges: actuators {edges(chosen.actuators)}; sensors {edges(chosen.sensors)} m")
     for layout in sized.layouts:
         say(f"own size, {layout.name}: {1e3 * layout.mass:.4g} g, {layout.cost:.4g} J")
     if sized.left_out:
@@ -109,6 +111,11 @@ def sheet(side: Any) -> str:
     """Lengths × width × thickness of a side's patches, mm."""
     lengths = "/".join(f"{1e3 * each.length:.0f}" for each in side.patches)
     return f"{lengths} × {1e3 * side.width:.0f} × {1e3 * side.thickness:.2g}"
+
+
+def edges(side: Any) -> str:
+    """Where a side's patches begin, m."""
+    return " ".join(f"{each.start:.4f}" for each in side.patches)
 
 
 def save_chosen(sized: SizedFront, path: Path, as_json: bool) -> None:

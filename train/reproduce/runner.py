@@ -189,7 +189,7 @@ def made_of(study: Study, model: Model, fingerprint: str, results: Results) -> M
         second=second,
         notes=tuple(outcome.notes),
         header=tuple(outcome.header) if study.tabulated else (),
-        rows=tuple(tuple(str(cell) for cell in row) for row in outcome.rows) if study.tabulated else (),
+        rows=tuple(tuple(map(shown, row)) for row in outcome.rows) if study.tabulated else (),
         fingerprint=fingerprint,
     )
     return Made(record, csv_text(outcome), picture)
@@ -239,6 +239,11 @@ def second_of(kept: dict[str, Any]) -> Second:
 def source_fingerprint(model: Model) -> str:
     """A digest of the sources and data that results depend on, and of the model."""
     return digest(repr(model).encode(), source_digest(DEPENDS_ON).encode())
+
+
+def shown(cell: object) -> str:
+    """A cell on the page: floats to seven digits, of which the CSV has all."""
+    return f"{cell:.7g}" if isinstance(cell, float) else str(cell)
 
 
 def csv_text(outcome: Outcome) -> str:

@@ -170,7 +170,8 @@ class Allotment:
 
     def _gather(self) -> None:
         self._shared, places = None, self._places()
-        self.operators = self._bank.operators.pick(places) if len(self._bank) > 1 else self._bank.operators
+        operators = self._bank.operators
+        self.operators = operators.pick(places) if operators.fused.ndim > 2 else operators
         if self._lie.runs:  # a product serves a group, but squares are weighted blade by blade
             weights = self._bank.operators.weights[self.index]
             self.operators = replace(self.operators, weights=weights.reshape(*self._lie.shape, weights.shape[-1]))

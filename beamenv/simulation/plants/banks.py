@@ -100,7 +100,8 @@ def _of_scenario(error: Refused, variation: PlantVariation, temperature: float) 
         return error
     low, high = variation.temperature
     reached = "" if low <= temperature <= high else f"; with its change it reaches {temperature:g} K"
-    return Refused("scenario.plants.temperature", [low, high], error.allowed + reached)
+    allowed = error.allowed.replace("a number from", "two numbers from", 1)
+    return Refused("scenario.plants.temperature", [low, high], allowed + reached)
 
 
 def varied(variation: PlantVariation, config: BladeConfig) -> Array:

@@ -138,7 +138,7 @@ def free(model: Model) -> Outcome:
         "turning": loci[:, 1].T,
         "less": (np.ptp(loci, axis=0) / loci[0])[1] < (np.ptp(loci, axis=0) / loci[0])[0],
     }
-    header = ["°C", *(f"mode {mode + 1} at {speed:g} rad/s" for speed in AT for mode in range(MODES))]
+    header = ["°C", *(f"mode {mode + 1} at {speed:g} rad/s (rad/s)" for speed in AT for mode in range(MODES))]
     rows = [[f"{each:g}", *row.ravel().tolist()] for each, row in zip(CELSIUS, loci, strict=True)]
     return Outcome(evidence, panels, header=header, rows=rows)
 
@@ -178,7 +178,8 @@ def controlled(model: Model) -> Outcome:
         "better": robust < 0.45 * alone,
         "told": told <= (1.0 + 1e-6) * np.minimum(plain, robust),
     }
-    header = ["°C", "peak (mm)", "robust", "settling (s)", "settled J (J/s)", "LQG of 27 °C", "robust", "told"]
+    header = ["°C", "peak without control (mm)", "peak, robust (mm)", "settling, robust (s)"]
+    header += [f"J, {law} (J/s)" for law in ("no control", "LQG of 27 °C", "robust", "LQG told")]
     scaled = table * np.array([1e3, 1e3, 1.0, 1.0, 1.0, 1.0, 1.0])
     listed = [[f"{each:g}", *row.tolist()] for each, row in zip(CELSIUS, scaled, strict=True)]
     notes = [
