@@ -173,6 +173,15 @@ def instance(*classes):
     return Kind(classes[0].__name__, lambda value: value if isinstance(value, classes) else NOTHING, st.nothing())
 
 
+def _objects(value):
+    listed = isinstance(value, (list, tuple)) and all(map(is_dataclass, value))
+    return tuple(value) if listed else NOTHING
+
+
+OBJECTS = Kind("objects", _objects, st.nothing())
+"""A list of objects, which may be empty."""
+
+
 def table(parts, *classes):
     """A mapping of some fields, or an object of its class."""
 
@@ -264,7 +273,7 @@ def of_hint(hint, tables):
         return maybe(kind) if type(None) in get_args(hint) else kind
     if is_dataclass(hint):
         return table(of_fields(hint), hint) if tables else instance(hint)
-    return instance(hint)
+    return OBJECTS if get_origin(hint) is tuple else instance(hint)
 
 
 def of_fields(cls, tables=True):
