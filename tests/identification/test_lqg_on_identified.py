@@ -85,5 +85,5 @@ def test_a_lab_beam_whose_first_mode_the_voltages_hardly_move_has_an_lqg_that_is
     found = identify(Measurement(voltages, np.array(rows), INTERVAL, reading_units=("A",)), collocated=1.0)
     known = {"actuator_limits": 150.0}
     law, truth = lqg(found.plant(**known)), env.unwrapped.plant
-    assert (found.unstable_on(law, **known) > 3) == told
+    assert (found.unstable_on(law, **known) > 0) == told
     assert (spectral_radius(closed_loop(sampled(truth, law), law)[0]) > 1.0) == told
