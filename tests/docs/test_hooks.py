@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("mkdocs")
 pytest.importorskip("typer")
 
-HOOKS = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks.py"))
+HOOKS = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks" / "filling.py"))
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What pages take from the package when they are built: scenarios, recipes, shipped agents, examples, the command line's help."""
+"""What pages take from the package when they are built: scenarios, recipes, shipped agents, gallery, the command line's help."""
 
 from __future__ import annotations
 
@@ -7,22 +7,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from mkdocs.config.defaults import MkDocsConfig
-from mkdocs.structure.files import File, Files
-
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 SCENARIOS = ROOT / "beamenv" / "scenarios" / "named"
 EXAMPLES = ROOT / "examples"
 BLADES = EXAMPLES / "blades"
-
-
-def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Every example is a page."""
-    for script in sorted(EXAMPLES.glob("[0-9]*.py")):
-        files.append(File.generated(config, f"examples/{script.stem}.md", content=example_page(script)))
-    return files
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
@@ -32,18 +22,6 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
         if mark in markdown:
             markdown = markdown.replace(mark, make())
     return markdown
-
-
-def example_page(script: Path) -> str:
-    """A script in percent format as Markdown: comments of ``# %% [markdown]`` cells are text, the other cells are code."""
-    parts = [f"*This page is `examples/{script.name}`; run it with `python examples/{script.name}`.*"]
-    for cell in re.split(r"^# %%", script.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
-        head, _, body = cell.partition("\n")
-        if "[markdown]" in head:
-            parts.insert(len(parts) if len(parts) > 1 else 0, re.sub(r"^# ?", "", body.strip(), flags=re.MULTILINE))
-        else:
-            parts.append(f"```python\n{body.strip()}\n```")
-    return "\n\n".join(parts) + "\n"
 
 
 def scenario_table() -> str:

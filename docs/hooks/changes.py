@@ -1,0 +1,22 @@
+"""The change log as a page of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = {"CHANGELOG.md": "changes.md", "CONTRIBUTING.md": "contributing.md"}
+"""Files beside README that are pages as well, and these pages' names."""
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Add the pages."""
+    from mkdocs.structure.files import File
+
+    for name, page in PAGES.items():
+        text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
+        for other, its_page in PAGES.items():
+            text = text.replace(f"]({other})", f"]({its_page})")
+        files.append(File.generated(config, page, content=text))
+    return files
