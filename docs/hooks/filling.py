@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import sys
 from pathlib import Path
@@ -34,6 +35,38 @@ def scenario_table() -> str:
         opening = [line.removeprefix("#").strip() for line in lines if line.startswith("#")]
         rows.append([f"`{file.stem}`", " ".join(opening), "<br>".join(settings(lines)) or "nothing: the default"])
     return markup_table(["scenario", "what is wrong", "what the file sets"], rows)
+
+
+def scenario_films() -> str:
+    """A moving picture of each scenario, below what its file opens with."""
+    return "\n\n".join(map(scenario_film, sorted(SCENARIOS.glob("*.toml"))))
+
+
+def scenario_film(file: Path) -> str:
+    """One of them, folded but for the first."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    opening = " ".join(line.removeprefix("#").strip() for line in lines if line.startswith("#"))
+    picture = f"![One episode of {file.stem} without control and under LQG](images/scenarios/{file.stem}.svg){{ .film loading=lazy }}"
+    state = "???+" if file.stem == "nominal" else "???"
+    return f'{state} example "{file.stem}"\n\n    {opening}\n\n    {picture}'
+
+
+def return_table() -> str:
+    """How large rewards are, from ``docs/returns.csv``."""
+    from train.shared.markdown import markup_table
+
+    with (ROOT / "docs" / "returns.csv").open(encoding="utf-8") as file:
+        rows = [
+            [f"`{row['scenario']}`", *(counted(row[key]) for key in ("idle", "idle_low", "idle_high", "lqg"))]
+            for row in csv.DictReader(file)
+        ]
+    heads = ["scenario", "mean return without control", "5 % of episodes are below", "5 % are above", "mean return under LQG"]
+    return markup_table(heads, rows, 1)
+
+
+def counted(number: str) -> str:
+    """As a whole number with a minus sign."""
+    return f"{float(number):.0f}".replace("-", "−")
 
 
 def gallery() -> str:
@@ -129,5 +162,7 @@ FILLED = {
     "shipped agents": shipped_table,
     "command line": command_line,
     "gallery": gallery,
+    "scenario films": scenario_films,
+    "returns": return_table,
 }
 """What a comment of that name is replaced by."""

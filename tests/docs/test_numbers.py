@@ -1,6 +1,7 @@
 """Numbers that the pages tell are those that the code gives, to the digits printed."""
 
 import re
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -20,6 +21,11 @@ from baselines import (
 from baselines.design.loop import closed_loop
 from beamenv.plant.plant import sample
 from beamenv.task import resolve_task
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 ROOT = Path(__file__).parents[2]
 LQG = (ROOT / "docs" / "lqg.md").read_text(encoding="utf-8")
@@ -116,3 +122,29 @@ def test_counts_of_verdicts_told_of_the_thesis_are_those_of_its_page():
     assert f"{equations[3]} cannot be evaluated by these" in told
     missed, right, trend = re.search(r"statements (\d+) are not so .*? accounts for (\d+): .*? (\d+) keep a trend", page).groups()
     assert f"Of the {missed} that do not fully hold in nature, its equations explain {right}, and {trend} in trend" in told
+
+
+TOLD = tomllib.loads((ROOT / "docs" / "numbers.toml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("page", TOLD["told"], ids=lambda page: page["page"])
+def test_numbers_that_several_pages_tell_are_those_of_one_file(page):
+    text = " ".join((ROOT / page["page"]).read_text(encoding="utf-8").split())
+    sentences = [re.sub(r"{(\w+)\.(\w+)}", lambda found: str(TOLD[found[1]][found[2]]), each) for each in page["sentences"]]
+    assert [sentence for sentence in sentences if sentence not in text] == []
+
+
+def test_counts_of_verdicts_in_that_file_are_those_of_the_thesis_page():
+    page = (ROOT / "docs" / "thesis.md").read_text(encoding="utf-8")
+    cells = re.search(r"^\| their statements, in nature \|(.*)\|$", page, re.MULTILINE)[1].split("|")
+    thesis = TOLD["thesis"]
+    assert [thesis[name] for name in ("hold", "trend", "fail", "untested")] == [int(cell) for cell in cells]
+    assert thesis["statements"] == sum(int(cell) for cell in cells)
+
+
+def test_the_scenarios_and_controllers_that_are_counted_are_the_benchmarks():
+    page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
+    judged = re.search(r"the agent chosen on validation seeds is ahead of every law in \d+ of (\d+) single.*? in (\d+) of (\d+) unseen", page)
+    assert (int(judged[1]), int(judged[2]), int(judged[3])) == tuple(
+        TOLD["benchmark"][name] for name in ("single_faults", "ahead_in_kept", "kept_for_judging")
+    )
