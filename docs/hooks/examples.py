@@ -33,7 +33,7 @@ def on_files(files: Any, config: Any) -> Any:
 
 def example_page(script: Path) -> str:
     """A script in percent format as Markdown: ``# %% [markdown]`` cells are text, the others code with what they print."""
-    parts = [f"*This page is `examples/{script.name}`; run it with `python examples/{script.name}`.*"]
+    parts = [f"*This page is `examples/{script.name}`. To run it, type `python examples/{script.name}`.*"]
     shown = kept(script)
     for place, (is_text, body) in enumerate(cells(script)):
         if is_text:
@@ -41,7 +41,7 @@ def example_page(script: Path) -> str:
             continue
         parts.append(f"```python\n{body.strip()}\n```")
         if place in shown:
-            parts.append(f"```text\n{shown[place]}```")
+            parts.append(f'```text title="Output"\n{shown[place]}```')
         if (PICTURES / f"{script.stem}-{place}.png").is_file():
             parts.append(f"![What the lines above draw](../images/examples/{script.stem}-{place}.png)")
     return "\n\n".join(parts) + "\n"

@@ -87,8 +87,14 @@ def opening(home: str) -> str:
             return first_sentence(ast.get_docstring(node) or "")
         if name in assigned(node):
             after = body[place + 1] if place + 1 < len(body) else None
-            return first_sentence(literal(after))
+            return first_sentence(literal(after)) or value_of(node)
     return ""
+
+
+def value_of(node: ast.stmt) -> str:
+    """What a constant is given, if that is short."""
+    value = getattr(node, "value", None)
+    return f"`{ast.unparse(value)}`" if isinstance(value, ast.Constant | ast.Tuple) else ""
 
 
 def assigned(node: ast.stmt) -> set[str]:
