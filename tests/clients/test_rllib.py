@@ -10,6 +10,7 @@ pytest.importorskip("stable_baselines3")
 import beamenv
 from beamenv.baselines import evaluate
 from beamenv.task import resolve_task
+from tests.clients.lines import assert_lines_run
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
 
@@ -112,3 +113,7 @@ def test_a_batch_and_a_blade_have_episodes_as_gymnasium_has_them(rooms):
     np.testing.assert_array_equal(first, again)
     assert (first != other).any()
     assert (rooms.Blade(**SHORT).reset()[0] != rooms.Blade(**SHORT).reset()[0]).any()
+
+
+def test_the_lines_of_the_page_run(tmp_path):
+    assert_lines_run("RLlib", tmp_path)

@@ -4,6 +4,7 @@ import gymnasium
 import pytest
 
 import beamenv
+from tests.clients.lines import assert_lines_run
 
 pytest.importorskip("skrl")
 
@@ -36,3 +37,7 @@ def test_its_wrapper_steps_the_batch_of_tensors():
     for _ in range(20):
         observations, rewards, terminated, truncated, _ = env.step(torch.zeros((3, 4)))
     assert truncated.all() and observations.dtype == rewards.dtype == torch.float32
+
+
+def test_the_lines_of_the_page_run(tmp_path):
+    assert_lines_run("skrl", tmp_path)

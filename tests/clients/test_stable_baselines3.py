@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import beamenv
+from tests.clients.lines import assert_lines_run
 
 stable_baselines3 = pytest.importorskip("stable_baselines3")
 
@@ -42,3 +43,7 @@ def test_a_model_goes_through_a_file_and_evaluates_like_a_law(tmp_path):
     loaded = stable_baselines3.TD3.load(tmp_path / "model")
     reward, _ = evaluate_policy(loaded, env, n_eval_episodes=2, warn=False)
     assert np.isfinite(reward)
+
+
+def test_the_lines_of_the_page_run(tmp_path):
+    assert_lines_run("Stable-Baselines3", tmp_path)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import beamenv
+from tests.clients.lines import assert_lines_run
 
 torchrl_envs = pytest.importorskip("torchrl.envs")
 
@@ -84,3 +85,7 @@ def test_the_batch_of_tensors_rolls_out_through_the_ends_of_episodes(mode):
     assert rollout["observation"].shape == (3, 50, 4)
     ends = np.flatnonzero(rollout["next", "done"][0, :, 0].numpy())
     np.testing.assert_array_equal(ends, [19, 39])
+
+
+def test_the_lines_of_the_page_run(tmp_path):
+    assert_lines_run("TorchRL", tmp_path)

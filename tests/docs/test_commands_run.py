@@ -28,8 +28,8 @@ SMALLER = {
 }
 """By command: options that are put in the place of what the page has, or added; None takes an option away. Clusters, which only the
 reader has, are left out."""
-BEGUN = {"--quick", "--submit", "speed"}
-"""What takes minutes however small: it runs up to where the work begins."""
+BEGUN = {"--quick", "--submit", "speed", "generalist"}
+"""What takes minutes however small, such as plants of fourteen scenarios: it runs up to where the work begins."""
 
 
 class Reached(Exception):
@@ -135,6 +135,7 @@ def test_commands_run_in_the_order_of_their_page(page, tmp_path, monkeypatch):
                 if only_begun:
                     patch.setattr("train.benchmark.campaign._cells", begun)
                     patch.setattr("train.cli.speed.measured", begun)
+                    patch.setattr("train.learning.job.follow", begun)
                 result = CliRunner().invoke(app, words)
             if not (only_begun and isinstance(result.exception, Reached)):
                 assert result.exit_code == 0, (words, result.output[-2000:], result.exception)
