@@ -1,18 +1,22 @@
 """Figures: one vocabulary, which both renderers draw to the same effect."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from train.figures import paper, paper_heat_map, screen
+from train.figures import paper, paper_heat_map, screen, screen_heat_map
 from train.figures.figure import Curve, Look, Marker, Note, Panel
 from train.figures.heat_map import HeatMap
-from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS
+from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS, contrast
 from train.figures.panels import LearningCurves, actuator, learning_panel, pole_panel, voltage_curves
 
 pyplot = pytest.importorskip("matplotlib.pyplot", reason="matplotlib is not installed")
+matplotlib = pytest.importorskip("matplotlib")
+Image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
 go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")
+colors = pytest.importorskip("plotly.colors", reason="plotly is not installed")
 
 X = np.array([1.0, 2.0, 4.0])
 
@@ -124,30 +128,89 @@ def test_a_learning_curve_has_its_steps_and_levels_their_number():
     assert panel.y_limits == (0.0, 1.05)
 
 
+MISSING = HeatMap(
+    ("step", "pulse"),
+    ("LQG", "PPO", "SAC"),
+    np.array([[0.4, np.inf, 0.5], [0.6, np.nan, np.nan]]),
+    np.array([[0.0, 0.002, 0.0], [0.0, np.nan, np.nan]]),
+    kinds=("fixed", "learned", "learned"),
+    best=("LQG", "LQG"),
+    lost=frozenset({("pulse", "PPO")}),
+)
+
+
 def test_a_heat_map_on_paper_writes_costs_instability_and_what_is_missing():
-    content = HeatMap(
-        ("step", "pulse"),
-        ("LQG", "PPO", "SAC"),
-        np.array([[0.4, np.inf, 0.5], [0.6, np.nan, np.nan]]),
-        np.array([[0.0, 0.002, 0.0], [0.0, np.nan, np.nan]]),
-        kinds=("fixed", "learned", "learned"),
-        best=("LQG", "LQG"),
-        lost=frozenset({("pulse", "PPO")}),
-    )
-    figure = paper_heat_map.heat_map(content)
+    figure = paper_heat_map.heat_map(MISSING)
     cells = {tuple(text.get_position()): text for text in figure.axes[0].texts}
     written = {(round(y), x): text.get_text() for (x, y), text in cells.items() if y < 1.5 and "▲" not in text.get_text()}
     assert written == {(0, 0): "0.40", (0, 1): "∞", (0, 2): "0.50", (1, 0): "0.60", (1, 1): "✕", (1, 2): "–"}
     assert [text.get_text() for text in cells.values() if "▲" in text.get_text()] == ["▲ < 1 %"]
     assert [cells[0, 0].get_weight(), cells[2, 0].get_weight()] == ["bold", "normal"]
     assert {text.get_text() for (_, y), text in cells.items() if y > 1.5} == {"fixed", "learned"}
+    assert {"J / J without control", "lower is better"} <= {text.get_text() for text in figure.texts}
     pyplot.close(figure)
+
+
+def test_a_heat_map_has_the_same_shades_and_signs_on_paper_and_on_the_screen():
+    figure = paper_heat_map.heat_map(MISSING)
+    image, written = figure.axes[0].images[0], [text.get_text() for text in figure.axes[0].texts]
+    cells, missing = go.Figure(screen_heat_map.heat_map(MISSING)).data
+    assert [shade for _, shade in cells.colorscale] == [shade for _, shade in colors.get_colorscale("cividis_r")]
+    for place in ((0, 0), (0, 1), (0, 2), (1, 0)):
+        height = (cells.z[place[0]][place[1]] - cells.zmin) / (cells.zmax - cells.zmin)
+        (shade,) = colors.sample_colorscale("cividis_r", [height], colortype="tuple")
+        np.testing.assert_allclose(shade, image.to_rgba(image.get_array())[place][:3], atol=0.02)
+    signs = [re.sub("<[^>]*>", "", sign) for row in cells.text for text in row for sign in text.split("<br>") if sign]
+    assert set(signs) | set(missing.text) == set(written) - {"fixed", "learned"}
+    assert cells.text[0][0] == "<b>0.40</b>"
+    pyplot.close(figure)
+
+
+@pytest.mark.parametrize("theme", paper.THEMES)
+def test_numbers_of_a_heat_map_are_legible_on_every_shade_and_its_names_on_the_paper(theme):
+    cost = np.geomspace(0.3, 3.0, 40)[None]
+    content = HeatMap(("step",), tuple(map(str, range(40))), cost, np.zeros((1, 40)))
+    figure = paper_heat_map.heat_map(content, theme)
+    shades = figure.axes[0].images[0].to_rgba(np.clip(cost[0], 0.35, 2.0))
+    for text, shade in zip(figure.axes[0].texts, shades, strict=True):
+        assert contrast(text.get_color(), matplotlib.colors.to_hex(shade)) >= 4.5  # WCAG 2.1 (1.4.3)
+    names = figure.axes[0].get_xticklabels()
+    assert contrast(matplotlib.colors.to_hex(names[0].get_color()), matplotlib.colors.to_hex(figure.get_facecolor())) >= 7.0
+    pyplot.close(figure)
+
+
+def test_no_text_of_a_full_heat_map_is_cut_or_lies_on_another():
+    names = [f"multiple-model-residual-law-{k}" for k in range(9)]
+    scenarios = tuple(f"unknown-everything-{k}" for k in range(12))
+    cost, failed = np.linspace(0.3, 30.0, 108).reshape(12, 9), np.full((12, 9), 0.005)
+    content = HeatMap(scenarios, tuple(names), cost, failed, ("tier 0",) * 9, groups=("single fault",) * 6 + ("unseen",) * 6)
+    figure = paper_heat_map.heat_map(content)
+    figure.canvas.draw()
+    texts = [text for text in figure.findobj(matplotlib.text.Text) if text.get_text().strip() and text.get_visible()]
+    level = [text.get_window_extent() for text in texts if text.get_rotation() == 0.0]
+    assert len(level) > 200
+    for index, box in enumerate(level):
+        assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 and figure.bbox.y0 <= box.y0 and box.y1 <= figure.bbox.y1
+        assert not any(box.shrunk(0.98, 0.7).overlaps(other.shrunk(0.98, 0.7)) for other in level[index + 1 :])
+    pyplot.close(figure)
+
+
+def test_a_picture_of_both_themes_is_two_files_that_differ_in_their_paper(tmp_path):
+    def drawn(theme):
+        with paper.styled(theme):
+            figure, axis = pyplot.subplots(figsize=(1.0, 0.5))
+            paper.draw_panel(axis, Panel("", "", "", [Curve(X, X, "tip")]))
+        return figure
+
+    paper.save_themes(drawn, tmp_path / "tip.png")
+    papers = [Image.open(tmp_path / name).convert("RGB").getpixel((0, 0)) for name in ("tip.png", "tip-dark.png")]
+    assert papers == [(255, 255, 255), (13, 17, 23)]
 
 
 def test_a_heat_map_has_a_panel_for_each_group_of_scenarios():
     names, groups = tuple(f"scenario {line}" for line in range(23)), ("single fault",) * 10 + ("open",) * 4 + ("unseen",) * 9
-    cost = np.linspace(0.3, 30.0, 23 * 13).reshape(23, 13)
-    figure = paper_heat_map.heat_map(HeatMap(names, tuple(f"law {k}" for k in range(13)), cost, np.zeros((23, 13)), groups=groups))
+    cost = np.linspace(0.3, 30.0, 23 * 9).reshape(23, 9)
+    figure = paper_heat_map.heat_map(HeatMap(names, tuple(f"law {k}" for k in range(9)), cost, np.zeros((23, 9)), groups=groups))
     panels = figure.axes[:3]
     assert [axis.get_ylabel() for axis in panels] == ["single fault", "open", "unseen"]
     assert [[text.get_text() for text in axis.get_yticklabels()] for axis in panels] == [
@@ -155,7 +218,7 @@ def test_a_heat_map_has_a_panel_for_each_group_of_scenarios():
         [*names[10:14]],
         [*names[14:]],
     ]
-    assert [len(axis.get_xticklabels()) for axis in panels] == [13, 0, 0]
+    assert [len(axis.get_xticklabels()) for axis in panels] == [9, 0, 0]
     assert [panels[2].texts[-1].get_text(), panels[0].texts[0].get_text()] == ["30", "0.30"]
     assert figure.get_size_inches()[0] < 8.5  # at the width of a page its numbers are to be read
     pyplot.close(figure)

@@ -14,10 +14,6 @@ LINES = ("solid", "dashed", "dotted", "dashdot")
 """The second sign besides colour."""
 SIGNS = ("x-thin", "cross-thin", "square", "circle", "diamond", "triangle-up")
 """Of points, the second sign besides colour."""
-BETTER_OR_WORSE = "RdBu"
-"""Scale about no control, from red to blue."""
-DARK_IS_BAD = "cividis_r"
-"""Its lightness falls steadily: dark is bad in greyscale too, and for those who are colour-blind."""
 
 
 def colour(index: int) -> str:

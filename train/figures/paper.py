@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,13 @@ STYLE: Mapping[str, Any] = {
     "lines.markersize": 5,
     "savefig.dpi": 160,
 }
+THEMES: Mapping[str, Mapping[str, str]] = {
+    "light": {"paper": "#ffffff", "ink": "#1a1a1a", "wall": "#cccccc"},
+    "dark": {"paper": "#0d1117", "ink": "#e6eaef", "wall": "#4b5563"},
+}
+"""What is no datum, on the paper of a light and of a dark page."""
+DOTS = 200
+"""An inch, of what is written by ``save_themes``: a picture is shown at half its size, sharp on fine screens too."""
 DASHES: Mapping[str, Any] = {
     "solid": "-",
     "dotted": (0, (1.2, 1.4)),
@@ -52,6 +59,16 @@ FILLS: Mapping[str, Mapping[str, str]] = {
 STEPS = {"ends": "steps-pre", "begins": "steps-post"}
 
 
+def styled(theme: str = "light") -> Any:
+    """The context in which figures of a theme are made."""
+    import matplotlib.pyplot as plt
+
+    paper, ink = THEMES[theme]["paper"], THEMES[theme]["ink"]
+    inked = ("text.color", "axes.edgecolor", "axes.labelcolor", "axes.titlecolor", "xtick.color", "ytick.color")
+    papered = ("figure.facecolor", "axes.facecolor", "savefig.facecolor")
+    return plt.rc_context({**STYLE, **dict.fromkeys(inked, ink), **dict.fromkeys(papered, paper)})
+
+
 def save(figure: Any, path: Path) -> None:
     """A PNG, whole or not at all."""
     import matplotlib.pyplot as plt
@@ -60,6 +77,25 @@ def save(figure: Any, path: Path) -> None:
     figure.savefig(picture, format="png", bbox_inches="tight")
     plt.close(figure)
     write_whole(path, picture.getvalue())
+
+
+def save_themes(drawn: Callable[[str], Any], path: Path) -> None:
+    """A figure, drawn in the theme that is named, as a PNG for light pages and one beside it, ``…-dark.png``, for dark ones."""
+    for theme in THEMES:
+        _save_fine(drawn(theme), path if theme == "light" else path.with_stem(f"{path.stem}-{theme}"))
+
+
+def _save_fine(figure: Any, path: Path) -> None:
+    """A PNG of the figure's own size, at ``DOTS``, in 256 colours: a third of the bytes, and no difference to the eye."""
+    import matplotlib.pyplot as plt
+    from PIL import Image
+
+    picture, compact = io.BytesIO(), io.BytesIO()
+    figure.savefig(picture, format="png", dpi=DOTS)
+    plt.close(figure)
+    few = Image.open(picture).convert("RGB").quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    few.save(compact, format="png", optimize=True)
+    write_whole(path, compact.getvalue())
 
 
 def plain(text: str) -> str:
