@@ -43,7 +43,8 @@ def table_of(controllers, scenarios):
 
 
 def test_a_small_table_is_shown_whole_but_for_no_control():
-    assert set(shown(table_of(LAWS, ["delay"]))) == set(LAWS) - {"none"}
+    few = {name: each for name, each in LAWS.items() if name != "velocity"}
+    assert set(shown(table_of(few, ["delay"]))) == set(few) - {"none"}
 
 
 def test_of_a_large_one_lqg_the_clairvoyant_the_best_of_each_tier_and_generalists_are_shown():

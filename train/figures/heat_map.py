@@ -62,7 +62,7 @@ class HeatMap:
         return cls(tuple(evaluations), controllers, relative_cost, failed)
 
     def text(self, line: int, column: int) -> tuple[str, str]:
-        """What is written in a cell: the cost, or the sign of what is missing; and the share of unstable episodes, if there are any."""
+        """What is written in a cell: the cost, or the sign of what is missing; and the share of unstable episodes, if any."""
         cost, part = self.relative_cost[line, column], self.failed[line, column]
         if np.isnan(cost):
             return (LOST if (self.scenarios[line], self.controllers[column]) in self.lost else NOTHING), ""

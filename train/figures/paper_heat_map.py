@@ -98,6 +98,7 @@ def _label(axis: Any, content: HeatMap, places: list[int], first: bool, last: bo
     axis.tick_params(length=0, labeltop=first, labelbottom=False, labelsize=SIZES["name"])
     for side in axis.spines.values():
         side.set_visible(False)
+    below = {"ha": "center", "va": "top", "fontsize": SIZES["name"], "style": "italic"}
     for kind in dict.fromkeys(content.kinds):
         columns = [index for index, each in enumerate(content.kinds) if each == kind]
         if columns[0]:

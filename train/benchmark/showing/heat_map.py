@@ -19,8 +19,8 @@ MOST = 9
 
 RULE = (
     f"The picture has all controllers where there are {MOST} at most, and else LQG, the clairvoyant law, the caller's own and, of "
-    "tiers 0 to 2, the best law and the best agent; then the best of the other generalists and laws as far as there is room. Better "
-    "is who was measured in more scenarios and then has the lower interquartile mean of J / J₀ over them. The tables have all."
+    "tiers 0 to 2, the best law and the best agent; then the best of the other generalists and laws as far as there is room. The "
+    "better was measured in more scenarios or has the lower interquartile mean of J / J₀ over as many. The tables have all."
 )
 """Who is shown, for whoever shows it."""
 
