@@ -83,7 +83,7 @@ def test_plotly_takes_no_name_for_markup(name):
     panels.append(Panel(name, name, name, [Curve(np.arange(2.0), np.arange(2.0), name)]))
     for figure in [*(screen.figure([panel]) for panel in panels), heat_map(heat_of([name]))]:
         go.Figure(figure)
-        assert [text for text in texts(figure) if MARKED.search(text.replace("<br>✕", ""))] == []
+        assert [text for text in texts(figure) if MARKED.search(text.replace("<br>▲", ""))] == []
 
 
 @pytest.mark.filterwarnings("ignore:Glyph", "ignore:constrained_layout")

@@ -104,6 +104,4 @@ def _label(axis: Any, content: HeatMap, places: list[int], first: bool, last: bo
         if columns[0]:
             axis.axvline(columns[0] - 0.5, color=axis.get_figure().get_facecolor(), linewidth=4.0)
         if last:
-            axis.text(
-                np.mean(columns), len(places) - 0.4, plain(kind), ha="center", va="top", fontsize=SIZES["name"], style="italic"
-            )
+            axis.text(np.mean(columns), len(places) - 0.4, plain(kind), **below)
