@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from train.figures.figure import Curve, Look, Marker, Note, Panel
 from train.figures.heat_map import HeatMap
 from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS, contrast
 from train.figures.panels import LearningCurves, actuator, learning_panel, pole_panel, voltage_curves
+from train.figures.patches import rows_of
 
 pyplot = pytest.importorskip("matplotlib.pyplot", reason="matplotlib is not installed")
 matplotlib = pytest.importorskip("matplotlib")
@@ -70,6 +72,38 @@ def test_labels_limits_scales_marks_and_notes_are_the_same_on_both(axis):
     assert drawn.lines[0].get_xdata() == [3.0, 3.0] and shown.layout.shapes[0].x0 == 3.0
     assert [note.text for note in shown.layout.annotations] == ["title", "here"]
     assert [note.get_text() for note in drawn.texts] == ["here"]
+
+
+def test_a_logarithmic_axis_of_everyday_numbers_writes_them_as_they_are(axis):
+    curve = Curve(np.array([2.0, 300.0]), np.array([20.0, 150.0]))
+    drawn, shown = both(axis, Panel("", "mass, g", "cost, µJ", [curve], logarithmic=True, x_logarithmic=True))
+    drawn.figure.draw_without_rendering()
+    (left, right), low_and_high = drawn.get_xlim(), drawn.get_ylim()
+    x, y = ([text.get_text() for text in ticks] for ticks in (drawn.get_xticklabels(), drawn.get_yticklabels()))
+    assert {"5", "10", "20", "50", "100", "200"} <= set(x) and {"20", "50", "100"} <= set(y)
+    assert left < 2.0 and right > 300.0 and low_and_high[0] < 20.0
+    assert shown.layout.xaxis.type == shown.layout.yaxis.type == "log"
+
+
+def test_errors_of_many_decades_keep_their_powers_of_ten(axis):
+    paper.draw_panel(axis, Panel("", "", "error", [Curve(X, np.array([1e-9, 1e-6, 1e-3]))], logarithmic=True))
+    axis.figure.draw_without_rendering()
+    assert any("10^{" in text.get_text() for text in axis.get_yticklabels())
+
+
+def test_rows_have_names_in_place_of_numbers_on_both(axis):
+    curves = [Curve(X, np.full(3, row), "actuators", "bars") for row in (1.0, 2.0)]
+    drawn, shown = both(axis, Panel("", "", "", curves, y_names=("in turn", "at once")))
+    assert [text.get_text() for text in drawn.get_yticklabels()] == list(shown.layout.yaxis.ticktext) == ["in turn", "at once"]
+    assert drawn.get_yticks().tolist() == list(shown.layout.yaxis.tickvals) == [1, 2]
+    assert (drawn.lines[0].get_solid_capstyle(), drawn.lines[0].get_linewidth()) == ("butt", paper.BAR)
+
+
+def test_patches_that_touch_are_told_apart_and_no_longer_than_they_are():
+    touching = [SimpleNamespace(start=0.0, length=0.08), SimpleNamespace(start=0.08, length=0.08)]
+    actuators, sensors = rows_of(touching, touching[:1], 1, 2.0)
+    assert 0.0 < actuators.x[0] < actuators.x[1] < 0.08 < actuators.x[3] < actuators.x[4] < 0.16
+    assert np.isnan(actuators.x[2]) and actuators.y[0] > 1.0 > sensors.y[0]
 
 
 def test_a_legend_has_one_entry_for_each_label(axis):

@@ -34,7 +34,12 @@ DASHES: Mapping[str, Any] = {
     "dashed": (0, (5, 2)),
     "dashdot": (0, (6, 2, 1.2, 2)),
     "points": "",
+    "bars": "-",
 }
+BAR = 3.5
+"""Points: how broad bars are."""
+PLAIN_TICKS = (1e-2, 1e4)
+"""Limits within which the numbers of a logarithmic axis are written as they are, not as powers of ten."""
 SIGNS = {
     "point": ".",
     "circle": "o",
@@ -113,16 +118,37 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     for note in panel.notes:
         axis.text(note.x, note.y, plain(note.text), ha="right", va="top")
     axis.set(title=plain(panel.title), xlabel=plain(panel.x_label), ylabel=plain(panel.y_label))
-    if panel.x_linear_within is not None:
-        axis.set_xscale("symlog", linthresh=panel.x_linear_within)
-    if panel.logarithmic:
-        axis.set_yscale("log")
+    _scale(axis, panel)
     if panel.whole:
         axis.yaxis.get_major_locator().set_params(integer=True)
+    if panel.y_names:
+        axis.set_yticks(range(1, len(panel.y_names) + 1), [plain(name) for name in panel.y_names])
+
+
+def _scale(axis: Any, panel: Panel) -> None:
+    """Linear or logarithmic axes and their limits."""
+    if panel.x_linear_within is not None:
+        axis.set_xscale("symlog", linthresh=panel.x_linear_within)
+    for logarithmic, set_scale in ((panel.x_logarithmic, axis.set_xscale), (panel.logarithmic, axis.set_yscale)):
+        if logarithmic:
+            set_scale("log")
     if panel.x_limits != (None, None):
         axis.set_xlim(*panel.x_limits)
     if panel.y_limits != (None, None):
         axis.set_ylim(*panel.y_limits)
+    for logarithmic, ticks in ((panel.x_logarithmic, axis.xaxis), (panel.logarithmic, axis.yaxis)):
+        low, high = sorted(ticks.get_view_interval())
+        if logarithmic and PLAIN_TICKS[0] <= low and high <= PLAIN_TICKS[1]:
+            _write_plainly(ticks)
+
+
+def _write_plainly(ticks: Any) -> None:
+    """1, 2, 5, 10, … along a logarithmic axis."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ticks.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ticks.set_minor_formatter(NullFormatter())
 
 
 def draw_curve(axis: Any, curve: Curve) -> None:
@@ -138,6 +164,8 @@ def appearance(curve: Curve) -> dict[str, Any]:
     style: dict[str, Any] = {"color": look.colour, "linestyle": DASHES[curve.line], "alpha": look.opacity}
     if look.width is not None:
         style["linewidth"] = look.width
+    if curve.line == "bars":
+        style |= {"linewidth": look.width or BAR, "solid_capstyle": "butt"}
     if look.above:
         style["zorder"] = 3
     return style if look.marker is None else {**style, **marking(look.marker)}
