@@ -292,6 +292,11 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
         return self._blade.state
 
     @property
+    def coming_loads(self) -> Array:
+        """(2,) N/m, lag and flap: the line loads of the interval to come, hidden from an agent."""
+        return self._blade.coming_loads
+
+    @property
     def design_state(self) -> Array:
         """(d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
         return self._blade.design_state
@@ -370,7 +375,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
             volts=motion.volts,
             reading=reading,
             cost_increment=float(motion.cost_increment),
-            load=self._blade.coming_loads,
+            load=self.coming_loads,
             actuator_gain=actuators,
             sensor_gain=sensors,
         )

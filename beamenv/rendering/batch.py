@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.rendering.choice import renderer_of
-from beamenv.rendering.history import Instant
+from beamenv.rendering.history import Instant, gains
 from beamenv.rendering.titles import of_episode
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.mixed_blades import MixedBlades
@@ -76,8 +76,3 @@ class BatchRenderer:
             )
             for row in self.renderers
         }
-
-
-def gains(truth: NDArray[Any], actuators: int, sensors: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """(…, m) of actuators and (…, p) of sensors, of what ``Blades.truth`` tells."""
-    return truth[..., 2 : 2 + actuators], truth[..., 2 + actuators : 2 + actuators + sensors]

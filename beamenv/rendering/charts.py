@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 QUARTERS = np.linspace(0.0, 1.0, 5)
 BESIDE = 30.0
-"""Pixels right of a chart, for the names of its curves."""
+"""Pixels right of a chart, for the names of its curves, unless they are long."""
 LINE = 11.0
 """Pixels from one such name to the next, at least."""
 
@@ -31,7 +31,8 @@ class Chart:
     high: float
     window: float = WINDOW
     """s."""
-    along: str = "time before now, ms"
+    room: float = BESIDE
+    """Pixels for the names of its curves."""
 
     @property
     def right(self) -> float:
@@ -46,7 +47,7 @@ class Chart:
     @property
     def beside(self) -> Frame:
         """Where the curves' names stand."""
-        return Frame(self.right + 2.0, self.place.top - 8.0, BESIDE - 2.0, self.place.height + 16.0)
+        return Frame(self.right + 2.0, self.place.top - 8.0, self.room - 2.0, self.place.height + 16.0)
 
     def up_to(self, high: float) -> Chart:
         """The chart up to ``high``, and down to minus that if it shows negative values."""
@@ -69,7 +70,7 @@ class Chart:
             if dated:
                 canvas.write(f"{1e3 * self.window * (share - 1.0):.4g}", x, bottom + 10.0, theme.quiet, "tick", anchor=0.5)
         if dated:
-            canvas.write(self.along, place.left + 0.5 * place.width, bottom + 25.0, theme.quiet, "note", anchor=0.5)
+            canvas.write("time before now, ms", place.left + 0.5 * place.width, bottom + 25.0, theme.quiet, "note", anchor=0.5)
         zero = bottom + place.height * self.low / (self.high - self.low)
         canvas.line([(place.left, zero), (right, zero)], theme.quiet, 0.5)
 

@@ -42,6 +42,11 @@ class Instant(NamedTuple):
     """(p,), likewise."""
 
 
+def gains(truth: Array, actuators: int, sensors: int) -> tuple[Array, Array]:
+    """(…, m) of actuators and (…, p) of sensors, of what ``Blades.truth`` tells."""
+    return truth[..., 2 : 2 + actuators], truth[..., 2 + actuators : 2 + actuators + sensors]
+
+
 class History:
     """The instants of the last ``window`` seconds, sampled every ``interval`` (s). Recording one takes a microsecond."""
 

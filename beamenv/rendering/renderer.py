@@ -94,7 +94,7 @@ class BladeRenderer(EpisodeRenderer):
             self._lay_out(*charts)
         theme, load = self._canvas.theme, last.load[:2] if len(last.load) >= 2 else np.zeros(2)
         displacement = self._deformation.displacement(last.state, last.plant)
-        self._scene.draw(self._canvas, displacement, self._values(), load / self._largest.load)
+        self._scene.draw(self._canvas, displacement, Values.of(last, self._actuators, self._limit), load / self._largest.load)
         digits = max(0, 2 - int(np.floor(np.log10(self._tip.high))))
         told = [f"{name} {round(value, digits) + 0.0:+.{digits}f}" for name, value in zip(("lag", "flap"), tip[0], strict=True)]
         self._tip.draw(self._canvas, ages, tip, [theme.lag, theme.flap], ["lag", "flap"], told)
@@ -104,14 +104,6 @@ class BladeRenderer(EpisodeRenderer):
         clock = f"t = {1e3 * history.time:.1f} ms    Ω = {last.speed:.0f} rad/s    load {np.linalg.norm(load):.3g} N/m"
         self._canvas.write(clock, LEFT, CLOCK_AT, theme.ink, "label")
         self._canvas.develop(CLOCK)
-
-    def _values(self) -> Values:
-        """Of the patches now; ganged actuators share one voltage, and sound is what nothing is said of."""
-        last, actuators, readings = self._history.last, self._actuators, len(self._history.last.reading)
-        dead_actuators = last.actuator_gain == 0.0 if len(last.actuator_gain) else np.zeros(1, dtype=bool)
-        dead_sensors = last.sensor_gain == 0.0 if len(last.sensor_gain) else np.zeros(readings, dtype=bool)
-        volts, dead = (np.broadcast_to(each, (actuators,)) for each in (last.volts / self._limit, dead_actuators))
-        return Values(volts, last.reading, dead, dead_sensors)
 
 
 def _in_kinds(sensors: Sequence[Sensor]) -> str:

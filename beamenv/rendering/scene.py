@@ -13,6 +13,7 @@ from beamenv.blade.build import Blade
 from beamenv.blade.shape import edges, sides
 from beamenv.rendering.camera import Camera, faces_camera
 from beamenv.rendering.canvas import Canvas, Frame
+from beamenv.rendering.history import Instant
 from beamenv.rendering.palette import INK, LIGHT, OUTPUT_SCALE, VOLTAGE_SCALE, Shades, Theme, colour_table, colours_of
 from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid, Pose
 
@@ -32,7 +33,7 @@ RIBS = 4
 """At every n-th of the even stations a line across the walls shows how they bend and twist."""
 RIB = 0.90
 """Share of a wall's brightness that a rib has."""
-ARROW, ARROW_AT = 0.17, 0.8
+ARROW, ARROW_AT = 0.17, 0.88
 """Shares of the span: how long the largest load is drawn, and where."""
 HEAD, SHAFT, SHORTEST = 9.0, 2.0, 4.0
 """Pixels: of an arrow's head and shaft, and below which none is drawn."""
@@ -73,6 +74,15 @@ class Values(NamedTuple):
     """(a,)."""
     dead_sensors: NDArray[np.bool_]
     """(s,)."""
+
+    @classmethod
+    def of(cls, instant: Instant, actuators: int, limit: float) -> Values:
+        """Of an instant: voltages as shares of ``limit`` (V); ganged actuators share one, and sound is what nothing is said of."""
+        readings = len(instant.reading)
+        dead_actuators = instant.actuator_gain == 0.0 if len(instant.actuator_gain) else np.zeros(1, dtype=bool)
+        dead_sensors = instant.sensor_gain == 0.0 if len(instant.sensor_gain) else np.zeros(readings, dtype=bool)
+        volts, dead = (np.broadcast_to(each, (actuators,)) for each in (instant.volts / limit, dead_actuators))
+        return cls(volts, instant.reading, dead, dead_sensors)
 
 
 class Scene:

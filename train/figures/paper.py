@@ -23,7 +23,7 @@ STYLE: Mapping[str, Any] = {
 }
 THEMES: Mapping[str, Mapping[str, str]] = {
     "light": {"paper": "#ffffff", "ink": "#1a1a1a", "wall": "#cccccc"},
-    "dark": {"paper": "#0d1117", "ink": "#e6eaef", "wall": "#4b5563"},
+    "dark": {"paper": "#0d1117", "ink": "#e6eaef", "wall": "#6b7684"},
 }
 """What is no datum, on the paper of a light and of a dark page."""
 DOTS = 200
