@@ -102,14 +102,14 @@ def _voltage_panel(evaluation: Evaluation, episode: int) -> Panel:
 
 
 def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) -> Any:
-    """Running cost of each agent over training time, (k, 3) of seconds, steps and cost, against controllers' lines."""
+    """Cost of each agent's policy over training time, (k, 3) of seconds, steps and cost, against controllers' lines."""
     import matplotlib.pyplot as plt
 
     panel = learning_panel(LearningCurves(curves, {f"{name}, held-out episodes": level for name, level in levels.items()}))
     with plt.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
         draw_panel(axis, panel)
-        axis.set(ylabel=f"{panel.y_label}, in training or on validation seeds", ylim=(0.3, panel.y_limits[1]))
+        axis.set(ylabel=f"{panel.y_label}\nvalidation episodes, lower is better", ylim=(0.3, panel.y_limits[1]))
         axis.legend(handles=handles([panel]), loc="upper right")
     return figure
 

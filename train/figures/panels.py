@@ -56,13 +56,13 @@ class LearningCurves:
     """How agents learned, and what they are measured against."""
 
     curves: Mapping[str, Array]
-    """(k, 3) each: training time in s, steps, cost relative to no control, running or on validation seeds."""
+    """(k, 3) each: training time in s, steps, cost relative to no control on validation seeds, or as its name says."""
     levels: Mapping[str, float] = field(default_factory=dict)
     """Relative cost of controllers that do not learn: LQG's line."""
 
 
 def learning_panel(learned: LearningCurves) -> Panel:
-    """Running cost of each agent over its training time, and a line for each controller that does not learn."""
+    """Cost of each agent over its training time, and a line for each controller that does not learn."""
     curves = []
     for index, (name, curve) in enumerate(learned.curves.items()):
         steps = f" ({curve[-1, 1] / 1e6:.1f} million steps)" if len(curve) else ""

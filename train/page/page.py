@@ -145,7 +145,7 @@ def plots(content: PageContent) -> list[Plot]:
         found.append(Plot("poles", "Closed-loop poles", note, _plotted(pole_panel(content.poles)), 480))
     if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
         note = (
-            "Agents: running cost in training, or, of those that explore, the policy without exploration where validation looked. "
+            "Agents: the policy without exploration on validation episodes; where it says so, the running cost in training. "
             "Level lines: controllers that do not learn, on the held-out episodes."
         )
         found.append(
