@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from train.comparison.figures import learning_figure
+from train.comparison.learning_curves import learning_curves
 from train.figures import paper, paper_heat_map, screen, screen_heat_map
 from train.figures.figure import Curve, Look, Marker, Note, Panel
 from train.figures.heat_map import HeatMap
@@ -160,6 +162,24 @@ def test_a_learning_curve_has_its_steps_and_levels_their_number():
     assert [curve.label for curve in panel.curves] == ["PPO (0.3 million steps)", "silent", "LQG: 0.400"]
     assert panel.x_limits == (0.0, 3.0)
     assert panel.y_limits == (0.0, 1.05)
+
+
+def test_nothing_that_is_learnt_or_compared_lies_below_the_figure_and_all_lines_differ():
+    time = np.linspace(1.0, 10.0, 5)
+    curves = {name: np.stack([time, 1e5 * time, low + 1.0 / time], axis=-1) for name, low in (("belief", 0.1), ("ppo", 0.2))}
+    figure = learning_figure(curves, {"LQG": 0.15, "LQG with load estimate": 0.12})
+    (axis,) = figure.axes
+    assert axis.get_ylim()[0] <= 0.12 and "validation episodes, lower is better" in axis.get_ylabel()
+    assert len({str(line.get_linestyle()) + str(line._dash_pattern) for line in axis.lines}) == 4
+    pyplot.close(figure)
+
+
+def test_learning_curves_of_shipped_agents_name_their_axis_once_a_row():
+    panels = [Panel(f"ppo, {k}", "million intervals", "" if k % 3 else "J / J of LQG", [Curve(X, X, "seed 0")]) for k in range(4)]
+    figure = learning_curves(panels, "dark")
+    assert [axis.get_ylabel() for axis in figure.axes[:4]] == ["J / J of LQG", "", "", "J / J of LQG"]
+    assert "lower is better" in figure.get_suptitle()
+    pyplot.close(figure)
 
 
 MISSING = HeatMap(

@@ -70,7 +70,7 @@ def learning_panel(learned: LearningCurves) -> Panel:
     reported = [curve for curve in learned.curves.values() if len(curve)]
     end = max([1.0, *(float(curve[-1, 0]) for curve in reported)])
     for index, (name, level) in enumerate(learned.levels.items()):
-        look, line = Look(colour(len(learned.curves) + index)), LINES[1 + index % (len(LINES) - 1)]
+        look, line = Look(colour(len(learned.curves) + index)), LINES[(len(learned.curves) + index) % len(LINES)]
         curves.append(Curve(np.array([0.0, end]), np.full(2, level), f"{name}: {level:.3f}", line, look))
     highest = max([1.05, *(float(np.nanmedian(curve[:3, 2])) for curve in reported)])
     limits = (0.0, min(highest, 2.0))

@@ -129,6 +129,7 @@ def _scale(axis: Any, panel: Panel) -> None:
     """Linear or logarithmic axes and their limits."""
     if panel.x_linear_within is not None:
         axis.set_xscale("symlog", linthresh=panel.x_linear_within)
+        axis.xaxis.set_major_formatter(lambda value, _: f"{value:g}".replace("-", "−"))
     for logarithmic, set_scale in ((panel.x_logarithmic, axis.set_xscale), (panel.logarithmic, axis.set_yscale)):
         if logarithmic:
             set_scale("log")
