@@ -214,9 +214,11 @@ def test_a_heat_map_has_the_same_shades_and_signs_on_paper_and_on_the_screen():
         height = (cells.z[place[0]][place[1]] - cells.zmin) / (cells.zmax - cells.zmin)
         (shade,) = colors.sample_colorscale("cividis_r", [height], colortype="tuple")
         np.testing.assert_allclose(shade, image.to_rgba(image.get_array())[place][:3], atol=0.02)
-    signs = [re.sub("<[^>]*>", "", sign) for row in cells.text for text in row for sign in text.split("<br>") if sign]
+        ink = re.match(r'<span style="color:(#[0-9a-f]{6})">', cells.text[place[0]][place[1]])[1]
+        assert contrast(ink, matplotlib.colors.to_hex(shade)) >= 4.5  # WCAG 2.1 (1.4.3)
+    signs = [re.sub("</?(span|b)( [^>]*)?>", "", sign) for row in cells.text for text in row for sign in text.split("<br>") if sign]
     assert set(signs) | set(missing.text) == set(written) - {"fixed", "learned"}
-    assert cells.text[0][0] == "<b>0.40</b>"
+    assert "<b>0.40</b>" in cells.text[0][0]
     pyplot.close(figure)
 
 

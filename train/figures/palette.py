@@ -27,6 +27,11 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
+def ink_on(shade: str) -> str:
+    """Black or white, whichever is read better on a shade "#rrggbb"."""
+    return max(("#000000", "#ffffff"), key=lambda ink: contrast(ink, shade))
+
+
 def _luminance(colour: str) -> float:
     channels = [int(colour[start : start + 2], 16) / 255.0 for start in (1, 3, 5)]
     linear = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in channels]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from train.figures.heat_map import QUANTITY, RANGE, SCALE, TICKS, WAY, HeatMap
-from train.figures.palette import contrast
+from train.figures.palette import ink_on
 from train.figures.paper import plain, styled
 
 CELL = 0.29
@@ -72,22 +72,17 @@ def _panel(axis: Any, content: HeatMap, places: list[int]) -> Any:
 
 def _write(axis: Any, content: HeatMap, lines: tuple[int, int], column: int, image: Any) -> None:
     """The number in a cell, and below it the share of unstable episodes where there are any; ``lines`` of panel and content."""
+    from matplotlib.colors import to_hex
+
     shown, line = lines
     value, (cost, unstable) = content.relative_cost[line, column], content.text(line, column)
     middle = {"ha": "center", "va": "center", "fontsize": SIZES["number"]}
     if not np.isnan(value):
-        middle["color"] = ink_on(image.to_rgba(np.clip(value, *RANGE)))
+        middle["color"] = ink_on(to_hex(image.to_rgba(np.clip(value, *RANGE))))
     weight = "bold" if content.is_best(line, column) else "normal"
     axis.text(column, shown - (0.19 if unstable else 0.0), cost, weight=weight, **middle)
     if unstable:
         axis.text(column, shown + 0.26, unstable, **{**middle, "fontsize": SIZES["share"]})
-
-
-def ink_on(shade: tuple[float, float, float, float]) -> str:
-    """Black or white, whichever is read better on a shade."""
-    from matplotlib.colors import to_hex
-
-    return max(("#000000", "#ffffff"), key=lambda ink: contrast(ink, to_hex(shade)))
 
 
 def _label(axis: Any, content: HeatMap, places: list[int], first: bool, last: bool) -> None:

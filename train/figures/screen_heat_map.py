@@ -5,9 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from plotly.colors import sample_colorscale
 
 from train.figures.heat_map import LOST, QUANTITY, RANGE, SCALE, TICKS, WAY, HeatMap
+from train.figures.palette import ink_on
 from train.figures.screen import plain
+
+LETTERS = 12
+"""Pixels: plotly itself takes markup for letters, and makes them too small."""
 
 
 def heat_map(content: HeatMap) -> dict[str, Any]:
@@ -33,6 +38,7 @@ def _shaded(content: HeatMap) -> dict[str, Any]:
         "text": [[_text(content, line, column) for column in range(cost.shape[1])] for line in range(cost.shape[0])],
         "customdata": [[text if text != "∞" else "∞: the blade fails" for text in row] for row in _numbers(content)],
         "texttemplate": "%{text}",
+        "textfont": {"size": LETTERS},
         "hovertemplate": f"%{{y}}<br>%{{x}}<br>{QUANTITY}: %{{customdata}}<extra></extra>",
         "hoverongaps": False,
         "colorscale": SCALE,
@@ -57,11 +63,21 @@ def _numbers(content: HeatMap) -> list[list[str]]:
 
 
 def _text(content: HeatMap, line: int, column: int) -> str:
-    """The cost of a cell that has one, bold if it is the best, and the share of unstable episodes below it."""
-    if np.isnan(content.relative_cost[line, column]):
+    """The cost of a cell that has one, bold if it is the best, and the share of unstable episodes below it, as its shade allows."""
+    value = content.relative_cost[line, column]
+    if np.isnan(value):
         return ""
     cost, unstable = content.text(line, column)
-    return "<br>".join([f"<b>{cost}</b>" if content.is_best(line, column) else cost, *([unstable] if unstable else [])])
+    both = "<br>".join([f"<b>{cost}</b>" if content.is_best(line, column) else cost, *([unstable] if unstable else [])])
+    return f'<span style="color:{ink_on(_shade(value))}">{both}</span>'
+
+
+def _shade(value: float) -> str:
+    """Of a cost, "#rrggbb"."""
+    low, high = np.log(RANGE)
+    share = (np.log(np.clip(value, *RANGE)) - low) / (high - low)
+    (shade,) = sample_colorscale(SCALE, [share], colortype="tuple")
+    return "#" + "".join(f"{round(255 * part):02x}" for part in shade)
 
 
 def _missing(content: HeatMap) -> dict[str, Any]:

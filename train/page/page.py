@@ -177,6 +177,6 @@ def _plotted(panel: Panel, **layout: Any) -> go.Figure:
 
 
 def _heat_map(content: HeatMap) -> Plot:
-    note = f"{QUANTITY}, {WAY}: dark is bad. {content.key.replace('    ', '; ')}".rstrip() + "."
+    note = "; ".join([f"{QUANTITY}: {WAY}, dark is bad", *content.key.split("    ")]).rstrip("; ") + "."
     height, width = 180 + 44 * len(content.scenarios), 260 + 62 * len(content.controllers)
     return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width)
