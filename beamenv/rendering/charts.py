@@ -107,9 +107,8 @@ class Chart:
         """Names beside the ends (c,), px, of their curves; where there are too many, those that there is room for."""
         place = self.place
         room = int(place.height // LINE) + 1
-        shown = np.unique(np.linspace(0, len(names) - 1, min(len(names), room)).round().astype(int)) if len(names) else []
+        chosen = [round(each) for each in np.linspace(0, len(names) - 1, min(len(names), room)).tolist()]
         canvas.open(self.beside)
-        chosen = list(shown)
         heights = spread(ends[chosen], place.top, place.top + place.height, LINE) if chosen else np.empty(0)
         for index, height in zip(chosen, heights.tolist(), strict=True):
             canvas.write(names[index], self.right + 5.0, height, colours[index], "tick")

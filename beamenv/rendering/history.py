@@ -108,4 +108,5 @@ class History:
 
 def _copied(instant: Instant) -> Instant:
     """An instant that stays as it is whatever becomes of the arrays it came in."""
-    return Instant(*(each.copy() if isinstance(each, np.ndarray) else each for each in instant))
+    arrays = {name: value.copy() for name, value in instant._asdict().items() if isinstance(value, np.ndarray)}
+    return instant._replace(**arrays)

@@ -47,7 +47,7 @@ def largest_of(task: Task) -> Largest:
 
 def usual_of(plant: Plant) -> Largest:
     """A step of the reference load in lag or in flap, whichever moves the tip more."""
-    return Largest(OVERSHOOT * reference_deflection(plant), float(np.max(plant.reference_load)) or 1.0)
+    return Largest(OVERSHOOT * reference_deflection(plant), float(np.asarray(plant.reference_load).max()) or 1.0)
 
 
 def reference_deflection(plant: Plant) -> float:

@@ -44,7 +44,7 @@ def reference_cost(scenario: str) -> float:
 
 def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
     """One for each agent and scenario: J over LQG's, against control intervals, a curve for each run."""
-    panels = []
+    panels: list[Panel] = []
     for agent, scenario in sorted({(run.agent, run.scenario) for run in runs}, key=lambda pair: (AGENTS.index(pair[0]), pair[1])):
         own = [run for run in runs if (run.agent, run.scenario) == (agent, scenario)]
         reference = reference_cost(scenario)
@@ -56,8 +56,8 @@ def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
         end = max(float(curve.x[-1]) for curve in curves)
         level = Curve(np.array([0.0, end]), np.ones(2), "LQG", "solid", Look(NEUTRAL, width=0.8))
         name = "J / J of LQG" if len(panels) % COLUMNS == 0 else ""
-        limits = {"x_limits": (0.0, end), "y_limits": (0.8, HIGHEST)}
-        panels.append(Panel(f"{agent}, {scenario}", "million intervals", name, [level, *curves], **limits))
+        x_limits, y_limits, title = (0.0, end), (0.8, HIGHEST), f"{agent}, {scenario}"
+        panels.append(Panel(title, "million intervals", name, [level, *curves], x_limits=x_limits, y_limits=y_limits))
     return panels
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
@@ -58,7 +58,7 @@ def _instants(controller: Controller, env: Any, seed: int, load: dict[str, Any])
 class PairPicture:
     """Draws two episodes of a task, which are known to their ends: nothing changes its scale in between."""
 
-    def __init__(self, task: Task, title: str, episodes: dict[str, Sequence[Instant]], theme: Theme = LIGHT) -> None:
+    def __init__(self, task: Task, title: str, episodes: Mapping[str, Sequence[Instant]], theme: Theme = LIGHT) -> None:
         self._names, self._canvas, self._limit = list(episodes), Canvas(theme, SIZE), float(drive_limit(task.plant).max())
         every = [instant for episode in episodes.values() for instant in episode]
         largest = max(float(np.linalg.norm(each.tip_displacement)) for each in every)

@@ -101,8 +101,8 @@ def together(model: Model) -> Outcome:
         for how, cost in zip(("in turn", "at once"), costs, strict=True):
             above, below = layouts[how][:half], layouts[how][half:]
             rows.append([name, how, *(" ".join(f"{each:.3f}" for each in side) for side in (above, below)), f"{1e6 * cost:.2f}"])
-            patches = [[Patch(start, length) for start in side] for side in (above, below)]
-            curves += rows_of(*patches, number=len(rows), span=problem.config.beam.length)
+            actuators, sensors = ([Patch(start, length) for start in side] for side in (above, below))
+            curves += rows_of(actuators, sensors, len(rows), problem.config.beam.length)
     names = [f"{blade}, placed {how}" for blade, how, *_ in rows]
     panel = Panel("patches along the span", FROM_THE_ROOT, "", curves, y_names=names)
     return Outcome({"gain": gains}, [panel], header=["blade", "placed", "actuators (m)", "sensors (m)", "cost (µJ)"], rows=rows)
