@@ -9,7 +9,7 @@ from beamenv.configuration.writing import write_whole
 from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import BenchmarkTable
-from train.figures.paper import save
+from train.figures.paper import save_themes
 from train.figures.paper_heat_map import heat_map as drawn
 
 INTRODUCTION = """\
@@ -29,8 +29,9 @@ mine` puts a trained agent of yours through every scenario and enters it on the 
 
 
 def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
-    """``benchmark.md`` with its heat map in ``images/``."""
-    save(drawn(heat_map(table)), folder / "images" / "benchmark.png")
+    """``benchmark.md`` with its heat map in ``images/``, for light and for dark pages."""
+    content = heat_map(table)
+    save_themes(lambda theme: drawn(content, theme), folder / "images" / "benchmark.png")
     write_whole(folder / "benchmark.md", page(table, command))
 
 
