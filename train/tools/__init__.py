@@ -1,1 +1,1 @@
-"""Speed measurements and the moving picture of the README."""
+"""Pictures of the README and the pages, and how large returns are: what is made once and kept."""
