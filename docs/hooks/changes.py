@@ -17,6 +17,6 @@ def on_files(files: Any, config: Any) -> Any:
     for name, page in PAGES.items():
         text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
         for other, its_page in PAGES.items():
-            text = text.replace(f"]({other})", f"]({its_page})")
+            text = text.replace(f"]({other}", f"]({its_page}")
         files.append(File.generated(config, page, content=text))
     return files

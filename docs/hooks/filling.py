@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -46,7 +45,8 @@ def scenario_film(file: Path) -> str:
     """One of them, folded but for the first."""
     lines = file.read_text(encoding="utf-8").splitlines()
     opening = " ".join(line.removeprefix("#").strip() for line in lines if line.startswith("#"))
-    picture = f"![One episode of {file.stem} without control and under LQG](images/scenarios/{file.stem}.svg){{ .film loading=lazy }}"
+    words = f"One episode of {file.stem} without control and under LQG"
+    picture = f"![{words}](images/scenarios/{file.stem}.svg){{ .film loading=lazy }}"
     state = "???+" if file.stem == "nominal" else "???"
     return f'{state} example "{file.stem}"\n\n    {opening}\n\n    {picture}'
 

@@ -69,7 +69,11 @@ def _known():
 
     targets = re.findall(r"^([a-z][\w -]*):", (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE)
     extras = (ROOT / "pyproject.toml").read_text(encoding="utf-8").partition("optional-dependencies]")[2].partition("\n[project")[0]
-    return get_command(app), {name for line in targets for name in line.split()}, set(re.findall(r"^(\w+) = \[", extras, re.MULTILINE))
+    return (
+        get_command(app),
+        {name for line in targets for name in line.split()},
+        set(re.findall(r"^(\w+) = \[", extras, re.MULTILINE)),
+    )
 
 
 def check(words, known):

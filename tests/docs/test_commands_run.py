@@ -156,7 +156,7 @@ def other(program, words):
     elif program == "python" and words[0] == "-m":
         assert importlib.util.find_spec(words[1]) is not None
     else:
-        assert program in ("pip", "python", "tensorboard"), program  # what pip would fetch the other test reads; scripts are others'
+        assert program in ("pip", "python", "tensorboard"), program  # what pip is asked for the other test reads
 
 
 def test_a_command_that_a_page_has_wrong_is_found(tmp_path, monkeypatch):

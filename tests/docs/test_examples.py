@@ -19,7 +19,7 @@ PACKAGES |= {"08_ppo_on_a_gpu": "torch"}
 TIMES = re.compile(r"there and back|voltages within|^ *[\d.]+ s,|J over LQG's")
 """Lines that tell how long something took or how little is left of rounding: another run has other ones."""
 LEARNT = {"04_train_an_agent", "06_clone_from_data", "07_rllib"}
-"""Whose numbers a training has made: another machine's sums lead it elsewhere. Their words are compared, and they assert the rest."""
+"""Whose numbers a training has made: another machine's sums lead it elsewhere. Words are compared; the rest they assert."""
 
 
 @pytest.mark.parametrize(
@@ -38,8 +38,8 @@ def test_example_runs_its_numbers_hold_and_it_prints_what_its_page_shows(script,
     printed, shown = HOOK["printed_by"](file), HOOK["kept"](file)
     assert printed.keys() == shown.keys()
     for place, text in printed.items():
-        assert_same_words(*("\n".join(line for line in each.splitlines() if not TIMES.search(line)) for each in (text, shown[place])),
-                          numbers=script not in LEARNT)
+        lines = ["\n".join(line for line in each.splitlines() if not TIMES.search(line)) for each in (text, shown[place])]
+        assert_same_words(*lines, numbers=script not in LEARNT)
     if script == "02_lqg":
         page = (EXAMPLES.parent / "docs" / "lqg.md").read_text(encoding="utf-8")
         told = re.search(r"([\d.]+) µJ by the equations,\s+([\d.]+) ± ([\d.]+) µJ measured", page).groups()
@@ -49,7 +49,7 @@ def test_example_runs_its_numbers_hold_and_it_prints_what_its_page_shows(script,
 
 def test_a_page_shows_below_each_cell_what_it_printed_and_drew():
     page = HOOK["example_page"](EXAMPLES / "03_placement.py")
-    assert "least of 200 places" in page.partition("print(f\"slope there")[2].partition("```python")[0]
+    assert "least of 200 places" in page.partition('print(f"slope there')[2].partition("```python")[0]
     (picture,) = re.findall(r"\]\(\.\./(images/examples/[^)]*\.png)\)", page)
     assert (EXAMPLES.parent / "docs" / picture).is_file()
 

@@ -65,27 +65,42 @@ def corners(share: float) -> Array:
 
 def _blade() -> list[str]:
     """The blade on its hub with patches in its top wall, and the axes."""
-    shares = np.linspace(0.0, 1.0, 25)
-    rings = np.array([corners(share) for share in shares])
-    parts = [
-        _closed([*rings[:, a], *rings[::-1, b]], LETTERS, 0.18 if (a, b) == (0, 1) else 0.07)
-        for a, b in ((2, 3), (3, 0), (1, 2), (0, 1))
+    rings = np.array([corners(share) for share in np.linspace(0.0, 1.0, 25)])
+    walls = [_closed([*rings[:, a], *rings[::-1, b]], LETTERS, shade) for a, b, shade in ((2, 3, 0.07), (3, 0, 0.07), (1, 2, 0.07))]
+    top = _closed([*rings[:, 0], *rings[::-1, 1]], LETTERS, 0.18)
+    ends = [_closed(rings[k], LETTERS, 0.25) for k in (0, -1)]
+    said = [
+        _text(np.array([236.0, 50.0]), "patches: actuators in the top wall,", ORANGE),
+        _text(np.array([299.0, 70.0]), "sensors in the bottom wall", ORANGE),
     ]
-    parts += [_closed(rings[k], LETTERS, 0.25) for k in (0, -1)]
-    for start in (0.03, 0.24, 0.45, 0.66):
-        ends = np.linspace(start, start + 0.085, 4)
-        inner = [[corners(share)[0] + part * (corners(share)[1] - corners(share)[0]) for share in ends] for part in (0.3, 0.7)]
-        parts.append(_closed([*inner[0], *inner[1][::-1]], ORANGE, 0.85))
-    x, y, z = (projected(*(np.array([each]) for each in at))[0] for at in ((106, 0, 0), (0, 146, 0), (0, 0, HUB + LENGTH + 88)))
-    parts += [_line(ORIGIN + [0, 90], y, LETTERS, arrow=True)]
-    parts += [_line(ORIGIN, x, LETTERS, arrow=True), _line(ORIGIN, z, LETTERS, arrow=True, dash=True)]
-    parts += [_text(x + [6, 2], "x: lag, u"), _text(y + [10, 6], "y: spin axis, flap, v"), _text(z + [-70, 24], "z: span")]
-    parts.append(f'<path d="M{ORIGIN[0] - 26} {ORIGIN[1] - 88}a26 9 0 0 0 50 4" fill="none" stroke="{BLUE}" stroke-width="2" marker-end="url(#blue)"/>')
-    parts.append(_text(ORIGIN + [-42, -96], "Ω", BLUE))
-    below = ORIGIN[1] + 62
-    parts += _measured(ORIGIN[0], ORIGIN[0] + HUB, below, "R₀: hub") + _measured(ORIGIN[0] + HUB, ORIGIN[0] + HUB + LENGTH, below, "L: length")
-    parts += [_text(np.array([236.0, 50.0]), "patches: actuators in the top wall,", ORANGE), _text(np.array([299.0, 70.0]), "sensors in the bottom wall", ORANGE)]
-    return parts
+    return [*walls, top, *ends, *map(_patch, (0.03, 0.24, 0.45, 0.66)), *_axes(), *said]
+
+
+def _patch(start: float) -> str:
+    """In the top wall, from a share of the span on."""
+    along = [corners(share) for share in np.linspace(start, start + 0.085, 4)]
+    near, far = ([ring[0] + part * (ring[1] - ring[0]) for ring in along] for part in (0.3, 0.7))
+    return _closed([*near, *far[::-1]], ORANGE, 0.85)
+
+
+def _axes() -> list[str]:
+    """Axes, rotation, radius of the hub and length."""
+    tips = ((106, 0, 0), (0, 146, 0), (0, 0, HUB + LENGTH + 88))
+    x, y, z = (projected(*(np.array([each]) for each in at))[0] for at in tips)
+    turn = f"M{ORIGIN[0] - 26} {ORIGIN[1] - 88}a26 9 0 0 0 50 4"
+    left, below = ORIGIN + [0, 62], ORIGIN[1] + 62
+    return [
+        _line(ORIGIN + [0, 90], y, LETTERS, arrow=True),
+        _line(ORIGIN, x, LETTERS, arrow=True),
+        _line(ORIGIN, z, LETTERS, arrow=True, dash=True),
+        _text(x + [6, 2], "x: lag, u"),
+        _text(y + [10, 6], "y: spin axis, flap, v"),
+        _text(z + [-70, 24], "z: span"),
+        f'<path d="{turn}" fill="none" stroke="{BLUE}" stroke-width="2" marker-end="url(#blue)"/>',
+        _text(ORIGIN + [-42, -96], "Ω", BLUE),
+        *_measured(left[0], left[0] + HUB, below, "R₀: hub"),
+        *_measured(left[0] + HUB, left[0] + HUB + LENGTH, below, "L: length"),
+    ]
 
 
 def _section(middle: Array) -> list[str]:
@@ -96,7 +111,7 @@ def _section(middle: Array) -> list[str]:
     along, across = np.array([np.cos(by), -np.sin(by)]), np.array([-np.sin(by), -np.cos(by)])
     tangent = middle - 34 * along + 0.5 * deep * across
     chord = middle + 160 * along
-    parts = [
+    return [
         _text(middle + [-152, -118], "a section, looking towards the root", LETTERS),
         _closed(at, LETTERS, 0.08, width=4.0),
         _line(middle, middle + [168, 0], LETTERS, arrow=True),
@@ -104,23 +119,21 @@ def _section(middle: Array) -> list[str]:
         _line(middle, chord, LETTERS, dash=True),
         _text(middle + [160, 22], "x"),
         _text(middle + [8, -74], "y"),
-        f'<path d="M{middle[0] + 118} {middle[1]}A118 118 0 0 0 {middle[0] + 118 * np.cos(by):.1f} {middle[1] - 118 * np.sin(by):.1f}" '
-        f'fill="none" stroke="{BLUE}" stroke-width="2" marker-end="url(#blue)"/>',
+        _arc(middle, 118.0, float(by)),
         _text(middle + [66, 46], "B = γ + β₀ z/L", BLUE),
         _line(tangent + 30 * along, tangent - 34 * along, GREEN, arrow=True, width=2.2),
         _line(tangent, tangent + 36 * across, GREEN, arrow=True, width=2.2),
         _text(tangent - 46 * along + 14 * across, "s", GREEN),
         _text(tangent + 44 * across + [4, 4], "n", GREEN),
     ]
-    return parts
 
 
 def _wall(corner: Array) -> list[str]:
     """A piece of the top wall from outside, laid flat: fibres of a ply, and a patch."""
     wide, tall, theta = 240.0, 150.0, np.deg2rad(30.0)
-    right, top = corner[0] + wide, corner[1]
+    top = corner[1]
     foot = np.array([corner[0], top + tall])
-    parts = [
+    return [
         _text(corner + [40, -14], "a wall laid flat, from outside", LETTERS),
         f'<clipPath id="wall"><rect x="{corner[0]}" y="{top}" width="{wide}" height="{tall}"/></clipPath>',
         f'<rect x="{corner[0]}" y="{top}" width="{wide}" height="{tall}" fill="{LETTERS}" fill-opacity="0.08" stroke="{LETTERS}"/>',
@@ -135,15 +148,20 @@ def _wall(corner: Array) -> list[str]:
         _line(foot, foot + [wide + 40, 0], GREEN, arrow=True, width=2.2),
         _line(foot, foot - [0, tall + 30], LETTERS, arrow=True, width=2.2),
         _line(foot, foot + 120 * np.array([np.cos(theta), -np.sin(theta)]), BLUE, width=2.4),
-        f'<path d="M{foot[0] + 70} {foot[1]}A70 70 0 0 0 {foot[0] + 70 * np.cos(theta):.1f} {foot[1] - 70 * np.sin(theta):.1f}" '
-        f'fill="none" stroke="{BLUE}" stroke-width="2" marker-end="url(#blue)"/>',
+        _arc(foot, 70.0, float(theta)),
         _text(foot + [78, -14], "θ", BLUE),
         _text(foot + [wide + 26, 20], "s", GREEN),
         _text(foot + [-20, -tall - 20], "z"),
         _text(foot + [0, 30], "θ = 0: hoop fibre; 90°: along the span", BLUE),
         _text(foot + [0, 54], "patch: its fibres run along the span", ORANGE),
     ]
-    return parts
+
+
+def _arc(middle: Array, radius: float, angle: float) -> str:
+    """From the right, upwards."""
+    x, y = middle[0] + radius * np.cos(angle), middle[1] - radius * np.sin(angle)
+    path = f"M{middle[0] + radius:.1f} {middle[1]:.1f}A{radius:g} {radius:g} 0 0 0 {x:.1f} {y:.1f}"
+    return f'<path d="{path}" fill="none" stroke="{BLUE}" stroke-width="2" marker-end="url(#blue)"/>'
 
 
 def _marker() -> str:

@@ -1,7 +1,7 @@
 """A moving picture of each scenario, as SVG: one episode without control and the same one under LQG, slower than life.
 
-``python -m train.tools.scenario_pictures`` writes one for each file of a scenario into ``docs/images/scenarios``, in about a minute;
-names as arguments write those alone. Colours are legible on white and on black, so that one picture does for both themes.
+``python -m train.tools.scenario_pictures`` writes them into ``docs/images/scenarios``, in about a minute; names as
+arguments write those alone. Colours are legible on white and on black, so that one picture does for both themes.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ FRAMES, SECONDS = 100, 16.0
 """Of the moving picture."""
 STATIONS = 11
 """Along the span."""
-WIDTH, SPAN, MIDDLE, REACH = 640, (36.0, 610.0), 74.0, 46.0
+WIDTH, SPAN, MIDDLE, REACH = 480, (28.0, 456.0), 74.0, 46.0
 """px: of the picture; where the blade begins and ends; its height at rest; its largest deflection."""
-TRACE = (36.0, 610.0, 196.0, 34.0)
+TRACE = (28.0, 456.0, 196.0, 34.0)
 """px: left, right, middle and half height of the tip's displacement over time."""
 HEIGHT = 244
 LETTERS = "#808890"
@@ -80,7 +80,6 @@ def picture(scenario: str) -> str:
     idle = filmed(no_control(inner.design.plant), env)
     held = filmed(reference_lqg(inner.design.full_plant), env)
     end = inner.task.steps * inner.plant.control_interval
-    groups = [group for group in inner.task.config.patches.groups("actuators")]
     length = inner.task.config.beam.length
     sheets = [inlay for group in inner.task.config.patches.groups("actuators") for inlay in group.inlays("actuators", length)]
     edges = [(sheet.start / length, (sheet.start + sheet.length) / length) for sheet in sheets]
@@ -95,13 +94,13 @@ def drawn(idle: Filmed, held: Filmed, end: float, edges: Sequence[tuple[float, f
     moves = [np.einsum("kds,d->ks", film.shape, direction) for film in (idle, held)]
     reach = max(float(np.abs(moves[0]).max()), 1e-12)
     magnified = REACH / reach / ((SPAN[1] - SPAN[0]) / length)
-    said = "failed" if np.isinf(held.cost) else f"J = {held.cost / idle.cost:.2f} of that without control"
+    said = "failed" if np.isinf(held.cost) else f"J = {held.cost / idle.cost:.2f} × no control's"
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="13">',
-        _words(36, 16, "without control", NEUTRAL, weight=True) + _words(146, 16, f"LQG: {said}", BLUE, weight=True),
-        _words(WIDTH - 30, 16, f"deflection magnified {_round(magnified)} times", LETTERS, anchor="end"),
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="14">',
+        _words(SPAN[0], 16, "no control", NEUTRAL, weight=True) + _words(118, 16, f"LQG: {said}", BLUE, weight=True),
+        _words(SPAN[1], 16, f"deflection × {_round(magnified)}", LETTERS, anchor="end"),
         f'<path d="M{SPAN[0]} {MIDDLE}H{SPAN[1]}" stroke="{LETTERS}" stroke-width="0.6" stroke-dasharray="3 4"/>',
-        f'<rect x="14" y="{MIDDLE - 26}" width="22" height="52" fill="{LETTERS}" fill-opacity="0.45"/>',
+        f'<rect x="8" y="{MIDDLE - 26}" width="20" height="52" fill="{LETTERS}" fill-opacity="0.45"/>',
         *(_patch(low, high, works) for (low, high), works in zip(edges, held.working, strict=False)),
         _moving_blade(idle.time, moves[0] / reach, end, NEUTRAL, 2.2, "6 4"),
         _moving_blade(held.time, moves[1] / reach, end, BLUE, 2.6),
@@ -162,10 +161,11 @@ def _axis(end: float, reach: float) -> list[str]:
     """Time, and how far the tip goes without control."""
     left, right, middle, half = TRACE
     size = f"{1e6 * reach:.0f} µm" if reach < 1e-3 else f"{1e3 * reach:.1f} mm"
+    lines = f"M{left:g} {middle}H{right:g}M{left:g} {middle - half}V{middle + half}"
     return [
-        f'<path d="M{left:g} {middle}H{right:g}M{left:g} {middle - half}V{middle + half}" stroke="{LETTERS}" stroke-width="0.6" fill="none"/>',
+        f'<path d="{lines}" stroke="{LETTERS}" stroke-width="0.6" fill="none"/>',
         _words(left, HEIGHT - 2, "0", LETTERS) + _words(right, HEIGHT - 2, f"{end:g} s", LETTERS, anchor="end"),
-        _words(left, 158, f"tip, at most {size} without control", LETTERS),
+        _words(left, 158, f"tip displacement, at most {size} without control", LETTERS),
     ]
 
 
