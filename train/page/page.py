@@ -20,12 +20,16 @@ from train.figures.heat_map import HeatMap
 from train.figures.panels import LearningCurves, learning_panel, pole_panel
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
-from train.page.blade import blade_figures, frame_times, motions
+from train.page.lead import Lead
 from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
+from train.page.shown import shown
 from train.page.signals import drawn_signals, words
 from train.page.table import Table
 from train.shared.versions import versions
+
+PANEL, REST = 160, 130
+"""Pixels of each panel of an episode's course, and of what is about them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,8 +37,10 @@ class PageContent:
     """What a page shows; a part that is None is left out."""
 
     title: str
+    lead: Lead | None = None
+    """What the reader is told first."""
     note: str = ""
-    """What the reader must know first."""
+    """What must be known besides, a sentence a line."""
     table: Table | None = None
     heat_map: HeatMap | None = None
     episode: RecordedEpisode | None = None
@@ -63,21 +69,17 @@ class Plot:
     """Pixels."""
     width: int = 0
     """Least width in pixels; narrower screens scroll it sideways."""
+    instead: str = ""
+    """Where those who cannot see the figure find what it shows."""
+    panel: int = 0
+    """Pixels that each panel adds, where readers choose how many there are."""
+    rest: int = 0
+    """Pixels besides the panels."""
 
     @property
     def json(self) -> str:
         """For a script element: plotly escapes what could end one."""
         return str(self.figure.to_json())
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Animation:
-    """The blade under two controllers."""
-
-    plots: tuple[Plot, Plot]
-    times: list[float]
-    """ms, of the frames."""
-    note: str
 
 
 def write_page(path: Path, content: PageContent) -> None:
@@ -102,7 +104,7 @@ def render(content: PageContent) -> str:
     )
     return environment.get_template("page.html").render(
         content=content,
-        animation=animation(content),
+        shown=None if content.episode is None else shown(content.episode),
         plots=plots(content),
         themes=THEMES,
         templates=templates(),
@@ -117,26 +119,13 @@ def templates() -> dict[str, Any]:
     return {name: theme.template() for name, theme in THEMES.items()}
 
 
-def animation(content: PageContent) -> Animation | None:
-    """The blade's pair of figures, when there is an episode."""
-    if content.episode is None or not content.episode.has_shape:
-        return None
-    pair = blade_figures(content.episode)
-    left, right = (Plot(f"blade-{side}", "", "", figure, 440) for side, figure in zip(("left", "right"), pair, strict=True))
-    note = (
-        f"Deflections are drawn {motions(content.episode)[1]:,.0f} times larger than life; thin lines: the blade at rest. "
-        "Actuators are coloured by their voltage. Drag to turn both blades, scroll to zoom."
-    )
-    return Animation((left, right), [round(1e3 * float(time), 3) for time in frame_times(content.episode)], note)
-
-
 def plots(content: PageContent) -> list[Plot]:
     """Every figure but the blade, in the order of the page."""
     found = []
     if content.heat_map is not None:
         found.append(_heat_map(content.heat_map))
     if content.episode is not None:
-        found += _of_episode(content.episode, content.episode_note)
+        found += _of_episode(content.episode)
     if content.poles:
         note = (
             "Continuous equivalents log(z)/Δt of the sampled loops' poles, upper half plane. "
@@ -160,15 +149,18 @@ def plots(content: PageContent) -> list[Plot]:
     return found
 
 
-def _of_episode(episode: RecordedEpisode, which: str) -> list[Plot]:
+def _of_episode(episode: RecordedEpisode) -> list[Plot]:
     """Its course and its spectra."""
     signals, what = len(drawn_signals(episode)), words(episode)
-    instant = "The upright line is the instant of the blade above." if episode.has_shape else which
-    note = f"Panels share their time axis: zoom into one and all follow. {instant}".rstrip()
-    height = 130 + 160 * (signals + len(episode.controlled))
-    course = Plot("time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height)
+    instant = " The upright line is the instant of the blade above." if episode.has_shape else ""
+    note = f"Panels share their time axis: zoom into one and all follow.{instant}"
+    controlled = len({0, episode.opens}) - 1
+    height = REST + PANEL * (signals + controlled)
+    course = Plot(
+        "time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height, panel=PANEL, rest=REST
+    )
     of = "the tip" if episode.has_shape else f"the {what}"
-    note = f"Spectra of {of} before and after: Hann window over the whole record, mean removed; dotted: natural frequencies."
+    note = f"Spectra of {of}: Hann window over the whole record, mean removed; dotted: natural frequencies."
     return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals)]
 
 
