@@ -38,9 +38,9 @@ class Lead:
 def blade_in_words(blade: Blade) -> str:
     """Length, speed, actuators and sensors."""
     truth = blade.truth
-    ports = f"{_counted(truth.B.shape[1], 'actuator')} and {_counted(len(truth.C), 'sensor')}"
+    ports = f"{counted(truth.B.shape[1], 'actuator')} and {counted(len(truth.C), 'sensor')}"
     if isinstance(blade, ModelBlade):
-        return f"a model with {_counted(len(truth.A), 'state')}, {ports}"
+        return f"a model with {counted(len(truth.A), 'state')}, {ports}"
     turns = f"turns at {blade.config.speed:g} rad/s" if blade.config.speed else "does not turn"
     return f"a blade of {blade.config.beam.length:g} m that {turns}, with {ports}"
 
@@ -59,5 +59,6 @@ def load_in_words(scenario: Scenario) -> str:
     return f"{', '.join(kinds[:-1])} and {kinds[-1]}" if len(kinds) > 1 else "".join(kinds) or "nothing"
 
 
-def _counted(count: int, what: str) -> str:
+def counted(count: int, what: str) -> str:
+    """Say, 1 sensor, 4 sensors."""
     return f"{count} {what}{'' if count == 1 else 's'}"

@@ -37,8 +37,6 @@ class PageContent:
     """What a page shows; a part that is None is left out."""
 
     title: str
-    lead: Lead | None = None
-    """What the reader is told first."""
     note: str = ""
     """What must be known besides, a sentence a line."""
     table: Table | None = None
@@ -54,6 +52,8 @@ class PageContent:
     """As JSON can hold it."""
     further: Mapping[str, Table] = field(default_factory=dict)
     """More tables, by their headings."""
+    lead: Lead | None = None
+    """What the reader is told first."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,34 +4,62 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from train.benchmark.showing.episode import shown_episode
+from baselines import Estimate
+from train.benchmark.showing.episode import ShownEpisode, shown_episode
 from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.legend import legend
 from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
 from train.benchmark.showing.section import Section
-from train.benchmark.table import BenchmarkTable, Row
+from train.benchmark.table import RIVAL, BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
-from train.page import Cell, LearningCurves, PageContent, Table, write_page
+from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
+from train.page.lead import COST, blade_in_words, counted, load_in_words
 from train.shared.curve import read_curve
+
+COLUMN = next(column for column in COLUMNS if column.name == "relative_cost")
 
 
 def write_report(path: Path, table: BenchmarkTable) -> None:
     """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration."""
-    episode, note = shown_episode(table)
+    shown = shown_episode(table)
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
-        title=f"Controllers of a {'rotating blade' if episode is None or episode.has_shape else 'model'} across scenarios",
+        title=f"Controllers of a {'model' if of_model(table) else 'rotating blade'} across scenarios",
+        lead=None if shown is None else lead(table, shown),
         note="\n".join([*(each.sentence for each in findings(table)), *table.left_out, *wrong]),
         table=page_table(table),
         further={each.heading: further_table(each) for each in sections(table)},
         heat_map=heat_map(table),
-        episode=episode,
-        episode_note=note,
+        episode=None if shown is None else shown.episode,
+        episode_note="" if shown is None else shown.note,
         learning=learning_curves(table),
         configuration=table.configuration,
     )
     write_page(path, content)
+
+
+def of_model(table: BenchmarkTable) -> bool:
+    """Whether a model of one's own moves, and no blade."""
+    return table.configuration.get("environment", {}).get("plant") is not None
+
+
+def lead(table: BenchmarkTable, shown: ShownEpisode) -> Lead:
+    """The least J in the scenario that is shown, what moves under which loads, and how this was made."""
+    first, last = table.configuration["seeds"]
+    rival, best = table.row(shown.scenario, RIVAL), shown.best
+    beside = "" if rival is None or not rival.measured or rival is best else f", LQG to {COLUMN.text(_relative(rival))}"
+    return Lead(
+        f"In the scenario {shown.scenario}, {best.controller} brings {COST} to {COLUMN.text(_relative(best))} of what it is without "
+        f"control, the least of all that see no more than a real blade shows{beside}.",
+        f"What moves is {blade_in_words(shown.episode.blade)}, there under {load_in_words(shown.episode.task.scenario)}; "
+        f"{len(table.controllers)} controllers were put through {counted(len(table.scenarios), 'scenario')} of {last - first + 1} "
+        "held-out episodes each.",
+    )
+
+
+def _relative(row: Row) -> Estimate:
+    return row.estimates["relative_cost"]
 
 
 def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
