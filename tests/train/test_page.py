@@ -54,6 +54,12 @@ def test_every_part_is_on_the_page(page):
     assert set(SECTIONS) <= identities
 
 
+def test_every_section_is_linked_to_in_its_order(page):
+    found = Elements(page).found
+    links = [attributes["href"] for tag, attributes in found if tag == "a"]
+    assert links == [f"#{attributes['id']}" for tag, attributes in found if tag == "section"] and len(links) == 8
+
+
 def test_parts_that_are_none_are_left_out():
     identities = {attributes.get("id") for _, attributes in Elements(render(PageContent("Nothing yet"))).found}
     assert identities.intersection(SECTIONS) == {"provenance"}
@@ -62,7 +68,7 @@ def test_parts_that_are_none_are_left_out():
 def test_nothing_is_loaded_from_the_network(page):
     elements = Elements(page).found
     assert [attributes for _, attributes in elements if "src" in attributes or "srcset" in attributes] == []
-    assert [attributes["href"] for _, attributes in elements if not attributes.get("href", "data:,").startswith("data:")] == []
+    assert [attributes["href"] for _, attributes in elements if not attributes.get("href", "#").startswith(("data:", "#"))] == []
     (policy,) = [attributes["content"] for tag, attributes in elements if attributes.get("http-equiv") == "Content-Security-Policy"]
     assert policy.startswith("default-src 'none';")
     assert not re.search(r"\bhttps?:", policy)
@@ -146,7 +152,7 @@ def test_the_plant_of_the_episode_is_drawn_and_not_the_design():
 
 def test_a_blade_that_failed_stays_as_it_was_last(page_content):
     short = page_content.episode.recordings[1]
-    short = replace(short, **{name: getattr(short, name)[:60] for name in ("time", "states", "tip", "volts", "readings", "plants")})
+    short = replace(short, **{name: getattr(short, name)[:60] for name in ("time", "states", "tip", "volts", "readings", "truth")})
     episode = replace(page_content.episode, recordings=(page_content.episode.without_control, short))
     whole, lost = drawn_blade(episode)["recordings"]
     assert whole["failed"] is None and lost["failed"] == pytest.approx(29.5)
@@ -189,6 +195,18 @@ def test_actuators_have_the_voltage_and_sensors_the_output_of_the_frame(page_con
         outputs = unpacked(told["outputs"], -1, 4)
         np.testing.assert_allclose(outputs, (recording.readings / episode.blade.truth.sensor_full_scale)[at], rtol=1e-6)
         assert 0.0 < np.abs(outputs).max() <= 1.0
+
+
+def test_what_is_dead_is_told_frame_by_frame():
+    idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
+    dead = drawn_blade(record_episode({"duration": 0.02, "scenario": "two-dead-actuators"}, 3, {"idle": idle}))["recordings"][0][
+        "dead"
+    ]
+    assert len(dead) == 6 and all(each == dead[0] for each in dead)
+    assert len(dead[0]) == 2 and max(dead[0]) < 4
+    later = record_episode({"duration": 0.4, "scenario": "mid-failure"}, 3, {"idle": idle})
+    first, *_, last = drawn_blade(later)["recordings"][0]["dead"]
+    assert first == [] and len(last) == 1
 
 
 def test_each_controller_is_recorded_once_and_no_control_first(page_content):
@@ -278,6 +296,11 @@ def test_the_comparison_is_a_table_with_the_best_first():
     assert [row[0].text for row in table.rows] == ["LQG", "no control"]
     assert table.rows[1][1].value == 1.0
     assert table.rows[0][1].value == evaluations[1].relative_cost.value
+
+
+def test_columns_without_numbers_are_text():
+    rows = ((Cell("LQG"), Cell("0.4", 0.4), Cell("fixed")), (Cell("none"), Cell("–"), Cell("fixed")))
+    assert Table(("controller", "J", "kind"), rows).text_columns == (0, 2)
 
 
 def test_a_row_of_another_length_is_refused():

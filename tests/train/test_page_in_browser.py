@@ -82,7 +82,9 @@ def test_it_opens_at_the_largest_deflection_without_control(show, page_content):
     from train.page.blade import frame_times
 
     browser = show()
-    tip = page_content.episode.without_control.tip[np.searchsorted(page_content.episode.time, frame_times(page_content.episode) - 1e-9)]
+    tip = page_content.episode.without_control.tip[
+        np.searchsorted(page_content.episode.time, frame_times(page_content.episode) - 1e-9)
+    ]
     assert view(browser)["frame"] == np.linalg.norm(tip, axis=1).argmax()
     captions = [each.text for each in browser.find_elements("css selector", "figcaption strong")]
     assert captions == ["no control", "LQG"]
@@ -101,7 +103,9 @@ def test_the_slider_moves_blades_clock_cursor_and_what_is_read_aloud(show, page_
     lag, flap = 1e6 * page_content.episode.without_control.tip[120]
     told = f"no control: Tip: lag {lag:.0f} µm, flap {flap:.0f} µm.".replace("-", "−")
     assert told in browser.find_element("id", "instant").get_attribute("aria-valuetext")
-    assert browser.execute_script("return document.querySelector('canvas').ariaLabel").startswith("The blade under no control at 60.0 ms")
+    assert browser.execute_script("return document.querySelector('canvas').ariaLabel").startswith(
+        "The blade under no control at 60.0 ms"
+    )
 
 
 def test_play_goes_on_to_the_end_of_the_episode(show):

@@ -62,9 +62,7 @@ def write_comparison_page(
     write_page(folder / "report.html", content)
 
 
-def lead(
-    evaluations: Sequence[Evaluation], best: Evaluation, episode: RecordedEpisode, environment: Mapping[str, Any]
-) -> Lead:
+def lead(evaluations: Sequence[Evaluation], best: Evaluation, episode: RecordedEpisode, environment: Mapping[str, Any]) -> Lead:
     """The best controller's J, what moved under which loads, and how this was made."""
     scenario, count = environment.get("scenario", "default"), len(best.episodes.seeds)
     named = f", those of the scenario {scenario!r}" if isinstance(scenario, str) else ""
@@ -92,7 +90,9 @@ def best_rival(evaluations: Sequence[Evaluation], controllers: Mapping[str, Cont
     pairs = list(zip(evaluations, controllers.values(), strict=True))
     rivals = [evaluation for evaluation, law in pairs if _is_rival(evaluation, law, tiers)]
     idle = evaluations[0].name
-    return ranked([each for each in rivals if each.name != idle] or [each for each in evaluations if each.name != idle] or evaluations)[0]
+    return ranked(
+        [each for each in rivals if each.name != idle] or [each for each in evaluations if each.name != idle] or evaluations
+    )[0]
 
 
 def _is_rival(evaluation: Evaluation, law: Controller, tiers: Tiers) -> bool:

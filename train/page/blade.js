@@ -161,13 +161,15 @@ function drawBlade(canvas, blade, recording, frame, magnification, camera, theme
   const volts = (k) => recording.volts[frame * blade.actuators.length + k] / blade.limit;
   const channels = recording.outputs.length / blade.frames;
   const output = (channel) => (channel < 0 || channel >= channels ? 0 : recording.outputs[frame * channels + channel]);
+  const dead = new Set(recording.dead[frame]);
+  const deadReading = (channel) => dead.has(blade.actuators.length + channel);
   const below = view.eye[1] < points[points.length - 1][1] - blade.drop;
   const steps = [
     () => drawRest(pen, blade, view, theme),
-    () => drawSensors(pen, blade, view, points, output, theme),
+    () => drawSensors(pen, blade, view, points, output, deadReading, theme),
     () => drawFaces(pen, blade.faces.map((face) => ({ ...face, at: face.corners.map((k) => points[k]) })), blade.body, blade.light, view),
-    () => blade.actuators.forEach((first, k) => drawPatch(pen, blade, view, patchAt(points, first), k, blade.scales.voltage, volts(k), theme)),
-    () => drawPoints(pen, blade, view, points, output, theme),
+    () => blade.actuators.forEach((first, k) => drawPatch(pen, view, patchAt(points, first), k, blade.scales.voltage, volts(k), dead.has(k), theme)),
+    () => drawPoints(pen, blade, view, points, output, deadReading, theme),
   ];
   if (below) steps.push(steps.splice(1, 1)[0]);
   const hub = () => drawFaces(pen, blade.hub.map((at) => ({ at })), blade.hubColours, blade.light, view);
@@ -209,10 +211,11 @@ const patchAt = (points, first) => [0, 2, 3, 1].map((k) => points[first + k]);
 
 // A patch with its number, where there is room for it; an actuator only where its outer side is seen.
 
-function drawPatch(pen, blade, { project }, at, index, scale, value, theme, both = false) {
+function drawPatch(pen, { project }, at, index, scale, value, dead, theme, both = false) {
   const flat = at.map(project);
   if (!both && !turned(flat)) return;
   polygon(pen, flat, css(coloured(scale, value)), theme.edge, 1);
+  if (dead) return crossOut(pen, flat, theme);
   const room = Math.min(Math.hypot(flat[3][0] - flat[0][0], flat[3][1] - flat[0][1]), Math.hypot(flat[1][0] - flat[0][0], flat[1][1] - flat[0][1]));
   if (room < 7) return;
   const [x, y] = middleOf(flat);
@@ -223,22 +226,32 @@ function drawPatch(pen, blade, { project }, at, index, scale, value, theme, both
   pen.fillText(String(index + 1), x, y);
 }
 
+// What is dead is crossed out.
+
+function crossOut(pen, [a, b, c, d], theme) {
+  line(pen, [a, c], theme.edge, 2);
+  line(pen, [b, d], theme.edge, 2);
+}
+
 // Sensor patches are drawn below the wall they lie in: nobody could see them there.
 
-function drawSensors(pen, blade, view, points, output, theme) {
+function drawSensors(pen, blade, view, points, output, dead, theme) {
   blade.sensors.forEach((first, k) => {
     const there = patchAt(points, first);
     const at = there.map((point) => plus(point, [0, -blade.drop, 0]));
     line(pen, [middleOf(there), middleOf(at)].map(view.project), theme.faint);
-    drawPatch(pen, blade, view, at, k, blade.scales.output, output(blade.readBy.sensors[k]), theme, true);
+    const channel = blade.readBy.sensors[k];
+    drawPatch(pen, view, at, k, blade.scales.output, output(channel), dead(channel), theme, true);
   });
 }
 
-function drawPoints(pen, blade, { project }, points, output, theme) {
+function drawPoints(pen, blade, { project }, points, output, dead, theme) {
   blade.points.forEach((place, k) => {
     const [x, y] = project(points[place]);
     const diamond = [[5, 0], [0, 5], [-5, 0], [0, -5]].map(([right, down]) => [x + right, y + down]);
-    polygon(pen, diamond, css(coloured(blade.scales.output, output(blade.readBy.points[k]))), theme.edge, 1);
+    const channel = blade.readBy.points[k];
+    polygon(pen, diamond, css(coloured(blade.scales.output, output(channel))), theme.edge, 1);
+    if (dead(channel)) crossOut(pen, diamond, theme);
   });
 }
 

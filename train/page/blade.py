@@ -49,7 +49,7 @@ def displacements(episode: RecordedEpisode, stations: Array) -> list[Array]:
     deformation, found = Deformation(episode.task, stations), []
     for recording in episode.recordings:
         rows = frame_rows(episode, recording)
-        plants = np.zeros(len(recording.time), dtype=np.int64) if recording.plants is None else recording.plants
+        plants = recording.truth[:, 0] if recording.truth.size else np.zeros(len(recording.time))
         found.append(np.stack([deformation.displacement(recording.states[row], int(plants[row])) for row in rows]))
     return found
 
@@ -102,8 +102,20 @@ def _motion(episode: RecordedEpisode, recording: Recording, moved: Array, amplit
         "tip": packed(1e6 * recording.tip[rows]),
         "volts": packed(np.broadcast_to(volts, (len(rows), actuators))),  # ganged actuators share one voltage
         "outputs": packed(outputs),
+        "dead": _dead(episode, recording)[rows].tolist() if recording.truth.size else [],
         "failed": None if len(recording.time) == len(episode.time) else float(1e3 * recording.time[-1]),
     }
+
+
+def _dead(episode: RecordedEpisode, recording: Recording) -> NDArray[np.object_]:
+    """(K,): which actuators and which readings are dead, each by its place; readings come after all actuators."""
+    m, p = recording.volts.shape[1], len(episode.blade.truth.C)
+    actuators = sum(group.count for group in episode.blade.config.patches.groups("actuators"))
+    gains = recording.truth[:, 2 : 2 + m + p]
+    dead = np.concatenate([np.broadcast_to(gains[:, :m], (len(gains), actuators)), gains[:, m:]], axis=1) == 0.0
+    found = np.empty(len(dead), dtype=object)
+    found[:] = [np.flatnonzero(row).tolist() for row in dead]
+    return found
 
 
 def _surface(blade: Blade, solid: BladeSolid) -> dict[str, Any]:

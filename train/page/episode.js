@@ -58,7 +58,9 @@ function startBlade(content) {
     const [lag, flap] = recording.tip.slice(2 * frame, 2 * frame + 2);
     const count = blade.actuators.length;
     const volts = [...recording.volts.slice(count * frame, count * (frame + 1))].map(number).join(", ");
-    return `Tip: lag ${number(lag)} µm, flap ${number(flap)} µm${lost}. Voltages: ${volts} V.`;
+    const dead = recording.dead[frame] ?? [];
+    const broken = [...dead.filter((k) => k < count).map((k) => `actuator ${k + 1}`), ...dead.filter((k) => k >= count).map((k) => `sensor ${k - count + 1}`)];
+    return `Tip: lag ${number(lag)} µm, flap ${number(flap)} µm${lost}. Voltages: ${volts} V.${broken.length ? ` Dead: ${broken.join(", ")}.` : ""}`;
   }
 
   function paint() {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -95,6 +95,7 @@ def write_page(path: Path, content: PageContent) -> None:
 
 def render(content: PageContent) -> str:
     """The page as HTML, plotly.js (4.8 MB) once inside."""
+    drawn = plots(content)
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("beamenv.train.page", ""),
         autoescape=True,
@@ -105,12 +106,24 @@ def render(content: PageContent) -> str:
     return environment.get_template("page.html").render(
         content=content,
         shown=None if content.episode is None else shown(content.episode),
-        plots=plots(content),
+        plots=drawn,
+        parts=parts(content, drawn),
         themes=THEMES,
         templates=templates(),
         versions={**versions(), "plotly.js": get_plotlyjs_version()},
         plotly_js=get_plotlyjs(),
     )
+
+
+def parts(content: PageContent, drawn: Sequence[Plot]) -> list[tuple[str, str]]:
+    """Id and heading of every section, in the order of the page."""
+    maps = [plot for plot in drawn if plot.name == "heat-map"]
+    found = [(f"part-{place}", heading) for place, heading in enumerate(content.further, start=1)]
+    found += [("table", "Controllers")] if content.table else []
+    found += [(f"about-{plot.name}", plot.heading) for plot in maps]
+    found += [("episode", "One episode")] if content.episode else []
+    found += [(f"about-{plot.name}", plot.heading) for plot in drawn if plot not in maps]
+    return [*found, ("provenance", "Configuration and versions")]
 
 
 @lru_cache(maxsize=1)
@@ -156,9 +169,7 @@ def _of_episode(episode: RecordedEpisode) -> list[Plot]:
     note = f"Panels share their time axis: zoom into one and all follow.{instant}"
     controlled = len({0, episode.opens}) - 1
     height = REST + PANEL * (signals + controlled)
-    course = Plot(
-        "time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height, panel=PANEL, rest=REST
-    )
+    course = Plot("time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height, panel=PANEL, rest=REST)
     of = "the tip" if episode.has_shape else f"the {what}"
     note = f"Spectra of {of}: Hann window over the whole record, mean removed; dotted: natural frequencies."
     return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals)]
@@ -170,5 +181,5 @@ def _plotted(panel: Panel, **layout: Any) -> go.Figure:
 
 def _heat_map(content: HeatMap) -> Plot:
     note = "Blue: better than no control. ✕: share of episodes in which the blade failed or the loop was unstable. Empty: not run."
-    height, width = 180 + 44 * len(content.scenarios), 260 + 62 * len(content.controllers)
+    height, width = max(320, 180 + 44 * len(content.scenarios)), 260 + 62 * len(content.controllers)
     return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width)

@@ -81,7 +81,9 @@ def amplitude_density(signal: Array, interval: float) -> tuple[Array, Array]:
 
 def _coloured(episode: RecordedEpisode) -> list[tuple[Recording, Look]]:
     """Each recording with its colour, grey without control; the page's script gives those that it shows theirs."""
-    return [(each, Look(PALETTE[(place - 1) % len(PALETTE)] if place else NEUTRAL)) for place, each in enumerate(episode.recordings)]
+    return [
+        (each, Look(PALETTE[(place - 1) % len(PALETTE)] if place else NEUTRAL)) for place, each in enumerate(episode.recordings)
+    ]
 
 
 def _stacked(panels: Sequence[Panel], whose: Sequence[int], along: str, end: float) -> go.Figure:
@@ -89,7 +91,9 @@ def _stacked(panels: Sequence[Panel], whose: Sequence[int], along: str, end: flo
     each panel, ``ALWAYS`` for one of all of them, curve by curve.
     """
     drawn = screen.figure(panels)
-    owners = [place if row == ALWAYS else row for panel, row in zip(panels, whose, strict=True) for place in range(len(panel.curves))]
+    owners = [
+        place if row == ALWAYS else row for panel, row in zip(panels, whose, strict=True) for place in range(len(panel.curves))
+    ]
     for trace, owner in zip(drawn["data"], owners, strict=True):
         trace["meta"] = {"recording": owner}
         _evenly(trace)

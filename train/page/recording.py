@@ -38,8 +38,8 @@ class Recording:
     """(K, m), V: held over the interval that ends at each instant."""
     readings: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """(K, p), in the sensors' units, noise and all; none behind a wrapper that shows something else."""
-    plants: NDArray[np.int64] | None = None
-    """(K,): which plant of the task's bank moves; None where it is the first all along."""
+    truth: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(K, 2 + m + 2 p), as ``Blades.truth``: which plant moves and what is wrong; empty where it is the first and all is well."""
     cost: float = float("nan")
     """J s: the cost J of the episode, infinite where the blade failed."""
 
@@ -90,13 +90,13 @@ def record(
         cost += float(instant.info["cost_increment"][0]) if rows else 0.0
         cost = float("inf") if instant.failed[0] else cost
         told = instant.info["tip_displacement"][0], instant.info["volts"][0], np.asarray(instant.observation[0])
-        rows.append((state, *told, inner.episode_truth[0]))
-    states, tip, volts, observed, plants = (np.stack(series) for series in zip(*rows, strict=True))
+        rows.append((state, *told, inner.episode_truth))
+    states, tip, volts, observed, truth = (np.stack(series) for series in zip(*rows, strict=True))
     name = name_of(as_controller(controller))
     scale = 1.0 if inner.task.physical_units else inner.plant.sensor_full_scale
     readings = scale * observed if env.observation_space == inner.observation_space else np.zeros((0, 0))
     time = inner.plant.control_interval * np.arange(len(rows))
-    return Recording(name, time, states, tip, volts, readings, plants.astype(np.int64), cost)
+    return Recording(name, time, states, tip, volts, readings, truth, cost)
 
 
 def record_episode(

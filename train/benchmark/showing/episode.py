@@ -34,7 +34,9 @@ def shown_episode(table: BenchmarkTable) -> ShownEpisode | None:
     """
     environment = table.configuration.get("environment", {})
     ships = {} if environment.get("plant") is not None else _ships()
-    gains = [(row.estimates["difference_to_lqg"].value, row.scenario) for row in table.rows if row.controller in ships and row.measured]
+    gains = [
+        (row.estimates["difference_to_lqg"].value, row.scenario) for row in table.rows if row.controller in ships and row.measured
+    ]
     name = min(gains)[1] if gains else table.scenarios[0]
     arguments = {**environment, "scenario": table.configuration["scenarios"][name]}
     task = resolve_task(**{key: value for key, value in arguments.items() if key != "max_episode_steps"})

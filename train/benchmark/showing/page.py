@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from baselines import Estimate
+from beamenv.knowledge import TRUTH
 from train.benchmark.showing.episode import ShownEpisode, shown_episode
 from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.legend import legend
@@ -45,17 +46,30 @@ def of_model(table: BenchmarkTable) -> bool:
 
 
 def lead(table: BenchmarkTable, shown: ShownEpisode) -> Lead:
-    """The least J in the scenario that is shown, what moves under which loads, and how this was made."""
+    """The least J in the first scenario and in the one that is shown, what moves under which loads, and how this was made."""
     first, last = table.configuration["seeds"]
-    rival, best = table.row(shown.scenario, RIVAL), shown.best
-    beside = "" if rival is None or not rival.measured or rival is best else f", LQG to {COLUMN.text(_relative(rival))}"
+    names = dict.fromkeys(["nominal" if "nominal" in table.scenarios else table.scenarios[0], shown.scenario])
+    first_best, *further = [each for name in names if (each := least_rival(table, name)) is not None]
+    others = [f"; in {row.scenario} it is {row.controller}, with {_of_without(table, row)}" for row in further]
     return Lead(
-        f"In the scenario {shown.scenario}, {best.controller} brings {COST} to {COLUMN.text(_relative(best))} of what it is without "
-        f"control, the least of all that see no more than a real blade shows{beside}.",
-        f"What moves is {blade_in_words(shown.episode.blade)}, there under {load_in_words(shown.episode.task.scenario)}; "
-        f"{len(table.controllers)} controllers were put through {counted(len(table.scenarios), 'scenario')} of {last - first + 1} "
-        "held-out episodes each.",
+        f"In {first_best.scenario}, {first_best.controller} has the least {COST} of all controllers that see no more than a real blade "
+        f"shows, {_of_without(table, first_best)} of that without control{''.join(others)}.",
+        f"What moves is {blade_in_words(shown.episode.blade)}, in {shown.scenario} under {load_in_words(shown.episode.task.scenario)}; "
+        f"{counted(len(table.controllers), 'controller')} went through {counted(len(table.scenarios), 'scenario')} of "
+        f"{last - first + 1} held-out episodes each.",
     )
+
+
+def least_rival(table: BenchmarkTable, scenario: str) -> Row | None:
+    """Who has the least J there of all that see no more than a real blade shows; None if nobody was measured."""
+    rows = [row for row in table.within(scenario) if row.measured and row.tier < TRUTH]
+    return min(rows, key=lambda row: row.mean_cost, default=None)
+
+
+def _of_without(table: BenchmarkTable, row: Row) -> str:
+    rival = table.row(row.scenario, RIVAL)
+    beside = "" if rival is None or not rival.measured or rival is row else f" (LQG: {COLUMN.text(_relative(rival))})"
+    return COLUMN.text(_relative(row)) + beside
 
 
 def _relative(row: Row) -> Estimate:
