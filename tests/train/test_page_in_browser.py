@@ -22,7 +22,7 @@ def report(page_content, tmp_path_factory):
 
 @pytest.fixture
 def show(browser, report):
-    """Load the page on a screen of this size under the system's colour scheme, and wait until all is drawn, the blade if it is near."""
+    """Load the page on a screen of this size under the system's colour scheme, and wait until its figures are drawn."""
 
     def load(width=1200, scheme="light", height=1400):
         screen = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}

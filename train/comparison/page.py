@@ -89,10 +89,11 @@ def best_rival(evaluations: Sequence[Evaluation], controllers: Mapping[str, Cont
     """The least J of all that see no more than sensors show; without any, of all."""
     pairs = list(zip(evaluations, controllers.values(), strict=True))
     rivals = [evaluation for evaluation, law in pairs if _is_rival(evaluation, law, tiers)]
-    idle = evaluations[0].name
-    return ranked(
-        [each for each in rivals if each.name != idle] or [each for each in evaluations if each.name != idle] or evaluations
-    )[0]
+    return ranked(_controlling(rivals, evaluations[0]) or _controlling(evaluations, evaluations[0]) or evaluations)[0]
+
+
+def _controlling(evaluations: Sequence[Evaluation], idle: Evaluation) -> list[Evaluation]:
+    return [each for each in evaluations if each is not idle]
 
 
 def _is_rival(evaluation: Evaluation, law: Controller, tiers: Tiers) -> bool:

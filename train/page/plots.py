@@ -81,9 +81,8 @@ def amplitude_density(signal: Array, interval: float) -> tuple[Array, Array]:
 
 def _coloured(episode: RecordedEpisode) -> list[tuple[Recording, Look]]:
     """Each recording with its colour, grey without control; the page's script gives those that it shows theirs."""
-    return [
-        (each, Look(PALETTE[(place - 1) % len(PALETTE)] if place else NEUTRAL)) for place, each in enumerate(episode.recordings)
-    ]
+    colours = [NEUTRAL, *(PALETTE[place % len(PALETTE)] for place in range(len(episode.recordings) - 1))]
+    return [(recording, Look(colour)) for recording, colour in zip(episode.recordings, colours, strict=True)]
 
 
 def _stacked(panels: Sequence[Panel], whose: Sequence[int], along: str, end: float) -> go.Figure:
@@ -91,9 +90,8 @@ def _stacked(panels: Sequence[Panel], whose: Sequence[int], along: str, end: flo
     each panel, ``ALWAYS`` for one of all of them, curve by curve.
     """
     drawn = screen.figure(panels)
-    owners = [
-        place if row == ALWAYS else row for panel, row in zip(panels, whose, strict=True) for place in range(len(panel.curves))
-    ]
+    places = [range(len(panel.curves)) for panel in panels]
+    owners = [place if row == ALWAYS else row for curves, row in zip(places, whose, strict=True) for place in curves]
     for trace, owner in zip(drawn["data"], owners, strict=True):
         trace["meta"] = {"recording": owner}
         _evenly(trace)

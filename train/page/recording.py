@@ -104,9 +104,9 @@ def record_episode(
 ) -> RecordedEpisode:
     """The episode of ``seed`` in the environment with these keyword arguments, without control and under each of the controllers.
 
-    They are called by their keys. One whose own name is that of ``baselines.laws.no_control`` counts as the episode without control,
-    and is not run. ``opens`` is the key of the one that is shown first, None that of the first. Raises ``ValueError`` for a key that
-    there is not.
+    They are called by their keys. One whose own name is that of ``baselines.laws.no_control`` counts as the episode without
+    control, and is not run. ``opens`` is the key of the one that is shown first, None that of the first. Raises ``ValueError``
+    for a key that there is not.
     """
     env = gym.make(beamenv.ENV_ID, **{"dtype": "float64", **arguments})
     try:

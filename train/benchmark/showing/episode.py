@@ -27,8 +27,8 @@ class ShownEpisode:
 
 
 def shown_episode(table: BenchmarkTable) -> ShownEpisode | None:
-    """The first held-out episode of the scenario in which a shipped agent gains most on LQG, under everyone who is measured there and
-    can be made again from its name. It opens beside the best that sees no more than a real blade shows.
+    """The first held-out episode of the scenario in which a shipped agent gains most on LQG, under everyone who is measured there
+    and can be made again from its name. It opens beside the best that sees no more than a real blade shows.
 
     Without a shipped agent, and of a model of one's own, that of the first scenario; None where nobody can be made again.
     """

@@ -51,12 +51,12 @@ def lead(table: BenchmarkTable, shown: ShownEpisode) -> Lead:
     names = dict.fromkeys(["nominal" if "nominal" in table.scenarios else table.scenarios[0], shown.scenario])
     first_best, *further = [each for name in names if (each := least_rival(table, name)) is not None]
     others = [f"; in {row.scenario} it is {row.controller}, with {_of_without(table, row)}" for row in further]
+    moved, load = blade_in_words(shown.episode.blade), load_in_words(shown.episode.task.scenario)
     return Lead(
-        f"In {first_best.scenario}, {first_best.controller} has the least {COST} of all controllers that see no more than a real blade "
-        f"shows, {_of_without(table, first_best)} of that without control{''.join(others)}.",
-        f"What moves is {blade_in_words(shown.episode.blade)}, in {shown.scenario} under {load_in_words(shown.episode.task.scenario)}; "
-        f"{counted(len(table.controllers), 'controller')} went through {counted(len(table.scenarios), 'scenario')} of "
-        f"{last - first + 1} held-out episodes each.",
+        f"In {first_best.scenario}, {first_best.controller} has the least {COST} of all controllers that see no more than a real "
+        f"blade shows, {_of_without(table, first_best)} of that without control{''.join(others)}.",
+        f"What moves is {moved}, in {shown.scenario} under {load}; {counted(len(table.controllers), 'controller')} went through "
+        f"{counted(len(table.scenarios), 'scenario')} of {last - first + 1} held-out episodes each.",
     )
 
 
