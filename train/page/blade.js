@@ -19,6 +19,7 @@ function readBlade(content) {
   }
   blade.frames = blade.recordings[0].tip.length / 2;
   blade.rest = vertices(blade, null, 0, 0);
+  blade.extremes = extremes(blade);
   blade.faces = blade.bodies.flatMap((body) => bodyFaces(body, blade));
   return blade;
 }
@@ -156,7 +157,7 @@ function drawBlade(canvas, blade, recording, frame, magnification, camera, theme
   pen.lineJoin = "round";
   const margin = 12;
   pen.translate(margin, margin);
-  const view = facing(extremes(blade), camera, blade.distance, width - 2 * margin, height - 2 * margin);
+  const view = facing(blade.extremes, camera, blade.distance, width - 2 * margin, height - 2 * margin);
   const points = vertices(blade, recording, frame, magnification);
   const volts = (k) => recording.volts[frame * blade.actuators.length + k] / blade.limit;
   const channels = recording.outputs.length / blade.frames;
@@ -176,7 +177,8 @@ function drawBlade(canvas, blade, recording, frame, magnification, camera, theme
   if (view.eye[2] < 0) steps.push(hub);
   else steps.unshift(hub);
   for (const step of steps) step();
-  drawAxes(pen, view, [width - 2 * margin - 60, height - 2 * margin - 30], theme);
+  const held = view.project(blade.hub[0][0])[0];
+  drawAxes(pen, view, [held < width / 2 ? width - 2 * margin - 60 : 60, height - 2 * margin - 30], theme);
 }
 
 // Dashed edges of the blade at rest.
