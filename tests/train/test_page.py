@@ -54,6 +54,34 @@ def test_every_part_is_on_the_page(page):
     assert set(SECTIONS) <= identities
 
 
+def test_who_cannot_see_the_page_is_told_what_it_shows(page):
+    found = Elements(page).found
+    identities = [attributes["id"] for _, attributes in found if "id" in attributes]
+    assert len(identities) == len(set(identities))
+    referred = " ".join(attributes.get("aria-describedby", "") for _, attributes in found).split()
+    assert len(referred) == 9 and set(referred) <= set(identities)
+    pictures = [attributes for tag, attributes in found if attributes.get("class") == "figure" or tag == "canvas"]
+    assert len(pictures) == 7
+    assert all(
+        attributes["role"] == "img" and attributes["aria-label"] and attributes["aria-describedby"] for attributes in pictures
+    )
+    assert {attributes["aria-sort"] for tag, attributes in found if tag == "th" and attributes.get("scope") == "col"} == {"none"}
+    assert sum(tag == "th" and attributes.get("scope") == "row" for tag, attributes in found) == 4 + len(versions()) + 1
+
+
+def test_figures_are_told_in_numbers(page_content):
+    episode = page_content.episode
+    told = {plot.name: plot.instead for plot in plots(page_content)}
+    lag, flap = 1e6 * np.abs(episode.without_control.tip).max(axis=0)
+    assert (
+        f"no control: tip displacement, lag {lag:.3g} µm, tip displacement, flap {flap:.3g} µm, voltage 0 V; LQG: "
+        in told["time-series"]
+    )
+    largest = {name: values.real.max() for name, values in page_content.poles.items()}
+    assert told["poles"].count("rad/s") == 2 and max(largest.values()) < 0.0 and "no control −" in told["poles"]
+    assert told["learning"] == "J over J without control in the end: PPO 0.600 after 3 s; LQG 0.400."
+
+
 def test_every_section_is_linked_to_in_its_order(page):
     found = Elements(page).found
     links = [attributes["href"] for tag, attributes in found if tag == "a"]

@@ -20,6 +20,7 @@ from train.figures.heat_map import HeatMap
 from train.figures.panels import LearningCurves, learning_panel, pole_panel
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
+from train.page import instead
 from train.page.lead import Lead
 from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
@@ -70,7 +71,7 @@ class Plot:
     width: int = 0
     """Least width in pixels; narrower screens scroll it sideways."""
     instead: str = ""
-    """Where those who cannot see the figure find what it shows."""
+    """What it shows in words, for those who cannot see it."""
     panel: int = 0
     """Pixels that each panel adds, where readers choose how many there are."""
     rest: int = 0
@@ -144,7 +145,16 @@ def plots(content: PageContent) -> list[Plot]:
             "Continuous equivalents log(z)/Δt of the sampled loops' poles, upper half plane. "
             "The real axis is logarithmic beyond 10 rad/s."
         )
-        found.append(Plot("poles", "Closed-loop poles", note, _plotted(pole_panel(content.poles)), 480))
+        found.append(
+            Plot(
+                "poles",
+                "Closed-loop poles",
+                note,
+                _plotted(pole_panel(content.poles)),
+                480,
+                instead=instead.of_poles(content.poles),
+            )
+        )
     if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
         note = (
             "Agents: running cost in training, or, of those that explore, the policy without exploration where validation looked. "
@@ -157,6 +167,7 @@ def plots(content: PageContent) -> list[Plot]:
                 note,
                 _plotted(learning_panel(content.learning), hovermode="x"),
                 420,
+                instead=instead.of_learning(content.learning),
             )
         )
     return found
@@ -169,10 +180,13 @@ def _of_episode(episode: RecordedEpisode) -> list[Plot]:
     note = f"Panels share their time axis: zoom into one and all follow.{instant}"
     controlled = len({0, episode.opens}) - 1
     height = REST + PANEL * (signals + controlled)
-    course = Plot("time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height, panel=PANEL, rest=REST)
+    title = f"{what.capitalize()} and voltages"
+    seen = instead.of_course(episode)
+    course = Plot("time-series", title, note, time_series(episode), height, instead=seen, panel=PANEL, rest=REST)
     of = "the tip" if episode.has_shape else f"the {what}"
     note = f"Spectra of {of}: Hann window over the whole record, mean removed; dotted: natural frequencies."
-    return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals)]
+    seen = instead.of_spectra(episode)
+    return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals, instead=seen)]
 
 
 def _plotted(panel: Panel, **layout: Any) -> go.Figure:
@@ -182,4 +196,4 @@ def _plotted(panel: Panel, **layout: Any) -> go.Figure:
 def _heat_map(content: HeatMap) -> Plot:
     note = "Blue: better than no control. ✕: share of episodes in which the blade failed or the loop was unstable. Empty: not run."
     height, width = max(320, 180 + 44 * len(content.scenarios)), 260 + 62 * len(content.controllers)
-    return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width)
+    return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width, instead.HEAT_MAP)
