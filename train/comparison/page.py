@@ -67,8 +67,8 @@ def lead(evaluations: Sequence[Evaluation], best: Evaluation, episode: RecordedE
     scenario, count = environment.get("scenario", "default"), len(best.episodes.seeds)
     named = f", those of the scenario {scenario!r}" if isinstance(scenario, str) else ""
     return Lead(
-        f"{best.name[:1].upper()}{best.name[1:]} brings {COST} to {COLUMN.text(best.relative_cost)} of what it is without control, "
-        "the least of all the controllers here that see no more than a real blade shows.",
+        f"Under {best.name}, {COST} is {COLUMN.text(best.relative_cost)} of what it is without control, the least of all the "
+        "controllers here that see no more than a real blade shows.",
         f"What moves is {blade_in_words(episode.blade)}; its loads are {load_in_words(episode.task.scenario)}{named}, in {count} "
         "held-out episodes.",
     )
