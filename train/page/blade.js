@@ -168,12 +168,12 @@ function drawBlade(canvas, blade, recording, frame, magnification, camera, theme
   const steps = [
     () => drawRest(pen, blade, view, theme),
     () => drawSensors(pen, blade, view, points, output, deadReading, theme),
-    () => drawFaces(pen, blade.faces.map((face) => ({ ...face, at: face.corners.map((k) => points[k]) })), blade.body, blade.light, view),
+    () => drawFaces(pen, blade.faces.map((face) => ({ ...face, at: face.corners.map((k) => points[k]) })), theme.body, blade.light, view),
     () => blade.actuators.forEach((first, k) => drawPatch(pen, view, patchAt(points, first), k, blade.scales.voltage, volts(k), dead.has(k), theme)),
     () => drawPoints(pen, blade, view, points, output, deadReading, theme),
   ];
   if (below) steps.push(steps.splice(1, 1)[0]);
-  const hub = () => drawFaces(pen, blade.hub.map((at) => ({ at })), blade.hubColours, blade.light, view);
+  const hub = () => drawFaces(pen, blade.hub.map((at) => ({ at })), theme.hub, blade.light, view);
   if (view.eye[2] < 0) steps.push(hub);
   else steps.unshift(hub);
   for (const step of steps) step();
@@ -187,11 +187,11 @@ function drawRest(pen, blade, { project }, theme) {
   for (const { first, corners, edges, stations } of blade.bodies) {
     for (const edge of edges) {
       const at = blade.even.map((s) => project(blade.rest[first + s * corners + edge]));
-      for (let k = 0; k + 1 < at.length; k += 2) line(pen, [at[k], at[k + 1]], theme.faint);
+      for (let k = 0; k + 1 < at.length; k += 2) line(pen, [at[k], at[k + 1]], theme.rest);
     }
     const last = first + (stations - 1) * corners;
     const end = blade.rest.slice(last, last + corners).map(project);
-    line(pen, [...end, end[0]], theme.faint);
+    line(pen, [...end, end[0]], theme.rest);
   }
 }
 
@@ -216,7 +216,7 @@ const patchAt = (points, first) => [0, 2, 3, 1].map((k) => points[first + k]);
 function drawPatch(pen, { project }, at, index, scale, value, dead, theme, both = false) {
   const flat = at.map(project);
   if (!both && !turned(flat)) return;
-  polygon(pen, flat, css(coloured(scale, value)), theme.edge, 1);
+  polygon(pen, flat, css(coloured(scale, value)), theme.outline, 1);
   if (dead) return crossOut(pen, flat, theme);
   const room = Math.min(Math.hypot(flat[3][0] - flat[0][0], flat[3][1] - flat[0][1]), Math.hypot(flat[1][0] - flat[0][0], flat[1][1] - flat[0][1]));
   if (room < 7) return;
@@ -231,8 +231,8 @@ function drawPatch(pen, { project }, at, index, scale, value, dead, theme, both 
 // What is dead is crossed out.
 
 function crossOut(pen, [a, b, c, d], theme) {
-  line(pen, [a, c], theme.edge, 2);
-  line(pen, [b, d], theme.edge, 2);
+  line(pen, [a, c], theme.outline, 2);
+  line(pen, [b, d], theme.outline, 2);
 }
 
 // Sensor patches are drawn below the wall they lie in: nobody could see them there.
@@ -241,7 +241,7 @@ function drawSensors(pen, blade, view, points, output, dead, theme) {
   blade.sensors.forEach((first, k) => {
     const there = patchAt(points, first);
     const at = there.map((point) => plus(point, [0, -blade.drop, 0]));
-    line(pen, [middleOf(there), middleOf(at)].map(view.project), theme.faint);
+    line(pen, [middleOf(there), middleOf(at)].map(view.project), theme.rest);
     const channel = blade.readBy.sensors[k];
     drawPatch(pen, view, at, k, blade.scales.output, output(channel), dead(channel), theme, true);
   });
@@ -252,7 +252,7 @@ function drawPoints(pen, blade, { project }, points, output, dead, theme) {
     const [x, y] = project(points[place]);
     const diamond = [[5, 0], [0, 5], [-5, 0], [0, -5]].map(([right, down]) => [x + right, y + down]);
     const channel = blade.readBy.points[k];
-    polygon(pen, diamond, css(coloured(blade.scales.output, output(channel))), theme.edge, 1);
+    polygon(pen, diamond, css(coloured(blade.scales.output, output(channel))), theme.outline, 1);
     if (dead(channel)) crossOut(pen, diamond, theme);
   });
 }

@@ -15,8 +15,9 @@ from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import drive_limit
 from beamenv.rendering import scene
 from beamenv.rendering.deformation import Deformation
-from beamenv.rendering.palette import OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
+from beamenv.rendering.palette import INK, OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
 from beamenv.rendering.solid import BladeSolid
+from train.figures.themes import THEMES, Theme
 from train.page.recording import RecordedEpisode, Recording
 
 Array = NDArray[np.float64]
@@ -166,9 +167,14 @@ def _view(blade: Blade) -> dict[str, Any]:
         "distance": scene.DISTANCE * beam.length,
         "drop": scene.SENSOR_DROP * beam.length,
         "ribs": scene.RIBS,
-        "body": [shade.tolist() for shade in scene.BODY],
-        "hubColours": [shade.tolist() for shade in scene.HUB],
+        "themes": {name: _colours(theme) for name, theme in THEMES.items()},
     }
+
+
+def _colours(theme: Theme) -> dict[str, Any]:
+    """Of what stands for no value."""
+    body, hub = ([shade.tolist() for shade in shades] for shades in (scene.BODY, scene.HUB))
+    return {"ink": theme.ink, "rest": theme.faint, "outline": INK, "body": body, "hub": hub}
 
 
 def _scale(name: str) -> list[list[int]]:

@@ -35,7 +35,7 @@ function magnified(deflection, drawn) {
 
 const number = (value) => (Math.abs(value) < 0.5 ? "0" : value.toFixed(0)).replace("-", "−");
 
-function startBlade(content) {
+function startBlade(content, toPrint) {
   const blade = readBlade(content);
   const canvases = [...document.querySelectorAll(".pair canvas")];
   const slider = document.getElementById("instant");
@@ -50,6 +50,7 @@ function startBlade(content) {
   let timer = null;
   let asked = false;
   let busy = false;
+  let printing = toPrint;
 
   const recordings = () => picked().map((place) => blade.recordings[place]);
 
@@ -68,10 +69,10 @@ function startBlade(content) {
     const frame = slider.valueAsNumber;
     const both = recordings();
     const factor = magnified(Math.max(...both.map((each) => each.largest)), blade.shownDeflection);
-    const theme = { ink: getComputedStyle(document.body).color, faint: getComputedStyle(canvases[0]).color, edge: "#1f2933" };
+    const colours = blade.themes[printing ? "light" : theme()];
     document.getElementById("magnification").textContent = factor.toLocaleString("en");
     canvases.forEach((canvas, side) => {
-      drawBlade(canvas, blade, both[side], frame, factor, camera, theme);
+      drawBlade(canvas, blade, both[side], frame, factor, camera, colours);
       const text = told(both[side], frame);
       const caption = canvas.nextElementSibling;
       caption.querySelector("strong").textContent = both[side].name;
@@ -190,7 +191,9 @@ function startBlade(content) {
   }
   document.addEventListener("themed", show);
   document.addEventListener("picked", show);
-  addEventListener("beforeprint", paint);
+  for (const [name, begins] of [["beforeprint", true], ["afterprint", false]]) {
+    addEventListener(name, () => { printing = begins; paint(); });
+  }
   slider.valueAsNumber = largestFrame();
   paint();
   mark();
@@ -202,14 +205,14 @@ function buildWhenSeen() {
   const home = document.getElementById("blade");
   if (!home) return;
   let built = false;
-  const build = () => {
+  const build = (toPrint) => {
     if (built) return;
     built = true;
     watcher.disconnect();
-    startBlade(JSON.parse(document.getElementById("blade-content").textContent));
+    startBlade(JSON.parse(document.getElementById("blade-content").textContent), toPrint);
     home.dataset.built = "yes";
   };
-  const watcher = new IntersectionObserver((entries) => { if (entries.some((entry) => entry.isIntersecting)) build(); }, { rootMargin: "200px" });
+  const watcher = new IntersectionObserver((entries) => { if (entries.some((entry) => entry.isIntersecting)) build(false); }, { rootMargin: "200px" });
   watcher.observe(home);
-  addEventListener("beforeprint", build);
+  addEventListener("beforeprint", () => build(true));
 }
