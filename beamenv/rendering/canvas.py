@@ -131,7 +131,8 @@ class Canvas:
 
 
 def _printed(text: str) -> str:
-    return NEGATIVE.sub("−", text)
+    """What has no sign, such as the end of a line, is left blank."""
+    return NEGATIVE.sub("−", "".join(letter if letter.isprintable() else " " for letter in text))
 
 
 def _fine(frame: Frame) -> tuple[int, int, int, int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,5 +108,5 @@ class History:
 
 def _copied(instant: Instant) -> Instant:
     """An instant that stays as it is whatever becomes of the arrays it came in."""
-    arrays = {name: value.copy() for name, value in instant._asdict().items() if isinstance(value, np.ndarray)}
+    arrays: dict[str, Any] = {name: value.copy() for name, value in instant._asdict().items() if isinstance(value, np.ndarray)}
     return instant._replace(**arrays)

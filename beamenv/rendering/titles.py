@@ -7,6 +7,8 @@ from beamenv.scenarios.scenario import SCENARIOS, Scenario
 BETWEEN = "  ·  "
 LONGEST = 10
 """Digits of a seed that is worth telling; a longer one was drawn by the machine."""
+MOST = 200
+"""Letters of a controller's name."""
 
 
 def in_a_line(*parts: str) -> str:
@@ -20,7 +22,7 @@ def of_episode(controller: str, seed: int, episode: int, blade: int | None = Non
     which = [known] if known else []
     which += [f"episode {episode}"] if episode > 1 or not known else []
     which += [] if blade is None else [f"blade {blade + 1}"]
-    return in_a_line(controller, ", ".join(which))
+    return in_a_line(str(controller)[:MOST], ", ".join(which))
 
 
 def named_scenario(scenario: Scenario) -> str:

@@ -153,6 +153,14 @@ def test_the_title_is_that_of_the_episode_under_way():
     assert envs._pictures.renderers[2].title.endswith("seed 7, episode 2, blade 3")
 
 
+@pytest.mark.parametrize("name", ["a\nb\x00c", "\ud800", "é" * 5000, "", 7], ids=["ends", "half", "long", "none", "number"])
+def test_any_name_of_a_controller_is_drawn(name):
+    env = RotatingBeamEnv(render_mode="rgb_array", scenario="quiet", duration=0.01)
+    env.controller = name
+    env.reset(seed=0)
+    assert env.render().shape == (HEIGHT, WIDTH, 3)
+
+
 @pytest.fixture
 def boxes(monkeypatch):
     """Left, top, right and bottom of every text that is written beside the blade; a new sheet begins anew."""

@@ -38,6 +38,8 @@ DASHES: Mapping[str, Any] = {
 }
 BAR = 3.5
 """Points: how broad bars are."""
+DECADES = 500.0
+"""Ratio of the ends of a logarithmic axis up to which there is room for 2 and 5 between the powers of ten."""
 PLAIN_TICKS = (1e-2, 1e4)
 """Limits within which the numbers of a logarithmic axis are written as they are, not as powers of ten."""
 SIGNS = {
@@ -144,10 +146,11 @@ def _scale(axis: Any, panel: Panel) -> None:
 
 
 def _write_plainly(ticks: Any) -> None:
-    """1, 2, 5, 10, … along a logarithmic axis."""
+    """1, 2, 5, 10, … along a logarithmic axis; without 2 and 5 where there would be too many."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    low, high = sorted(ticks.get_view_interval())
+    ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < DECADES * low else (1.0,)))
     ticks.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ticks.set_minor_formatter(NullFormatter())
 
