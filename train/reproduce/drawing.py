@@ -57,7 +57,7 @@ def draw(outcome: Outcome, title: str) -> bytes:
 
 
 def compact(pixels: Any, rare: bool) -> bytes:
-    """A picture (height, width, 4) in few colours, more where ``rare`` ones count: a third of the bytes, and no difference to the eye.
+    """A picture (height, width, 4) in few colours, more where rare ones count: a third of the bytes, no difference to the eye.
 
     Compressed as usual: the most that can be had is 9 % less, and takes eight times as long.
     """

@@ -9,7 +9,7 @@ from train.reproduce.judging.ledger import ROWS, Judgements, Row
 from train.reproduce.judging.study import Study, called
 from train.reproduce.judging.stumbling import STUMBLING
 from train.reproduce.judging.verdicts import Verdict
-from train.reproduce.markup import Cell, Link, Markup
+from train.reproduce.markup import Cell, Link, Markup, Text
 from train.reproduce.runner import Record
 from train.reproduce.section import BY_EQUATIONS, IN_NATURE, shown_own, shown_second, shown_verdict
 
@@ -76,27 +76,28 @@ def link(study: Study) -> Link:
 
 def stumbling(records: Sequence[Record], markup: Markup) -> list[str]:
     """What a reader who compares with the thesis stumbles over first, and why."""
-    heading = markup.heading(2, "Where a reader stumbles", "")
-    return [heading, rows_table(STUMBLING, "where", records, markup)]
+    first, second = first_verdicts(records), second_verdicts(records)
+    rows = [[decided_by(row, first), *stated(row, first, second)] for row in STUMBLING]
+    table = markup.table(["where", "statement", IN_NATURE, BY_EQUATIONS, "why"], rows)
+    return [markup.heading(2, "Where a reader stumbles", ""), table]
 
 
 def conclusions(records: Sequence[Record], markup: Markup) -> list[str]:
     """The concluding statements."""
-    heading = markup.heading(3, "Concluding statements", "")
-    return [heading, rows_table(ROWS, "section", records, markup)]
-
-
-def rows_table(rows: Sequence[Row], place: str, records: Sequence[Record], markup: Markup) -> str:
-    """Statements with both verdicts, and why."""
     first, second = first_verdicts(records), second_verdicts(records)
-    header = [place, "statement", IN_NATURE, BY_EQUATIONS, "decided by", "why"]
-    return markup.table(header, [conclusion(row, first, second) for row in rows])
+    rows = [[row.section, *stated(row, first, second), decided_by(row, first) or "nothing"] for row in ROWS]
+    table = markup.table(["section", "statement", IN_NATURE, BY_EQUATIONS, "why", "decided by"], rows)
+    return [markup.heading(3, "Concluding statements", ""), table]
 
 
-def conclusion(row: Row, first: Judgements, second: Judgements) -> list[Cell]:
-    """One of them with both verdicts."""
+def stated(row: Row, first: Judgements, second: Judgements) -> tuple[Cell, ...]:
+    """A statement with both verdicts, and why."""
     verdict, again = row.verdict(first), row.verdict(second)
+    shown = shown_verdict(verdict) if verdict else "not run", shown_second(again) if again else "not run"
+    return (row.text, *shown, row.remark if {verdict, again} != {Verdict.REPRODUCED} else "")
+
+
+def decided_by(row: Row, known: Judgements) -> tuple[Text, ...]:
+    """The tables and figures that decide it, as links to those that were run."""
     names = dict.fromkeys(study for study, _ in row.decided_by)
-    deciding = tuple(Link(called(name), name) if name in first else called(name) for name in names) or "nothing"
-    shown = [shown_verdict(verdict) if verdict else "not run", shown_second(again) if again else "not run"]
-    return [row.section, row.text, *shown, deciding, row.remark if {verdict, again} != {Verdict.REPRODUCED} else ""]
+    return tuple(Link(called(name), name) if name in known else called(name) for name in names)

@@ -68,7 +68,7 @@ def as_markdown(pictures: str, targets: Mapping[str, str] | None = None) -> Mark
         listed=lambda points: "".join(f"- {point}\n" for point in points),
         table=table,
         image=lambda name, shows: f"![{shows}]({pictures}/{name}.png)\n",
-        folded=lambda summary, body: f"<details markdown>\n<summary>{html.escape(summary)}</summary>\n\n{body}\n</details>\n",
+        folded=lambda summary, body: f"{markdown.folded(summary, body.rstrip())}\n",
     )
 
 

@@ -51,7 +51,7 @@ FUTURE_WORK_INTRODUCTION = (
 )
 COMPARED = Row(
     "3.5",
-    "Where the thesis compares itself with an experiment and with other authors (Tables 3.2 to 3.4), its model holds.",
+    "Its comparisons with an experiment and with other authors (Tables 3.2 to 3.4) hold here too.",
     of("table-3.2", "experiment", "theory") + of("table-3.3", "oh") + of("table-3.4", "chandiramani"),
 )
 COUNTED = ("tables and figures", "their statements", "concluding statements")
@@ -124,14 +124,15 @@ def why(records: Sequence[Record]) -> str:
     compared = f" {COMPARED.text}" if COMPARED.verdict(first_verdicts(records)) is Verdict.REPRODUCED else ""
     return (
         f"Of {len(first)} statements {first.count(Verdict.REPRODUCED)} hold in nature, {first.count(Verdict.TREND)} hold in trend, "
-        f"{first.count(Verdict.NOT_REPRODUCED)} do not hold and {first.count(Verdict.UNTESTABLE)} cannot be tested. There are three "
-        "reasons. The first is the strict rule: one step in hundreds that goes the other way leaves only a trend, and one statement "
-        f"that fails makes its table or figure fail. Of the {none} that fail in nature, {partly} have other statements that hold. "
+        f"{first.count(Verdict.NOT_REPRODUCED)} do not hold and {first.count(Verdict.UNTESTABLE)} cannot be tested. "
+        "There are three reasons. The first is the strict rule: one step in hundreds that goes the other way leaves only a trend, "
+        "and one statement that fails makes its table or figure fail. "
+        f"Of the {none} that fail in nature, {partly} have other statements that hold. "
         f"The second is the thesis' model. Of the {len(missed)} statements that do not fully hold in nature, its equations explain "
         f"{found[Verdict.REPRODUCED]}, and {found[Verdict.TREND]} in trend: the thesis computed them rightly, by equations that do "
         f"not hold of the blade. The third is what no equation explains. {found[Verdict.NOT_REPRODUCED]} do not follow from the "
-        f"thesis' own equations either, and {found[Verdict.UNTESTABLE]} cannot be evaluated by them: they rest on loads, weights or "
-        "lay-ups that the thesis does not print, on values read off plots, on slips in its arithmetic, or on more than its few "
+        f"thesis' own equations either, and {found[Verdict.UNTESTABLE]} cannot be evaluated by them: they rest on loads, weights "
+        "or lay-ups that the thesis does not print, on values read off plots, on slips in its arithmetic, or on more than its few "
         "curves show. Some of these may be our fault, for where a configuration is not printed we had to choose one. The reverse "
         f"happens too: {lost} statements that hold in nature do not follow from the thesis' equations, or cannot be evaluated by "
         f"them.{compared}"

@@ -17,8 +17,8 @@ TITLE = "The thesis, regenerated and judged"
 INDEX = "thesis.md"
 """The page that leads to all others."""
 SIGNS = (
-    "Every table and figure of the chapter, computed again. Orange signs in a figure are numbers that the thesis prints in its tables "
-    "or its text; what it shows in a plot alone is not read off."
+    "Every table and figure of the chapter, computed again. Orange signs in a figure are numbers that the thesis prints in its "
+    "tables or its text; what it shows in a plot alone is not read off."
 )
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a}
@@ -49,7 +49,7 @@ def page(records: Sequence[Record], markup: Markup) -> list[str]:
 
 
 def documentation(records: Sequence[Record], pictures: str) -> Mapping[str, str]:
-    """The pages of the documentation, by the names of their files: the index, and one for each chapter of which something was run."""
+    """The pages of the documentation, by their files' names: the index, and one for each chapter of which something was run."""
     files = {title: f"thesis-{slug(title)}.md" for title, _ in chapters(records)}
     targets = {study.name: f"{files[title]}#{slug(study.name)}" for title, studies in chapters(records) for study in studies}
     markup = as_markdown(pictures, {**files, **targets, TITLE: INDEX})
