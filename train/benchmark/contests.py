@@ -19,7 +19,8 @@ RULE = (
     "seeds, which are other seeds than these: by the least mean J. In unseen scenarios, on which nothing may be chosen, by the "
     "least interquartile mean of J / J₀ over the others, among those that are the same everywhere: a controller made from what "
     "it is told of a scenario is told nothing there. A name in brackets was not chosen: it has the least J on these very seeds, "
-    "which favours it. Ahead: the agent's J is below that of every classical controller told no more. Behind: the J of the "
+    "which favours it.\n\n"
+    "Ahead: the agent's J is below that of every classical controller told no more. Behind: the J of the "
     "chosen classical controller is below that of every agent. Each by the paired interval. The hardest is the classical "
     "controller that the agent is least clearly ahead of."
 )
