@@ -98,6 +98,15 @@ def test_findings_say_whether_a_generalist_meets_its_targets(cost, met):
     assert row["unseen"].endswith(": missed" if cost > 2.0 else ": met") and unseen.met is (cost <= 2.0)
 
 
+def test_the_first_sentence_of_the_findings_is_who_is_ahead(table, text):
+    lead = text.partition("## Findings\n\n")[2].partition("\n\n")[0]
+    assert lead.endswith(
+        "is ahead of every classical controller in 2 of 2 single fault scenarios, behind in 0; in 1 of 1 open scenarios, behind in 0; "
+        "in 2 of 2 unseen scenarios, behind in 0; in 1 of 1 other scenarios, behind in 0."
+    )
+    assert lead.startswith("The agent, where none was chosen on validation seeds")
+
+
 def test_who_leads_a_tier_is_counted_split_by_split(table):
     row = rows_of(findings_table(table))["Who has the least J of tier 0, the nominal plant?"]
     assert row == {"single fault": "lqg in 2", "open": "lqg in 1", "unseen": "lqg in 2", "other": "none in 1"}

@@ -51,12 +51,17 @@ def findings(table: BenchmarkTable) -> list[Finding]:
 
 
 def claim(table: BenchmarkTable, found: Sequence[Contest]) -> str:
-    """In how many scenarios of each split the agent is ahead of all laws that are told no more, and behind; empty without any."""
+    """In which scenarios the agent is ahead of all classical controllers that are told no more, and behind; empty without any."""
+    said = ahead_and_behind(table, found, named=True)
+    return f"Tier {LEARNT} and below, by paired intervals of J: {said}." if said else ""
+
+
+def ahead_and_behind(table: BenchmarkTable, found: Sequence[Contest], named: bool) -> str:
+    """In how many scenarios of each split, ``named`` or not; empty without any."""
     if not found:
         return ""
-    parts = [
-        part for split in (*SPLITS, "") if (part := _of_split(split, [c for c in found if split_of(table, c.scenario) == split]))
-    ]
+    by_split = {split: [each for each in found if split_of(table, each.scenario) == split] for split in (*SPLITS, "")}
+    parts = [_of_split(split, those, named) for split, those in by_split.items() if those]
     agent = (
         "the agent chosen on validation seeds"
         if all(each.agent_chosen for each in found)
@@ -64,19 +69,13 @@ def claim(table: BenchmarkTable, found: Sequence[Contest]) -> str:
             "the agent, where none was chosen on validation seeds the one with the least J on these very seeds, which favours it,"
         )
     )
-    return f"Tier {LEARNT} and below, by paired intervals of J: {agent} is ahead of every law in {'; in '.join(parts)}."
+    return f"{agent} is ahead of every classical controller in {'; in '.join(parts)}"
 
 
-def _of_split(split: str, found: Sequence[Contest]) -> str:
-    """Empty where there is no contest."""
-    if not found:
-        return ""
+def _of_split(split: str, found: Sequence[Contest], named: bool) -> str:
     ahead, behind = ([each.scenario for each in found if each.verdict == verdict] for verdict in (AHEAD, BEHIND))
-    return f"{len(ahead)} of {len(found)} {split or 'other'} scenarios{_listed(ahead)}, behind in {len(behind)}{_listed(behind)}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    return f" ({', '.join(names)})" if names else ""
+    which = [f" ({', '.join(names)})" if names and named else "" for names in (ahead, behind)]
+    return f"{len(ahead)} of {len(found)} {split or 'other'} scenarios{which[0]}, behind in {len(behind)}{which[1]}"
 
 
 def leading(table: BenchmarkTable, tier: int) -> str:

@@ -9,7 +9,7 @@ from train.benchmark.contests import AHEAD, BEHIND, contests
 from train.benchmark.score import by_split, split_of
 from train.benchmark.showing.section import Entry, Section, words
 from train.benchmark.table import BenchmarkTable
-from train.benchmark.targets import Leader, leaders_of, reaches
+from train.benchmark.targets import Leader, ahead_and_behind, leaders_of, reaches
 
 TEXT = (
     "Agents are the learned controllers of tier 1, which are told no more than the scenario's distribution. They are compared with "
@@ -24,7 +24,9 @@ def findings_table(table: BenchmarkTable) -> Section:
     """Agents against classical controllers, how far generalists reach, and who leads each tier."""
     splits = list(dict.fromkeys(by_split(table).values()))
     rows = [*_ahead(table, splits), *_reaches(table, splits), *_leaders(table, splits)]
-    return Section("Findings", TEXT, ["question", *splits], rows, len(splits) + 1)
+    said = ahead_and_behind(table, contests(table), named=False)
+    text = f"{said[0].upper()}{said[1:]}.\n\n{TEXT}" if said else TEXT
+    return Section("Findings", text, ["question", *splits], rows, len(splits) + 1)
 
 
 def _ahead(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entry]]:
