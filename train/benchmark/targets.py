@@ -66,7 +66,7 @@ def ahead_and_behind(table: BenchmarkTable, found: Sequence[Contest], named: boo
         "the agent chosen on validation seeds"
         if all(each.agent_chosen for each in found)
         else (
-            "the agent, where none was chosen on validation seeds the one with the least J on these very seeds, which favours it,"
+            "the agent chosen on validation seeds (where none was, the one with the least J on these very seeds, which favours it)"
         )
     )
     return f"{agent} is ahead of every classical controller in {'; in '.join(parts)}"

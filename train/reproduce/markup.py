@@ -13,10 +13,15 @@ from train.shared import markdown
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A reference to a table or figure by its name, or to a chapter by its title."""
+    """A reference to a table or figure by its name, to a chapter by its title, or to a page of the documentation by its file."""
 
     text: str
     to: str
+
+    @property
+    def leads_away(self) -> bool:
+        """Whether it is to a page that only the documentation has; it is plain text elsewhere."""
+        return self.to.endswith(".md")
 
 
 Text = str | Link
@@ -48,7 +53,10 @@ def as_markdown(pictures: str, targets: Mapping[str, str] | None = None) -> Mark
     """
 
     def text(piece: Text) -> str:
-        return piece if isinstance(piece, str) else f"[{piece.text}]({(targets or {}).get(piece.to, f'#{slug(piece.to)}')})"
+        if isinstance(piece, str) or (targets is None and piece.leads_away):
+            return piece if isinstance(piece, str) else piece.text
+        own = piece.to if piece.leads_away else f"#{slug(piece.to)}"
+        return f"[{piece.text}]({(targets or {}).get(piece.to, own)})"
 
     def heading(level: int, words: str, name: str) -> str:
         anchor = f'<a id="{slug(name)}"></a>\n\n' if name else ""
@@ -86,8 +94,8 @@ def as_html(folder: Path) -> Markup:
 
 def html_text(piece: Text) -> str:
     """Escaped, a link as such."""
-    if isinstance(piece, str):
-        return html.escape(piece)
+    if isinstance(piece, str) or piece.leads_away:
+        return html.escape(piece if isinstance(piece, str) else piece.text)
     return f'<a href="#{slug(piece.to)}">{html.escape(piece.text)}</a>'
 
 

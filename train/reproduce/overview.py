@@ -9,7 +9,7 @@ from train.reproduce.index import first_verdicts, second_verdicts
 from train.reproduce.judging.ledger import ROWS, Judgements, Row, counts, of
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
-from train.reproduce.markup import Markup
+from train.reproduce.markup import Link, Markup, Text
 from train.reproduce.runner import Record
 from train.reproduce.section import BY_EQUATIONS, IN_NATURE, shown_verdict
 from train.reproduce.thesis.equations import EQUATIONS
@@ -31,23 +31,33 @@ SYMBOLS = (
     f"{shown_verdict(Verdict.UNTESTABLE)}, or evaluated: the thesis does not say enough.",
 )
 WEAKEST = "A table, a figure or a conclusion has the weakest verdict of the statements that it stands on."
-HOW = (
-    "In nature is judged by the thesis' model, derived again from its energies, with the shear flow that a closed cell asks for, "
-    "and checked against what others measured and computed. What that model still leaves out of nature is listed in the errata.",
-    "By the thesis' equations is judged by the same computation with the equations of the table below in place of ours: all those "
-    "together that bear on a figure. Chapter 6 prints no weights, so that it is judged by the layouts that it prints. Where a "
-    "statement holds better in this way, the equation that does it alone is named, the first in the table's order, or those that "
-    "are needed together. What the thesis refutes itself, by its text, tables or equations, is tried last, told, and counts for "
-    "nothing.",
-    "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit of "
-    "±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, the one "
-    "that was computed is named.",
+HOW: tuple[tuple[Text, ...], ...] = (
+    (
+        "In nature is judged by the thesis' model, derived again from its energies, with the shear flow that a closed cell asks "
+        "for, and checked against what others measured and computed. What that model still leaves out of nature is listed in "
+        "the ",
+        Link("errata", "thesis-errata.md"),
+        ".",
+    ),
+    (
+        "By the thesis' equations is judged by the same computation with the equations of the table below in place of ours: all "
+        "those together that bear on a figure. Chapter 6 prints no weights, so that it is judged by the layouts that it prints. "
+        "Where a statement holds better in this way, the equation that does it alone is named, the first in the table's order, "
+        "or those that are needed together. What the thesis refutes itself, by its text, tables or equations, is tried last, "
+        "told, and counts for nothing.",
+    ),
+    (
+        "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit of "
+        "±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, the one "
+        "that was computed is named.",
+    ),
 )
-FUTURE_WORK_INTRODUCTION = (
-    "What the thesis' section 7.2 left to others, and is there now (in words: docs/beyond-the-thesis.md). Nothing of the thesis is "
-    "reproduced here: the statements are ours, written with the numbers at hand, and are counted apart. Where a closed form, a "
-    "published number or an independent computation is named, one that holds is a validation; a limit or an order of our own that "
-    "holds is a regression check: the code still gives what it gave when we looked."
+FUTURE_WORK_INTRODUCTION: tuple[Text, ...] = (
+    "What the thesis' section 7.2 left to others, and is there now; in words: ",
+    Link("Beyond the thesis", "beyond-the-thesis.md"),
+    ". Nothing of the thesis is reproduced here: the statements are ours, written with the numbers at hand, and are counted "
+    "apart. Where a closed form, a published number or an independent computation is named, one that holds is a validation; a "
+    "limit or an order of our own that holds is a regression check: the code still gives what it gave when we looked.",
 )
 COMPARED = Row(
     "3.5",
@@ -72,7 +82,7 @@ def opening(records: Sequence[Record], markup: Markup) -> list[str]:
 
 def how(markup: Markup) -> list[str]:
     """How both verdicts are made."""
-    told = [markup.paragraph(text) for text in HOW]
+    told = [markup.paragraph(*pieces) for pieces in HOW]
     return [markup.heading(2, "How the verdicts are made", ""), *told, equations(markup)]
 
 

@@ -81,6 +81,7 @@ def chapter_parts(level: int, chapter: Chapter, records: Sequence[Record], marku
     known = {record.name: record for record in records}
     title, studies = chapter
     own = title == catalogue.FUTURE_WORK[0]
-    parts = [markup.heading(level, title, title if level > 1 else ""), markup.paragraph(FUTURE_WORK_INTRODUCTION if own else SIGNS)]
+    lead = markup.paragraph(*(FUTURE_WORK_INTRODUCTION if own else (SIGNS,)))
+    parts = [markup.heading(level, title, title if level > 1 else ""), lead]
     parts += [markup.paragraph("All verdicts in one list, and how they are made: ", Link(TITLE, TITLE), ".")] if level == 1 else []
     return [*parts, *(part for study in studies for part in section(study, known[study.name], markup))]
