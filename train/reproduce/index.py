@@ -48,7 +48,7 @@ def items(studies: Sequence[Study], known: Known, markup: Markup) -> list[str]:
         held = " / ".join(str(study.verdicts(each).count(Verdict.REPRODUCED)) for each in (first, second))
         verdicts = shown_verdict(study.verdict(first)), shown_second(study.verdict(second))
         rows.append([link(study), study.title, *verdicts, f"{held} of {len(study.own_statements)}"])
-    said = [
+    said: list[list[Cell]] = [
         [link(study), each.text, shown_verdict(found.judgements[each.key].verdict), shown_second(found.second[each.key].verdict)]
         for study, found in ((study, known[study.name]) for study in studies)
         for each in study.own_statements

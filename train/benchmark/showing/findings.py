@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from beamenv.knowledge import TIERS
 from train.benchmark.contests import AHEAD, BEHIND, contests
@@ -31,16 +31,12 @@ def findings_table(table: BenchmarkTable) -> Section:
 
 def _ahead(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entry]]:
     """In how many scenarios of each split the agent is ahead of all, and behind."""
-    found = contests(table)
-    if not found:
-        return
-
-    def cell(split: str) -> str:
-        verdicts = [each.verdict for each in found if (split_of(table, each.scenario) or "other") == split]
-        ahead, behind = verdicts.count(AHEAD), verdicts.count(BEHIND)
-        return f"ahead in {ahead} of {len(verdicts)}, behind in {behind}" if verdicts else NOTHING
-
-    yield _row("Is the chosen agent ahead of every classical controller?", splits, cell)
+    verdicts: dict[str, list[str]] = {}
+    for each in contests(table):
+        verdicts.setdefault(split_of(table, each.scenario) or "other", []).append(each.verdict)
+    if verdicts:
+        told = {name: f"ahead in {v.count(AHEAD)} of {len(v)}, behind in {v.count(BEHIND)}" for name, v in verdicts.items()}
+        yield _row("Is the chosen agent ahead of every classical controller?", splits, told)
 
 
 def _reaches(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entry]]:
@@ -51,20 +47,19 @@ def _reaches(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entr
         told = f"{each.goal} in {each.share}{more}: {'met' if each.met else 'missed'}"
         asked.setdefault(each.agent, {})[each.split] = told
     for agent, cells in asked.items():
-        yield _row(f"Does {agent} meet its targets?", splits, lambda split, cells=cells: cells.get(split, NOTHING))
+        yield _row(f"Does {agent} meet its targets?", splits, cells)
 
 
 def _leaders(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entry]]:
     """Who has the least J of a tier in how many scenarios of each split."""
     of_scenario = by_split(table)
     for tier, told in TIERS.items():
-        found = {name: each for (name, place), each in leaders_of(table).items() if place == tier}
+        found: dict[str, list[Leader]] = {}
+        for (name, place), each in leaders_of(table).items():
+            if place == tier:
+                found.setdefault(of_scenario[name], []).append(each)
         if found:
-            yield _row(
-                f"Who has the least J of tier {tier}, {told}?",
-                splits,
-                lambda split, found=found: _won([each for name, each in found.items() if of_scenario[name] == split]),
-            )
+            yield _row(f"Who has the least J of tier {tier}, {told}?", splits, {name: _won(won) for name, won in found.items()})
 
 
 def _won(leaders: Sequence[Leader]) -> str:
@@ -73,7 +68,7 @@ def _won(leaders: Sequence[Leader]) -> str:
     for each in leaders:
         wins.setdefault(each.row.controller, []).append(each)
     ranked = sorted(wins.items(), key=lambda item: -len(item[1]))
-    return ", ".join(f"{name} in {len(each)}{_how(each)}" for name, each in ranked) or NOTHING
+    return ", ".join(f"{name} in {len(each)}{_how(each)}" for name, each in ranked)
 
 
 def _how(leaders: Sequence[Leader]) -> str:
@@ -82,5 +77,5 @@ def _how(leaders: Sequence[Leader]) -> str:
     return "" if clear == len(leaders) or not any(each.rivals for each in leaders) else f" (clearly in {clear})"
 
 
-def _row(question: str, splits: Sequence[str], cell: Callable[[str], str]) -> list[Entry]:
-    return words(question, *(cell(split) for split in splits))
+def _row(question: str, splits: Sequence[str], cells: Mapping[str, str]) -> list[Entry]:
+    return words(question, *(cells.get(split, NOTHING) for split in splits))

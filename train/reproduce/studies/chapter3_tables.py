@@ -173,7 +173,7 @@ def table_3_4(model: Model) -> Outcome:
     misprinted = np.abs(wall_thickness(read_by(model, (PRINTED_Q12,))) / printed - 1.0).max()
     note = f"With Q22 in place of Q12 in Q̄12, as Eq. 4.5 has it, they would be up to {percent(misprinted)} off: the thesis did not "
     notes = [f"{note}compute with it."]
-    curves = [Curve(CHORD_TO_WALL, by_mode[:, k], f"ω{k + 1}") for k in range(3)]
+    curves = [Curve(np.array(CHORD_TO_WALL, dtype=float), by_mode[:, k], f"ω{k + 1}") for k in range(3)]
     panel = Panel("frequencies", "c/h", "natural frequency (rad/s)", curves)
     panels = [with_points(panel, np.repeat(CHORD_TO_WALL, 3), printed), *result.panels]
     return Outcome(evidence, panels, header=result.header, rows=result.rows, notes=notes)
