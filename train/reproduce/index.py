@@ -79,7 +79,7 @@ def stumbling(records: Sequence[Record], markup: Markup) -> list[str]:
     first, second = first_verdicts(records), second_verdicts(records)
     rows = [[decided_by(row, first), *stated(row, first, second)] for row in STUMBLING]
     table = markup.table(["where", "statement", IN_NATURE, BY_EQUATIONS, "why"], rows)
-    return [markup.heading(2, "Where a reader stumbles", ""), table]
+    return [markup.heading(2, "Where a reader of the thesis stumbles", ""), table]
 
 
 def conclusions(records: Sequence[Record], markup: Markup) -> list[str]:

@@ -33,23 +33,22 @@ SYMBOLS = (
 WEAKEST = "A table, a figure or a conclusion has the weakest verdict of the statements that it stands on."
 HOW: tuple[tuple[Text, ...], ...] = (
     (
-        "In nature is judged by the thesis' model, derived again from its energies, with the shear flow that a closed cell asks "
-        "for, and checked against what others measured and computed. What that model still leaves out of nature is listed in "
-        "the ",
+        "The verdict in nature rests on the thesis' model, derived again from its energies, with the shear flow that a closed cell "
+        "asks for. It was checked against what others measured and computed. What it still leaves out of nature is listed in the ",
         Link("errata", "thesis-errata.md"),
         ".",
     ),
     (
-        "By the thesis' equations is judged by the same computation with the equations of the table below in place of ours: all "
-        "those together that bear on a figure. Chapter 6 prints no weights, so that it is judged by the layouts that it prints. "
-        "Where a statement holds better in this way, the equation that does it alone is named, the first in the table's order, "
-        "or those that are needed together. What the thesis refutes itself, by its text, tables or equations, is tried last, "
-        "told, and counts for nothing.",
+        "The verdict by the thesis' equations rests on the same computation with the equations of the table below in place of ours, "
+        "all at once that bear on a figure. Chapter 6 prints no weights; it is judged by the layouts that it prints. Where a "
+        "statement holds better in this way, the page names the equation that does it alone, the first in the table's order, or "
+        "those that are needed together. What the thesis itself refutes, by its text, tables or equations, is tried last and told, "
+        "but counts for nothing.",
     ),
     (
         "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit of "
-        "±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, the one "
-        "that was computed is named.",
+        "±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, the page "
+        "names the one that was computed.",
     ),
 )
 FUTURE_WORK_INTRODUCTION: tuple[Text, ...] = (
