@@ -39,16 +39,16 @@ HOW: tuple[tuple[Text, ...], ...] = (
         ".",
     ),
     (
-        "The verdict by the thesis' equations rests on the same computation with the equations of the table below in place of ours, "
-        "all at once that bear on a figure. Chapter 6 prints no weights; it is judged by the layouts that it prints. Where a "
-        "statement holds better in this way, the page names the equation that does it alone, the first in the table's order, or "
-        "those that are needed together. What the thesis itself refutes, by its text, tables or equations, is tried last and told, "
-        "but counts for nothing.",
+        "The verdict by the thesis' equations rests on the same computation with the equations of the table below in place of "
+        "ours, all at once that bear on a figure. Chapter 6 prints no weights; it is judged by the layouts that it prints. "
+        "Where a statement holds better in this way, the page names the equation that does it alone, the first in the table's "
+        "order, or those that are needed together. What the thesis itself refutes, by its text, tables or equations, is tried "
+        "last and told, but counts for nothing.",
     ),
     (
-        "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit of "
-        "±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, the page "
-        "names the one that was computed.",
+        "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit "
+        "of ±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, "
+        "the page names the one that was computed.",
     ),
 )
 FUTURE_WORK_INTRODUCTION: tuple[Text, ...] = (
