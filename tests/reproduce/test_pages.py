@@ -12,6 +12,7 @@ from train.reproduce.judging.verdicts import Judgement, Verdict
 from train.reproduce.overview import why
 from train.reproduce.report import documentation, html_page, markdown_page
 from train.reproduce.runner import Record
+from train.shared.markdown import escaped
 
 ROOT = Path(__file__).parents[2]
 MANY = (("1", "2"),) * 40
@@ -126,3 +127,13 @@ def test_the_paragraph_of_reasons_counts_what_the_table_counts():
     assert f"its equations explain {rest}, and {wrong} in trend" in told
     assert "Its comparisons with" not in told
     assert "Its comparisons with an experiment" in why([record(study) for study in THESIS_STUDIES])
+
+
+def test_a_remark_names_the_statements_that_it_is_of(pages):
+    for title, studies in THESIS:
+        page = pages[f"thesis-chapter-{title[8]}.md"]
+        for study in studies:
+            for statement in study.statements:
+                if statement.remark:
+                    lines = [line for line in page.splitlines() if line.endswith(escaped(statement.remark))]
+                    assert any(f"“{escaped(statement.text)}”" in line for line in lines)

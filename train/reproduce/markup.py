@@ -73,7 +73,7 @@ def as_markdown(pictures: str, targets: Mapping[str, str] | None = None) -> Mark
     return Markup(
         heading=heading,
         paragraph=lambda *pieces: "".join(map(text, pieces)) + "\n",
-        listed=lambda points: "".join(f"- {point}\n" for point in points),
+        listed=lambda points: "".join(f"- {markdown.escaped(point)}\n" for point in points),
         table=table,
         image=lambda name, shows: f"![{shows}]({pictures}/{name}.png)\n",
         folded=lambda summary, body: f"{markdown.folded(summary, body.rstrip())}\n",

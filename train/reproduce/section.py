@@ -55,18 +55,27 @@ def section(study: Study, record: Record, markup: Markup) -> list[str]:
     if record.error:
         return [heading, configuration, markup.paragraph(f"This study failed: {record.error}")]
     own = study in catalogue.FUTURE_WORK[1]
-    remarks = dict.fromkeys(statement.remark for statement in study.statements if statement.remark)
-    told = [] if own else tellings(study, record)
+    told = remarks(study) if own else [*remarks(study), *tellings(study, record)]
     return [
         heading,
         markup.paragraph(own_verdict(study, record) if own else both_verdicts(study, record)),
         markup.image(study.name, study.heading),
         configuration,
         own_table(study, record, markup) if own else statement_table(study, record, markup),
-        *(markup.paragraph(text) for text in (*remarks, *told, *record.notes)),
+        *([markup.listed(told)] if told else []),
+        *(markup.paragraph(text) for text in record.notes),
         markup.folded("By which rule each is judged", rules(study, markup, own)),
         *number_table(record, markup),
     ]
+
+
+def remarks(study: Study) -> list[str]:
+    """What is to be known of statements, each with those that it is of."""
+    found: dict[str, list[str]] = {}
+    for each in study.statements:
+        if each.remark:
+            found.setdefault(each.remark, []).append(f"“{each.text}”")
+    return [f"{', '.join(texts)}: {remark}" for remark, texts in found.items()]
 
 
 def number_table(record: Record, markup: Markup) -> list[str]:
