@@ -76,15 +76,20 @@ def _known():
     )
 
 
-def check(words, known):
-    """That a command exists and has these options."""
+def check(words, known, named=False):
+    """That a command exists and has these options; of one that is only ``named``, no more."""
     group, targets, extras = known
     program, *words = words
     if program == "beamenv" and words[0].startswith("-"):
         assert words[0] in ("--help", "--version"), words
     elif program == "beamenv":
         assert words[0] in group.commands, words
-        group.commands[words[0]].make_context(words[0], words[1:], resilient_parsing=len(words) == 1)  # parses, and does not run
+        command = group.commands[words[0]]
+        if named:  # an option that a sentence names need not have its value, nor a command its arguments
+            known_options = {option for each in command.params for option in each.opts}
+            assert {word for word in words if word.startswith("--")} <= known_options, words
+        else:
+            command.make_context(words[0], words[1:])  # parses, and does not run
     elif program == "make":
         assert {word for word in words if "=" not in word} <= targets, words
     elif program == "pip":
@@ -112,7 +117,7 @@ def test_a_comment_beside_commands_holds_none_itself(page):
 @pytest.mark.parametrize("page", [pytest.param(page, id=name_of(page)) for page in pages() if spans(page)])
 def test_commands_within_sentences_exist_with_their_options(page, known):
     for words in spans(page):
-        check(words, known)
+        check(words, known, named=True)
 
 
 def test_every_page_of_the_navigation_is_checked():
