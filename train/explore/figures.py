@@ -86,7 +86,7 @@ def mode_shape(view: View, mode: int) -> Figure:
         if np.abs(shape.imag).max() > QUADRATURE:
             curves.append(Curve(view.stations, shape.imag, f"{motion}, ¼ period later", line, Look(each, 0.8)))
     limits = (0.0, float(view.stations[-1]))
-    figure = shown([Panel("", "z, m", "relative displacement", curves, x_limits=limits, y_limits=(-1.1, 1.1))])
+    figure = shown([Panel("", "z, m", "relative", curves, x_limits=limits, y_limits=(-1.1, 1.1))])
     layout = figure["layout"]
     layout["xaxis"] |= {"nticks": 4}
     layout["yaxis"] |= {"tickvals": [-1, 0, 1]}

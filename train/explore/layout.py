@@ -102,21 +102,24 @@ def _results(page: Page) -> html.Div:
     sudden = f"Uniform line load that sets in at once on the blade at rest. The drive is limited to {_volts(base)}."
     pair = [control(name, page.choices[name]) for name in PAIR]
     bode = (
-        "From a voltage to a reading of the sampled plant; with LQG: from what is added to its voltage, once it has gone round "
-        "the loop."
+        "From a voltage to a reading of the sampled plant, in full scales of the sensor per limit of the drive; with LQG: from "
+        "what is added to its voltage, once it has gone round the loop."
     )
-    singular = "Of all voltages and readings together, and of lag and flap together: no input of one frequency is amplified more."
+    singular = (
+        "Of all voltages and readings together, in full scales per limit of the drive, without control; and the largest from loads "
+        "in lag and flap to the tip."
+    )
     left = [
         _section("Campbell diagram", crossings, _graph("campbell", 430)),
         _section("Step response of the tip", sudden, _graph("response", 660)),
         _section("Poles", "Of the sampled loops, as continuous ones: log(z)/Δt. Right of the line is unstable.", _graph("poles", 400)),
+        _section("Singular values", singular, _graph("singular", 480)),
     ]
     right = [
         _section("Mode shapes", _legend(), small),
         _section("Damping", html.Span(id="filter"), _table(DAMPING, "damping")),
         _section("Margins of LQG", html.Span(id="cost"), html.Div([html.P(id="lost", role="alert"), _table(MARGINS, "margins")])),
         _section("Bode diagram", bode, html.Div([html.Div(pair, className="pair"), _graph("bode", 480)])),
-        _section("Singular values", singular, _graph("singular", 480)),
     ]
     return html.Div([_picture(base), html.Div(left), html.Div(right)], id="results")
 

@@ -21,7 +21,7 @@ from train.figures.themes import THEMES
 
 Array = NDArray[np.float64]
 
-WIDTH, HEIGHT, MARGIN = 640.0, 250.0, 18.0
+WIDTH, HEIGHT, MARGIN = 640.0, 260.0, 14.0
 STATIONS = 25
 TOWARDS, DISTANCE = np.array([-0.80, 0.62, -0.45]), 1.6
 """Where the eye is from the middle of the blade, with positive pretwist: the direction (lag, flap, span) and how many spans."""
@@ -61,8 +61,8 @@ def drawn(config: BladeConfig, beam: RotatingBeam) -> str:
     towards = TOWARDS * [-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0]
     hub = _hub(np.concatenate([each[0] for each in walls]))
     points = [*walls, *hub, *(corners + drop for _, corners in patches["sensors"])]
-    frame = Frame(MARGIN, MARGIN, WIDTH - 2.0 * MARGIN, HEIGHT - 2.0 * MARGIN)
-    camera = Camera.facing(np.concatenate([each.reshape(-1, 3) for each in points]), towards, DISTANCE * beam.length, frame)
+    all_points = np.concatenate([each.reshape(-1, 3) for each in points])
+    camera = Camera.facing(all_points, towards, DISTANCE * beam.length, Frame(0.0, 0.0, WIDTH, HEIGHT))
     parts = [
         *_leaders(camera, patches["sensors"], drop),
         *_faces(camera, [face for wall in walls for face in (*sides(wall), wall[-1])]),
@@ -71,7 +71,7 @@ def drawn(config: BladeConfig, beam: RotatingBeam) -> str:
         *_faces(camera, hub, "hub"),
         *_sheets(camera, [(group, corners + drop) for group, corners in patches["sensors"]], "sensor"),
     ]
-    return _document(parts, escape(said(config)))
+    return _document(parts, camera.project(all_points)[0], escape(said(config)))
 
 
 def _patches(config: BladeConfig, beam: RotatingBeam, side: Side) -> list[tuple[PatchGroup, Array]]:
@@ -153,11 +153,10 @@ def key(config: BladeConfig) -> Mapping[str, str]:
     return {_name(group): _colour(group) for side in SIDES for group in config.patches.groups(side)}
 
 
-def _document(parts: Sequence[str], title: str) -> str:
+def _document(parts: Sequence[str], points: Array, title: str) -> str:
     light, dark = THEMES["light"], THEMES["dark"]
     style = (
-        ".wall,.hub{stroke:none}"
-        + "".join(f".wall.s{k}{{fill:{_grey(150 + 80 * k // SHADES)}}}.hub.s{k}{{fill:{_grey(70 + 60 * k // SHADES)}}}" for k in range(SHADES))
+        "".join(_shaded(kind, dark, k) for kind, dark in (("wall", 150), ("hub", 70)) for k in range(SHADES))
         + f".edge,.tip{{fill:none;stroke:#5f6b78;stroke-width:.7}}.leader{{stroke:{light.faint};stroke-width:.8;fill:none}}"
         "polygon.actuator{fill:var(--own);stroke:#1f2933}polygon.behind{fill:none;stroke:var(--own);stroke-dasharray:4 3}"
         "polygon.sensor{fill:var(--own);fill-opacity:.3;stroke:var(--own);stroke-width:1.5}"
@@ -165,11 +164,16 @@ def _document(parts: Sequence[str], title: str) -> str:
         f"text.sensor{{fill:{light.ink}}}"
         f"@media (prefers-color-scheme:dark){{.leader{{stroke:{dark.faint}}}text.sensor{{fill:{dark.ink}}}}}"
     )
+    left, top = points.min(axis=0) - MARGIN
+    width, height = points.max(axis=0) + MARGIN - (left, top)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}"><title>{title}</title><style>{style}</style>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.0f} {top:.0f} {width:.0f} {height:.0f}"><title>{title}</title><style>{style}</style>'
         f"{''.join(parts)}</svg>"
     )
 
 
-def _grey(level: int) -> str:
-    return f"#{level:02x}{min(level + 8, 255):02x}{min(level + 16, 255):02x}"
+def _shaded(kind: str, darkest: int, shade: int) -> str:
+    """Of faces, whose strokes close the gaps between them."""
+    level = darkest + 80 * shade // SHADES
+    grey = f"#{level:02x}{level + 8:02x}{level + 16:02x}"
+    return f".{kind}.s{shade}{{fill:{grey};stroke:{grey}}}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
+from typing import Any
 
 from dash import html
 
@@ -11,10 +12,10 @@ from train.explore.hertz import TURN
 from train.explore.loop import Loop
 
 
-def heading(seen: View, mode: int) -> str:
+def heading(seen: View, mode: int) -> list[Any]:
     """Of one mode's small figure."""
     frequency = seen.natural_frequencies[mode]
-    return f"{mode + 1} {seen.families[mode]}, {frequency:.1f} rad/s, {frequency / TURN:.1f} Hz"
+    return [f"{mode + 1} {seen.families[mode]} ", html.Span(f"{frequency:.1f} rad/s, {frequency / TURN:.1f} Hz")]
 
 
 def damping_rows(seen: View) -> list[html.Tr]:
