@@ -35,7 +35,7 @@ STEP_DURATION = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """A blade with r retained modes, at one speed."""
+    """A blade with r retained modes, at one speed; n is r, or the Campbell diagram's number of modes if that is more."""
 
     speed: float
     """rad/s."""
@@ -44,9 +44,9 @@ class View:
     campbell: Array
     """(speeds, modes), rad/s, at ``CAMPBELL_SPEEDS``."""
     natural_frequencies: Array
-    """(r,), rad/s, with gyroscopic coupling and all trial functions."""
+    """(n,), rad/s, with gyroscopic coupling and all trial functions."""
     families: tuple[str, ...]
-    """(r,): lag, flap, extension or twist."""
+    """(n,): lag, flap, extension or twist."""
     stations: Array
     """(k,), m from the root."""
     shapes: NDArray[np.complex128]
@@ -59,7 +59,7 @@ def view(settings: Settings, base: BladeConfig = THESIS) -> View:
     """Everything the page shows; ``ValueError``, in one sentence, for a blade or patches that cannot be."""
     blade = blade_of(settings, base)
     config, beam, plant = blade.config, blade.beam, blade.plant
-    modes = beam.modes(config.speed, config.modes)
+    modes = beam.modes(config.speed, max(config.modes, CAMPBELL_MODES))
     stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * width(beam))
     held, (_, K), (_, L) = sampled_design(weighted(plant, **settings.weights(plant)))
     line_load = blade.reference_load * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
@@ -71,7 +71,7 @@ def view(settings: Settings, base: BladeConfig = THESIS) -> View:
         families=modes.families,
         stations=stations,
         shapes=shapes,
-        damping=damping(held, K, L),
+        damping=damping(held, K, L, len(plant.A)),
         response=step_responses(plant, held, K, L, line_load, STEP_DURATION),
     )
 

@@ -132,7 +132,7 @@ def _picture(base: BladeConfig) -> html.Section:
     keys: list[Any] = [
         html.Span([html.I(style={"background": each}, className="patch"), name], className="key") for name, each in key(base).items()
     ]
-    note = "Patches are numbered from the root: actuators full, sensors pale and drawn below where they are; dashed: behind a wall."
+    note = "Numbered from the root: actuators full, sensors pale, drawn below the blade where they cannot be seen; dashed: behind a wall."
     return html.Section([html.H2("Blade"), html.Img(id="picture", alt=""), html.P([*keys, html.Span(note)])], className="wide")
 
 

@@ -55,21 +55,23 @@ def drawn(config: BladeConfig, beam: RotatingBeam) -> str:
     """The SVG."""
     span = np.linspace(0.0, beam.length, STATIONS)
     walls = [skin.at_rest() for skin in bodies(beam, span)]
-    patches = {side: _patches(config, beam, side) for side in SIDES}
-    drop = np.array([0.0, -DROP * beam.length, 0.0])
+    actuators, sensors = (_patches(config, beam, side) for side in SIDES)
     middle = np.radians(beam.presetting_deg + 0.5 * config.beam.pretwist_deg)
     towards = TOWARDS * [-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0]
     hub = _hub(np.concatenate([each[0] for each in walls]))
-    points = [*walls, *hub, *(corners + drop for _, corners in patches["sensors"])]
+    dropped = [(group, corners + [0.0, -DROP * beam.length, 0.0]) for group, corners in sensors]
+    points = [*walls, *hub, *(corners for _, corners in dropped)]
     all_points = np.concatenate([each.reshape(-1, 3) for each in points])
     camera = Camera.facing(all_points, towards, DISTANCE * beam.length, Frame(0.0, 0.0, WIDTH, HEIGHT))
+    hidden = [not _is_seen(camera, corners) for _, corners in sensors]
+    drawn_below = [(below if away else there) for below, there, away in zip(dropped, sensors, hidden, strict=True)]
     parts = [
-        *_leaders(camera, patches["sensors"], drop),
+        *_leaders(camera, [(there[1], below[1]) for there, below in zip(sensors, drawn_below, strict=True) if below is not there]),
         *_faces(camera, [face for wall in walls for face in (*sides(wall), wall[-1])]),
         *_lines(camera, walls, beam),
-        *_sheets(camera, patches["actuators"], "actuator"),
+        *_sheets(camera, actuators, "actuator"),
         *_faces(camera, hub, "hub"),
-        *_sheets(camera, [(group, corners + drop) for group, corners in patches["sensors"]], "sensor"),
+        *_sheets(camera, drawn_below, "sensor"),
     ]
     return _document(parts, camera.project(all_points)[0], escape(said(config)))
 
@@ -120,17 +122,22 @@ def _lines(camera: Camera, walls: Sequence[Array], beam: RotatingBeam) -> Iterat
         yield f'<polygon class="tip" points="{_points(camera.project(wall[-1])[0])}"/>'
 
 
-def _leaders(camera: Camera, sensors: Sequence[tuple[PatchGroup, Array]], drop: Array) -> Iterator[str]:
-    for _, corners in sensors:
-        middle = corners.mean(axis=0)
-        yield f'<polyline class="leader" points="{_points(camera.project(np.stack([middle, middle + drop]))[0])}"/>'
+def _leaders(camera: Camera, ends: Sequence[tuple[Array, Array]]) -> Iterator[str]:
+    """From where patches are to where they are drawn."""
+    for there, below in ends:
+        middles = np.stack([there.mean(axis=0), below.mean(axis=0)])
+        yield f'<polyline class="leader" points="{_points(camera.project(middles)[0])}"/>'
+
+
+def _is_seen(camera: Camera, face: Array) -> bool:
+    return bool(faces_camera(camera.project(face)[0][None])[0])
 
 
 def _sheets(camera: Camera, patches: Sequence[tuple[PatchGroup, Array]], kind: str) -> Iterator[str]:
     """Patches with their numbers; dashed where an actuator is behind the wall that it lies in."""
-    for number, (group, patch_corners) in enumerate(patches, start=1):
-        corners, _ = camera.project(patch_corners)
-        behind = " behind" if kind == "actuator" and not faces_camera(corners[None])[0] else ""
+    for number, (group, face) in enumerate(patches, start=1):
+        corners, _ = camera.project(face)
+        behind = " behind" if kind == "actuator" and not _is_seen(camera, face) else ""
         x, y = corners.mean(axis=0)
         yield f'<polygon class="{kind}{behind}" style="--own:{_colour(group)}" points="{_points(corners)}"/>'
         yield f'<text class="{kind}{behind}" x="{x:.1f}" y="{y + 4.0:.1f}">{number}</text>'

@@ -20,7 +20,8 @@ def heading(seen: View, mode: int) -> list[Any]:
 
 def damping_rows(seen: View) -> list[html.Tr]:
     """A row a mode: number, family, frequency in rad/s and in Hz, damping in per cent."""
-    rows = zip(seen.families, seen.natural_frequencies, 100.0 * seen.damping.free, 100.0 * seen.damping.controlled, strict=True)
+    found = seen.families, seen.natural_frequencies, 100.0 * seen.damping.free, 100.0 * seen.damping.controlled
+    rows = zip(*(each[: len(seen.damping.free)] for each in found), strict=True)
     return [
         _row(f"{mode} {family}", f"{frequency:.1f}", f"{frequency / TURN:.1f}", f"{free:.2f}", f"{controlled:.2f}")
         for mode, (family, frequency, free, controlled) in enumerate(rows, start=1)
