@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import Blade
-from baselines.design.weights import weighted
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration.read_only import sealed
@@ -61,7 +61,7 @@ def view(settings: Settings, base: BladeConfig = THESIS) -> View:
     config, beam, plant = blade.config, blade.beam, blade.plant
     modes = beam.modes(config.speed, max(config.modes, CAMPBELL_MODES))
     stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * width(beam))
-    held, (_, K), (_, L) = sampled_design(weighted(plant, **settings.weights(plant)))
+    held, (_, K), (_, L) = sampled_design(weighted(plant, *settings.weights(plant)))
     line_load = blade.reference_load * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
     return View(
         speed=config.speed,

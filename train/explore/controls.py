@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, get_args
 
-from beamenv.blade.build import Blade
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.layouts import SIDES, Side
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Choice, Number, Numbers, checked
 from beamenv.patches.group import PatchGroup
-from train.explore.blade import HIGHEST_SPEED
+from train.explore.blade import HIGHEST_SPEED, built
 from train.explore.settings import Direction, Settings
 
 Value = float | list[float] | str
@@ -122,9 +121,9 @@ class Page:
             "kinetic_energy_weight": _decades("Q: weight of kinetic energy", "×", 1.0, WEIGHTS, 1000.0),
             "actuator_energy_weight": _decades("R: weight of the actuators' energy", "×", 1.0, WEIGHTS, 1000.0),
         }
-        plant = Blade(base).plant
-        choices = {"load": Options(f"step load of {Blade(base).reference_load:.3g} N/m in", get_args(Direction), "flap")}
-        for name, count in zip(PAIR, (plant.B.shape[1], len(plant.C)), strict=True):
+        blade = built(base)
+        choices = {"load": Options(f"step load of {blade.reference_load:.3g} N/m in", get_args(Direction), "flap")}
+        for name, count in zip(PAIR, (blade.plant.B.shape[1], len(blade.plant.C)), strict=True):
             choices[name] = Options(name, tuple(str(k + 1) for k in range(count)), "1", "Bode")
         ranges = {name: entry for name, entry in found.items() if entry is not None}
         return cls(base, MappingProxyType(ranges), MappingProxyType(choices))
@@ -149,12 +148,10 @@ class Page:
         Raises ``ValueError`` for values that no control can have.
         """
         read, start = self.checked(values), self.start
-        changed = {name: value for name, value in read.items() if _plain(value) != start[name]}
-        sides = {side for side in SIDES if any(_is_of(side, name) for name in changed)}
-        given = {name: self.controls[name].setting(value) for name, value in changed.items() if not any(_is_of(each, name) for each in SIDES)}
-        for side in sides:
-            groups = [self.ranges[name].setting(read[name]) for name in self.ranges if _is_of(side, name)]
-            given[side] = sum(groups, ())
+        moved = [name for name, value in read.items() if _plain(value) != start[name]]
+        given = {name: self.controls[name].setting(read[name]) for name in moved if _side(name) is None}
+        for side in {side for name in moved if (side := _side(name))}:
+            given[side] = sum((self.ranges[name].setting(read[name]) for name in self.ranges if _side(name) == side), ())
         return Settings(**given)
 
 
@@ -162,8 +159,9 @@ def _plain(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _is_of(side: Side, name: str) -> bool:
-    return name == side or name.startswith(f"{side}-")
+def _side(name: str) -> Side | None:
+    """Whose patches a slider moves, by its id."""
+    return next((side for side in SIDES if name.partition("-")[0] == side), None)
 
 
 def _within(label: str, unit: str, low: float, high: float, step: float, value: float) -> Range | None:

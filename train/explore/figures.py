@@ -73,9 +73,7 @@ def _named_at_their_ends(view: View, top: float) -> list[dict[str, Any]]:
         heights[mode] = free = max(starts[mode], free)
         free += LINE_OF_TEXT * top
     look = {"x": 0.0, "xanchor": "left", "yanchor": "bottom", "xshift": 3, "showarrow": False, "font": SMALL}
-    return [
-        {**look, "y": float(height), "text": f"{mode + 1} {view.families[mode]}"} for mode, height in enumerate(heights)
-    ]
+    return [{**look, "y": float(height), "text": f"{mode + 1} {view.families[mode]}"} for mode, height in enumerate(heights)]
 
 
 def mode_shape(view: View, mode: int) -> Figure:

@@ -87,7 +87,12 @@ def control(name: str, entry: Range | Options) -> html.Div:
     else:
         fields = [dcc.Input(id=each, type="number", debounce=True, step="any") for each in entry.entries(name)]
         beside = html.Output(id=f"{name}-value") if entry.unit == "rad/s" else None
-        parts = [html.Span(entry.label), html.Div([*fields, html.Span(entry.unit)], className="numbers"), beside, slider(name, entry)]
+        parts = [
+            html.Span(entry.label),
+            html.Div([*fields, html.Span(entry.unit)], className="numbers"),
+            beside,
+            slider(name, entry),
+        ]
     return html.Div([each for each in parts if each is not None], role="group", className="control", **{"aria-label": entry.label})
 
 
@@ -112,7 +117,7 @@ def _results(page: Page) -> html.Div:
     left = [
         _section("Campbell diagram", crossings, _graph("campbell", 430)),
         _section("Step response of the tip", sudden, _graph("response", 660)),
-        _section("Poles", "Of the sampled loops, as continuous ones: log(z)/Δt. Right of the line is unstable.", _graph("poles", 400)),
+        _section("Poles", "Of the sampled loops, as log(z)/Δt. Right of the line is unstable.", _graph("poles", 400)),
         _section("Singular values", singular, _graph("singular", 480)),
     ]
     right = [
@@ -130,9 +135,10 @@ MARGINS = ("margin, the loops broken at", "voltages", "readings")
 
 def _picture(base: BladeConfig) -> html.Section:
     keys: list[Any] = [
-        html.Span([html.I(style={"background": each}, className="patch"), name], className="key") for name, each in key(base).items()
+        html.Span([html.I(style={"background": each}, className="patch"), name], className="key")
+        for name, each in key(base).items()
     ]
-    note = "Numbered from the root: actuators full, sensors pale, drawn below the blade where they cannot be seen; dashed: behind a wall."
+    note = "Numbered from the root: actuators full, sensors pale, below the blade where they cannot be seen; dashed: behind a wall."
     return html.Section([html.H2("Blade"), html.Img(id="picture", alt=""), html.P([*keys, html.Span(note)])], className="wide")
 
 

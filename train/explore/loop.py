@@ -62,8 +62,8 @@ def loop(settings: Settings, base: BladeConfig = THESIS) -> Loop:
     voltage = checked("settings.actuator", settings.actuator, Count(1, m))
     reading = checked("settings.sensor", settings.sensor, Count(1, p))
     idle, own = no_control(plant), lqg(plant)
-    weights = settings.weights(plant)
-    law = lqg(plant, **weights) if weights else own
+    Q, R = settings.weights(plant)
+    law = own if Q is None and R is None else lqg(plant, Q=Q, R=R)
     laws = {idle.name: idle, law.name: law}
     idle_cost, cost, least = (stationary_cost(plant, each) for each in (idle, law, own))
     angles = _angles(plant)
@@ -75,14 +75,14 @@ def loop(settings: Settings, base: BladeConfig = THESIS) -> Loop:
         least_cost=least / idle_cost,
         frequencies=angles / plant.control_interval,
         bode={name: each[:, reading - 1, voltage - 1] for name, each in responses.items()},
-        plant_gains=np.linalg.svd(responses[idle.name], compute_uv=False),
+        plant_gains=np.asarray(np.linalg.svd(responses[idle.name], compute_uv=False), dtype=np.float64),
         load_gains={name: _load_gains(plant, each, angles) for name, each in laws.items()},
         pair=(voltage, reading),
     )
 
 
 def _angles(plant: Plant) -> Array:
-    """rad a sample: as dense as the blade's resonances are sharp, from below the first of them to half the sampling rate."""
+    """Rad a sample: as dense as the blade's resonances are sharp, from below the first of them to half the sampling rate."""
     least = LOWEST * plant.natural_frequencies[0] * plant.control_interval
     around = resonant_angles(sampled(plant).A)
     return np.concatenate([np.geomspace(least, around[around > least][0], 60, endpoint=False), around[around > least]])

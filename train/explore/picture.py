@@ -161,21 +161,24 @@ def key(config: BladeConfig) -> Mapping[str, str]:
 
 
 def _document(parts: Sequence[str], points: Array, title: str) -> str:
-    light, dark = THEMES["light"], THEMES["dark"]
-    style = (
-        "".join(_shaded(kind, dark, k) for kind, dark in (("wall", 150), ("hub", 70)) for k in range(SHADES))
-        + f".edge,.tip{{fill:none;stroke:#5f6b78;stroke-width:.7}}.leader{{stroke:{light.faint};stroke-width:.8;fill:none}}"
-        "polygon.actuator{fill:var(--own);stroke:#1f2933}polygon.behind{fill:none;stroke:var(--own);stroke-dasharray:4 3}"
-        "polygon.sensor{fill:var(--own);fill-opacity:.3;stroke:var(--own);stroke-width:1.5}"
-        "text{font:600 12px system-ui,sans-serif;text-anchor:middle}text.actuator{fill:#fff}text.behind{fill:#1f2933}"
-        f"text.sensor{{fill:{light.ink}}}"
-        f"@media (prefers-color-scheme:dark){{.leader{{stroke:{dark.faint}}}text.sensor{{fill:{dark.ink}}}}}"
-    )
     left, top = points.min(axis=0) - MARGIN
     width, height = points.max(axis=0) + MARGIN - (left, top)
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.0f} {top:.0f} {width:.0f} {height:.0f}"><title>{title}</title><style>{style}</style>'
-        f"{''.join(parts)}</svg>"
+    box = f"{left:.0f} {top:.0f} {width:.0f} {height:.0f}"
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"><title>{title}</title><style>{_style()}</style>'
+    return f"{head}{''.join(parts)}</svg>"
+
+
+def _style() -> str:
+    light, dark = THEMES["light"], THEMES["dark"]
+    shades = [_shaded(kind, darkest, shade) for kind, darkest in (("wall", 150), ("hub", 70)) for shade in range(SHADES)]
+    return "".join(shades) + (
+        f".edge,.tip{{fill:none;stroke:{light.faint};stroke-width:.7}}.leader{{stroke:{light.faint};stroke-width:.8;fill:none}}"
+        f"polygon.actuator{{fill:var(--own);stroke:{light.ink}}}"
+        "polygon.behind{fill:none;stroke:var(--own);stroke-dasharray:4 3}"
+        "polygon.sensor{fill:var(--own);fill-opacity:.3;stroke:var(--own);stroke-width:1.5}"
+        "text{font:600 12px system-ui,sans-serif;text-anchor:middle}"
+        f"text.actuator{{fill:#fff}}text.behind{{fill:{light.ink}}}text.sensor{{fill:{light.ink}}}"
+        f"@media (prefers-color-scheme:dark){{.leader{{stroke:{dark.faint}}}text.sensor{{fill:{dark.ink}}}}}"
     )
 
 

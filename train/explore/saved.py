@@ -13,7 +13,8 @@ from beamenv.configuration.files import parsed_table
 from train.shared.toml import as_toml
 
 NAMES = TOML, JSON = "blade.toml", "blade.json"
-SAYS = "A blade from `beamenv explore`. Fields that are left out are those of the preset thesis.\nThe weights of LQG are no part of it."
+SAYS = """A blade from `beamenv explore`. Fields that are left out are those of the preset thesis.
+The weights of LQG are no part of it."""
 
 
 def saved(blade: BladeConfig) -> tuple[str, str]:

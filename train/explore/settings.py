@@ -67,13 +67,9 @@ class Settings:
     def _given(self, names: tuple[str, ...]) -> dict[Any, Any]:
         return {name: value for name in names if (value := getattr(self, name)) is not None}
 
-    def weights(self, plant: Plant) -> dict[str, Array]:
-        """Q (n, n) and R (m, m) of LQG where they are not the plant's own; energy coordinates are half strain, half kinetic."""
+    def weights(self, plant: Plant) -> tuple[Array | None, Array | None]:
+        """Q (n, n) and R (m, m) of LQG, None where they are the plant's own; energy coordinates are half strain, half kinetic."""
         strain, kinetic, actuators = self.strain_energy_weight, self.kinetic_energy_weight, self.actuator_energy_weight
-        given = {}
-        if strain != 1.0 or kinetic != 1.0:
-            root = np.sqrt(np.repeat([strain, kinetic], len(plant.A) // 2))
-            given["Q"] = plant.state_weight * np.outer(root, root)
-        if actuators != 1.0:
-            given["R"] = actuators * plant.input_weight
-        return given
+        root = np.sqrt(np.repeat([strain, kinetic], len(plant.A) // 2))
+        Q = plant.state_weight * np.outer(root, root) if (strain, kinetic) != (1.0, 1.0) else None
+        return Q, actuators * plant.input_weight if actuators != 1.0 else None

@@ -95,6 +95,7 @@
     if (!values) return window.dash_clientside.no_update;
     asked += 1;
     const mine = asked;
+    analysed(true);
     await drawn;
     if (mine !== asked) return window.dash_clientside.no_update;
     drawn = new Promise((resolve) => {
