@@ -239,3 +239,25 @@ def test_a_telephone_shows_the_first_group_of_controls_and_opens_the_others(show
     press(browser, "actuators", webdriver.Keys.ARROW_LEFT, handle=3)
     wait(browser, f"return document.getElementById('actuators-entry-3').value < 1331 && {IDLE}")
     assert browser.execute_script("return document.documentElement.scrollWidth") <= 400
+
+
+def test_a_finger_on_a_figure_scrolls_the_page_and_one_beside_a_handle_moves_it(show):
+    browser = show(400)
+    browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    try:
+        browser.execute_script("document.getElementById('campbell').scrollIntoView()")
+        before = browser.execute_script("return scrollY")
+        drag(browser, [(200, 400 - 10 * k) for k in range(20)])
+        wait(browser, f"return scrollY > {before} + 100")
+        browser.execute_script("scrollTo(0, 0)")
+        box = browser.execute_script("return document.querySelector('#speed [role=slider]').getBoundingClientRect().toJSON()")
+        drag(browser, [(box["x"] + 20 + 6 * k, box["y"] + 18) for k in range(10)])
+        wait(browser, f"{MARKED_SPEED} > 200 && {IDLE}")
+    finally:
+        browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
+
+def drag(browser, points):
+    for kind, (x, y) in (("touchStart", points[0]), *(("touchMove", point) for point in points)):
+        browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})
+    browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
