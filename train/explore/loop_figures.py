@@ -73,7 +73,7 @@ def over_frequency(panels: Sequence[Panel], loop: Loop) -> Figure:
     layout["xaxis"] |= {**decades, "range": [float(np.log10(low)), float(np.log10(high))]}
     layout["xaxis2"] = {**beside("x", low, high, logarithmic=True), "anchor": "y"}
     for name in ("yaxis", "yaxis2"):
-        layout[name]["automargin"] = True
+        layout[name] |= {"automargin": True} | ({"dtick": 1} if layout[name].get("type") == "log" else {})
     layout["margin"] = {**layout["margin"], "t": 76}
     layout["legend"] = {**layout["legend"], "yref": "container", "y": 1.0, "yanchor": "top"}
     first = panels[0].curves[0].y
