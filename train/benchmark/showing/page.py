@@ -16,7 +16,7 @@ from train.benchmark.targets import findings
 from train.controllers.shipped import shipped
 from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
 from train.page.lead import COST, blade_in_words, counted, load_in_words
-from train.shared.curve import read_curve
+from train.shared.curve import drawn_as, read_curve
 
 COLUMN = next(column for column in COLUMNS if column.name == "relative_cost")
 
@@ -82,8 +82,8 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
     own = {row.controller.removesuffix("-specialist") for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
     curves = {}
     for each in shipped():
-        if each.agent in own and each.scenario == "nominal" and each.agent not in curves:
-            curves[each.agent] = read_curve(each.folder)
+        if each.agent in own and each.scenario == "nominal" and drawn_as(each.agent, each.folder) not in curves:
+            curves[drawn_as(each.agent, each.folder)] = read_curve(each.folder)
     if level is None or not curves:
         return None
     return LearningCurves(curves, {level.title: level.estimates["relative_cost"].value})
