@@ -41,7 +41,7 @@ def test_a_model_of_ones_own_is_what_it_is_designed_for(command, tmp_path):
     assert result.exit_code == 0, result.output
     content = (tmp_path / "lqg.c").read_text()
     assert "int lqg_step(lqg_state *state, const double sensors[1], double volts_out[1]);" in content
-    assert "note:         lqg, plant mine.npz, scenario default" in content
+    assert "note:         lqg, plant mine.npz, scenario nominal" in content
 
 
 @pytest.mark.skipif(compiler() is None, reason="there is no C compiler")

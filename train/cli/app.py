@@ -11,6 +11,7 @@ from train.cli.benchmark import benchmark
 from train.cli.export import export
 from train.cli.frequencies import frequencies
 from train.cli.identify import identify
+from train.cli.listing import list_ids
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -44,6 +45,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command("list")(list_ids)
 app.command()(frequencies)
 app.command()(section)
 app.command()(identify)
@@ -69,7 +71,7 @@ def evaluate(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
     trained_seed: TrainedSeedOption = None,
@@ -110,7 +112,7 @@ def compare(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     as_json: JsonOption = False,
 ) -> None:

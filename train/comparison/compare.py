@@ -86,7 +86,7 @@ class Comparison:
     def job(self, agent: str) -> Job:
         """The training of an agent."""
         environment = dict(self.environment)
-        scenario = environment.pop("scenario", "default")
+        scenario = environment.pop("scenario", "nominal")
         return Job(agent, self.recipe(agent), scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
 
 

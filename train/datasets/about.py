@@ -12,7 +12,7 @@ import numpy as np
 import beamenv
 from baselines import Controller
 from baselines.design.controller import name_of
-from beamenv.knowledge import TIERS
+from beamenv.titles import TIERS
 from train.controllers.named import discover
 from train.controllers.runs import AGENT
 from train.controllers.tiers import LEARNT, own_tier, told_tier

@@ -43,7 +43,7 @@ ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units",
 
 def record(
     controller: str | ControllerArgument,
-    scenario: Any = "default",
+    scenario: Any = "nominal",
     episodes: int = 100,
     seed: int = RECORDED,
     *,
