@@ -29,9 +29,9 @@ def spin_up_lqg(prior: Prior) -> SpinUpLQG:
     """LQG with the gains of a linear time-varying plant (Kwakernaak and Sivan, Linear Optimal Control Systems, 1972, sections 3.3,
     4.3 and 5.3), for scenarios whose rotor spins up or down on a course that is known.
 
-    Along the spin-up each interval has its own plant, and the filter begins with what the start of the spin-up itself excites. Where
-    the rotor does not spin up all intervals have the plant that others depart from; what is left then are gains that know when
-    episodes begin and end. Other plants that a scenario draws, and what may be broken, it does not know of. It is no loop that
+    Along the spin-up each interval has its own plant, and the filter begins with what the start of the spin-up itself excites.
+    Where the rotor does not spin up all intervals have the plant that others depart from; what is left then are gains that know
+    when episodes begin and end. Other plants that a scenario draws, and what may be broken, it does not know of. It is no loop that
     has to last, and so nothing is verified but that its recursions have solutions. ``ValueError`` for what is no ``Prior``.
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")

@@ -19,7 +19,15 @@ SCENARIOS = [
     {"plants": {"speed_ratio": [0.7, 1.3], "bank": 3}},
     {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 8}},
 ]
-IDS = [*SCENARIOS[:3], "failure on the way", *SCENARIOS[4:6], "dropout and turbulence", "spin-up", "drawn plants", "wandering speed"]
+IDS = [
+    *SCENARIOS[:3],
+    "failure on the way",
+    *SCENARIOS[4:6],
+    "dropout and turbulence",
+    "spin-up",
+    "drawn plants",
+    "wandering speed",
+]
 
 
 def batch_of(scenario, count):

@@ -12,8 +12,8 @@ from beamenv import RotatingBeamEnv
 from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
 from beamenv.simulation.plants.spin_up import Cycloid
-from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.simulation.plants.spin_up_bank import _worked_out
+from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.task import resolve_task
 
 CONFIG = blade_config(overrides={"truth_modes": 11})

@@ -102,10 +102,16 @@ def test_a_data_set_tells_who_acted_and_how_well(tmp_path):
     assert own["cost"] == pytest.approx(
         {"unit": "J s", "mean": np.mean(costs), "standard_deviation": np.std(costs), "failed_episodes": 0}
     )
-    assert (own["controller"], own["trained_seed"], own["tier"], own["scenario"]) == ("residual", 1, 1, "nominal")
+    assert (own["controller"], own["trained_seed"], own["tier"], own["scenario"]) == (
+        "residual-generalist",
+        1,
+        1,
+        "nominal",
+    )
     assert own["seeds"] == [17, 20] == [each["seed"] for each in data.storage.get_episode_metadata([0, 3])]
     assert own["versions"]["beamenv"] == beamenv.__version__ and len(own["code"]) == 16
-    assert about["algorithm_name"] == "residual" and about["dataset_id"] == "beamenv/residual-nominal-v0"
+    assert about["algorithm_name"] == "residual-generalist"
+    assert about["dataset_id"] == "beamenv/residual-generalist-nominal-v0"
     assert f"None of the episodes ended by failure; the mean cost J is {np.mean(costs):.4g} J s" in about["description"]
 
 
@@ -294,6 +300,6 @@ def test_a_relative_folder_will_do_and_minari_finds_what_is_where_it_looks(tmp_p
     monkeypatch.chdir(tmp_path)
     data = record("none", "nominal", 1, folder="sets", environment=SHORT)
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path / "sets"))
-    assert_equal(arrays(data), arrays(minari.load_dataset("beamenv/none-default-v0")))
+    assert_equal(arrays(data), arrays(minari.load_dataset("beamenv/none-nominal-v0")))
     record("none", "white", 1, environment=SHORT)
-    assert list(minari.list_local_datasets()) == ["beamenv/none-default-v0", "beamenv/none-white-v0"]
+    assert list(minari.list_local_datasets()) == ["beamenv/none-nominal-v0", "beamenv/none-white-v0"]

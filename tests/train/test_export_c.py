@@ -29,7 +29,7 @@ def agrees(controller, plant, /, scenario, **blade):
     reads_speed = len(found["double"].diagram.inputs) > 1
     with in_double_precision(controller) as own:
         measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, **blade)
-    assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
+    assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "none")
     for precision, each in found.items():
         with running(each) as step:
             if falls_apart(controller, blade):

@@ -64,8 +64,8 @@ def evaluate(
     controller: Annotated[
         str,
         typer.Argument(
-            help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder; where that "
-            "holds several runs, 0, 1 and so on, all of them, with mean and spread."
+            help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one. Of several runs "
+            "all, with mean and spread."
         ),
     ],
     preset: PresetOption = "thesis",
@@ -95,7 +95,7 @@ def evaluate(
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
             reference = next((each.reference for each in found.values()), None)
             found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
-        runs = Runs(controller, found)
+        runs = Runs(next(iter(found.values())).name, found)
     if as_json:
         print_json(runs.to_dict() if len(found) > 1 else runs.first.to_dict())
     else:
@@ -133,7 +133,7 @@ def compare(
         comparison = Comparison({**environment_arguments(preset, speed, blade, plant), "scenario": scenario}, budget, seeds)
         with Progressbar(budget) as bar:
             evaluations = run(comparison, folder, bar)
-        tiers = tiers_of(evaluations, bar.without)
+        tiers = tiers_of(evaluations)
     if as_json:
         print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:

@@ -54,6 +54,11 @@ def chosen_runs(name: str, task: Task, scenario: str, seed: int | None = None) -
     return {run: _trained(found, place, task) for run, place in found.runs.items()}
 
 
+def id_of(name: str, scenario: str, seed: int | None = None) -> str:
+    """What tables and files call whom a name leads to in a scenario; ``ValueError`` as ``chosen`` before anything is built."""
+    return _found(name, scenario, seed).id
+
+
 def folder_id(folder: Path) -> str:
     """What tables and files call the agent in a folder: a run, whose folder has a number alone, is called after both."""
     place = folder.resolve()

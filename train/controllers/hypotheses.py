@@ -50,8 +50,8 @@ class Fault:
 def hypotheses_of(prior: Prior, plants: int | None = None) -> list[Hypothesis]:
     """Every plant, delay and fault that a scenario may draw, with every other; from more than ``MOST``, so many drawn ones.
 
-    Of what varies there are so many ``plants``; None: ``PLANTS``, or ``SPEEDS`` of a spin-up. Where faults set in within the episode
-    the first hypothesis is that there is none. Hysteresis is left to the fallback.
+    Of what varies there are so many ``plants``; None: ``PLANTS``, or ``SPEEDS`` of a spin-up. Where faults set in within the
+    episode the first hypothesis is that there is none. Hysteresis is left to the fallback.
     """
     scenario, faults = prior.scenario, _faults_of(prior)
     if are_drawn(prior, plants):

@@ -20,8 +20,8 @@ from beamenv.simulation.plants.coordinates import seen_from
 from beamenv.simulation.plants.model_bank import model_bank
 from beamenv.simulation.plants.pyroelectric import pyroelectric_readings
 from beamenv.simulation.plants.spin_up import Cycloid
-from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.simulation.plants.spin_up_bank import spin_up_bank
+from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.simulation.plants.standing import about_moving_equilibrium, about_steady_states
 from beamenv.simulation.plants.walks import Warming, stations_of, walk_of
 
