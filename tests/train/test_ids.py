@@ -20,7 +20,8 @@ from train.benchmark.listed import listed_controllers
 from train.cli.app import app
 from train.cli.listing import Kind
 from train.controllers import controller
-from train.controllers.choice import chosen, chosen_runs, folder_id
+from train.controllers.choice import chosen, chosen_runs
+from train.controllers.ids import folder_id
 from train.controllers.known import FORMER, known_agents, known_controllers
 from train.controllers.named import discover, named
 from train.controllers.shipped import FOLDER, shipped_agents

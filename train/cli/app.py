@@ -79,6 +79,10 @@ def evaluate(
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
     with one_sentence():
+        from train.controllers.ids import found
+
+        found(controller, scenario, trained_seed)  # what nobody has is told before anything takes its time
+
         import gymnasium as gym
 
         import baselines
@@ -91,17 +95,17 @@ def evaluate(
         seeds = checked("seeds", seeds, SEEDS)
         arguments = {**environment_arguments(preset, speed, blade, plant), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
-        found: dict[str, baselines.Evaluation] = {}
+        each: dict[str, baselines.Evaluation] = {}
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
-            reference = next((each.reference for each in found.values()), None)
-            found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
-        runs = Runs(next(iter(found.values())).name, found)
+            reference = next((one.reference for one in each.values()), None)
+            each[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
+        runs = Runs(next(iter(each.values())).name, each)
     if as_json:
-        print_json(runs.to_dict() if len(found) > 1 else runs.first.to_dict())
+        print_json(runs.to_dict() if len(each) > 1 else runs.first.to_dict())
     else:
         from train.cli.evaluations import runs_table, screen_table
 
-        print_table(runs_table(runs) if len(found) > 1 else screen_table([runs.first]))
+        print_table(runs_table(runs) if len(each) > 1 else screen_table([runs.first]))
 
 
 @app.command()
