@@ -112,7 +112,10 @@ def test_an_agent_is_called_by_its_id_and_has_all_of_its_runs(env):
         runs = chosen_runs(name, task, "nominal")
         assert list(runs) == [str(run) for run in known_agents()[name].runs]
         assert {law.name for law in runs.values()} == {name}
-    assert controller("residual-generalist", env, run=3).weights.keys() == controller("residual-generalist", env).weights.keys()
+    assert (
+        controller("residual-generalist", env, trained_seed=3).weights.keys()
+        == controller("residual-generalist", env).weights.keys()
+    )
     (alone,) = chosen_runs("residual-generalist", task, "nominal", 2)
     assert alone == ""
 

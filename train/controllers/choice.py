@@ -16,17 +16,17 @@ from train.controllers.named import named
 from train.controllers.sources import Trained
 
 
-def controller(name: str, env: Any, run: int | None = None) -> Controller:
+def controller(name: str, env: Any, trained_seed: int | None = None) -> Controller:
     """A controller for an environment, single or batched, by its id, that of an agent that ships, or a trained one's folder.
 
-    ``beamenv list controllers`` and ``beamenv list agents`` say which there are; ``run`` is the seed of an agent's training, its
-    first if None. What is built knows of the environment what its tier is told. ``ValueError`` for an unknown id, and for what
-    cannot be had of what moves there.
+    ``beamenv list controllers`` and ``beamenv list agents`` say which there are; ``trained_seed`` is that of an agent's
+    training run, its first if None. What is built knows of the environment what its tier is told. ``ValueError`` for an unknown id,
+    and for what cannot be had of what moves there.
     """
     task = getattr(getattr(env, "unwrapped", None), "task", None)
     if not isinstance(task, Task):
         raise Refused("env", env, "an environment of this package")
-    return chosen(name, task, _name_of(task), run)
+    return chosen(name, task, _name_of(task), trained_seed)
 
 
 def chosen(name: str, task: Task, scenario: str, seed: int | None = None) -> Controller:
