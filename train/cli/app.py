@@ -169,7 +169,9 @@ def reproduce(
     names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
     output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
     fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
-    docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
+    docs: Annotated[
+        Path | None, typer.Option(help="Folder that gets the pages too: thesis.md, one a chapter, and figures/.")
+    ] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
 ) -> None:
