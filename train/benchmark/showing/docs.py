@@ -14,7 +14,7 @@ from train.benchmark.showing.legend import details, terms
 from train.benchmark.showing.report import overview, scenario_table
 from train.benchmark.showing.scores import headroom, scores
 from train.benchmark.table import BenchmarkTable
-from train.figures.paper import save
+from train.figures.paper import save_themes
 from train.figures.paper_heat_map import heat_map as drawn
 from train.shared.markdown import escaped, folded
 from train.shared.markdown import table as markdown_table
@@ -40,8 +40,9 @@ FOLDED = "The tables are folded: a click opens one. An agent has a row for all i
 
 
 def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
-    """``benchmark.md`` with its heat map in ``images/``."""
-    save(drawn(heat_map(table)), folder / "images" / "benchmark.png")
+    """``benchmark.md`` with its heat map in ``images/``, for light and for dark pages."""
+    content = heat_map(table)
+    save_themes(lambda theme: drawn(content, theme), folder / "images" / "benchmark.png")
     write_whole(folder / "benchmark.md", page(table, command))
 
 
