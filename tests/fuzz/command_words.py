@@ -1,6 +1,7 @@
 """Every command with its arguments and options, and the work that is too long for its door."""
 
 COMMANDS = {
+    "list": (("presets",), {}, ("--json",), ()),
     "frequencies": (
         (),
         {"--preset": "thesis", "--speed": "20", "--count": "2", "--blade": "blade.toml", "--plant": None},
@@ -189,7 +190,7 @@ COMMANDS = {
     "speed": ((), {}, ("--json",), ("train.cli.speed.measured",)),
     "explore": (
         (),
-        {"--port": "0", "--host": "127.0.0.1", "--preset": "thesis", "--blade": "blade.toml"},
+        {"--port": "0", "--host": "127.0.0.1", "--preset": "thesis", "--speed": "20", "--blade": "blade.toml"},
         (),
         ("train.explore.serve",),
     ),

@@ -10,6 +10,9 @@ NEUTRAL = "#7d8793"
 """What is without control, and what is only for orientation."""
 BEHIND = "#bfbfbf"
 """What is without control where it lies behind a black curve."""
+PATCH_COLOURS = {"MFC": PALETTE[1], "PZT": PALETTE[0], "PIC255": PALETTE[2]}
+"""Of patches by their material, the same wherever patches or what they do are drawn side by side."""
+PATCHES_OF_YOUR_OWN = PALETTE[3]
 LINES = ("solid", "dashed", "dotted", "dashdot")
 """The second sign besides colour."""
 SIGNS = ("x-thin", "cross-thin", "square", "circle", "diamond", "triangle-up")

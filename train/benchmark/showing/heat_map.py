@@ -10,7 +10,7 @@ from beamenv.knowledge import TRUTH
 from train.benchmark.listed import GENERALIST
 from train.benchmark.score import by_split
 from train.benchmark.statistics import interquartile_mean
-from train.benchmark.table import BOUND, RIVAL, BenchmarkTable
+from train.benchmark.table import CLAIRVOYANT, RIVAL, BenchmarkTable
 from train.benchmark.targets import best
 from train.figures.heat_map import HeatMap
 
@@ -56,7 +56,7 @@ def shown(table: BenchmarkTable) -> tuple[str, ...]:
     firsts = {(rows[name].tier, rows[name].kind == "learned"): name for name in reversed(told_less)}
     generalists = [name for name in told_less if name.endswith(GENERALIST)]
     laws = [name for name in told_less if rows[name].kind != "learned"]
-    wanted = dict.fromkeys(name for name in [RIVAL, BOUND, *own, *firsts.values(), *generalists, *laws] if name in names)
+    wanted = dict.fromkeys(name for name in [RIVAL, CLAIRVOYANT, *own, *firsts.values(), *generalists, *laws] if name in names)
     kept = list(wanted)[:MOST]
     return tuple(name for name in names if name in kept)
 
