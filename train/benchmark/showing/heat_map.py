@@ -18,9 +18,10 @@ MOST = 9
 """Controllers that a page's width holds in letters that are easy to read."""
 
 RULE = (
-    f"The picture has all controllers where there are {MOST} at most, and else LQG, the clairvoyant law, the caller's own and, of "
-    "tiers 0 to 2, the best law and the best agent; then the best of the other generalists and laws as far as there is room. The "
-    "better was measured in more scenarios or has the lower interquartile mean of J / J₀ over as many. The tables have all."
+    f"The picture has all controllers where there are {MOST} at most, and else lqg, clairvoyant, the caller's own and, of tiers 0 "
+    "to 2, the best classical controller and the best agent; then the best of the other generalists and classical controllers as "
+    "far as there is room. The better was measured in more scenarios or has the lower interquartile mean of J / J₀ over as many. "
+    "The tables have all."
 )
 """Who is shown, for whoever shows it."""
 
