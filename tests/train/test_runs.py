@@ -58,7 +58,7 @@ def test_the_runs_of_a_folder_are_those_with_numbers_in_their_order(folder):
 @pytest.fixture(scope="module")
 def together(folder):
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=3, duration=0.05)
-    laws = chosen_runs(str(folder), envs.unwrapped.task, "default")
+    laws = chosen_runs(str(folder), envs.unwrapped.task, "nominal")
     return Runs("mine", {name: evaluate(law, envs, range(3)) for name, law in laws.items()})
 
 
@@ -72,7 +72,8 @@ def test_runs_have_a_mean_and_a_spread(together):
         assert spread["deviation"] == pytest.approx(values.std(ddof=1), rel=1e-9)
         assert (spread["least"], spread["greatest"]) == (values.min(), values.max())
     assert content["spread"]["relative_cost"]["deviation"] > 0.0
-    assert {name: each["controller"] for name, each in content["runs"].items()} == {k: f"biased by {v}" for k, v in GAINS.items()}
+    assert list(content["runs"]) == list(GAINS)
+    assert {content["controller"], *(each["controller"] for each in content["runs"].values())} == {"mine"}
 
 
 def test_a_screen_shows_the_runs_together_and_one_by_one(together):
@@ -97,12 +98,44 @@ def test_the_command_evaluates_every_run_of_a_folder(folder, tmp_path):
 
 def test_one_run_is_still_one_controller(folder):
     task = resolve_task()
-    assert list(chosen_runs(str(folder / "2"), task, "default")) == [""]
-    assert list(chosen_runs("lqg", task, "default")) == [""]
+    assert list(chosen_runs(str(folder / "2"), task, "nominal")) == [""]
+    assert list(chosen_runs("lqg", task, "nominal")) == [""]
     with pytest.raises(ValueError, match="holds those of 4 runs, so name one of"):
-        chosen(str(folder), task, "default")
+        chosen(str(folder), task, "nominal")
     with pytest.raises(ValueError, match="trained_seed is 1, but must be left out"):
-        chosen_runs(str(folder), task, "default", 1)
+        chosen_runs(str(folder), task, "nominal", 1)
+
+
+def trainings(home, *kinds):
+    """Trainings by agent, scenario and seed, each with so many runs, as `beamenv train --folder` leaves several of them."""
+    plants = {"nominal": fingerprint(build_plant(blade_config()))}
+    for agent_name, scenario, seed, runs in kinds:
+        own = home / f"{agent_name}-{scenario}-{seed}"
+        for place in [own] if runs == 1 else [own / str(run) for run in range(runs)]:
+            save_policy(agent(0.01 * seed), place, {"plants": plants, "agent": agent_name, "scenario": scenario})
+    return home
+
+
+def test_trainings_that_differ_in_their_seeds_alone_are_runs_of_one_agent(tmp_path):
+    home = trainings(tmp_path / "mine", ("ppo", "nominal", 0, 1), ("ppo", "nominal", 7, 2))
+    assert list(runs_in(home)) == ["ppo-nominal-0", "ppo-nominal-7-0", "ppo-nominal-7-1"]
+    result = run("evaluate", str(home), "--seeds", "2", "--json")
+    assert result.exit_code == 0, result.stderr
+    content = json.loads(result.stdout)
+    assert content["controller"] == "mine" and list(content["runs"]) == list(runs_in(home))
+    assert content["spread"]["relative_cost"]["deviation"] > 0.0
+
+
+def test_trainings_of_several_kinds_are_no_runs_of_one_agent(tmp_path):
+    home = trainings(tmp_path / "mixed", ("ppo", "nominal", 0, 1), ("ppo", "delay", 0, 1), ("sac", "nominal", 0, 2))
+    with pytest.raises(
+        ValueError, match="holds trainings of several kinds, ppo-delay-0 of ppo on delay and .*: name one of them[.]"
+    ):
+        runs_in(home)
+    result = run("evaluate", str(home))
+    assert result.exit_code == 2 and len(result.stderr.splitlines()) == 1
+    alone = trainings(tmp_path / "alone", ("ppo", "nominal", 0, 1))
+    assert dict(runs_in(alone)) == {"": alone}
 
 
 def test_the_run_that_ended_at_the_least_cost_teaches(folder, tmp_path):

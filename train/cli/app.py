@@ -11,6 +11,7 @@ from train.cli.benchmark import benchmark
 from train.cli.export import export
 from train.cli.frequencies import frequencies
 from train.cli.identify import identify
+from train.cli.listing import list_ids
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -44,6 +45,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command("list")(list_ids)
 app.command()(frequencies)
 app.command()(section)
 app.command()(identify)
@@ -62,14 +64,14 @@ def evaluate(
     controller: Annotated[
         str,
         typer.Argument(
-            help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder; where that "
-            "holds several runs, 0, 1 and so on, all of them, with mean and spread."
+            help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one. Of several runs "
+            "all, with mean and spread."
         ),
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
     trained_seed: TrainedSeedOption = None,
@@ -77,6 +79,10 @@ def evaluate(
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
     with one_sentence():
+        from train.controllers.ids import found
+
+        found(controller, scenario, trained_seed)  # what nobody has is told before anything takes its time
+
         import gymnasium as gym
 
         import baselines
@@ -89,17 +95,17 @@ def evaluate(
         seeds = checked("seeds", seeds, SEEDS)
         arguments = {**environment_arguments(preset, speed, blade, plant), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
-        found: dict[str, baselines.Evaluation] = {}
+        each: dict[str, baselines.Evaluation] = {}
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
-            reference = next((each.reference for each in found.values()), None)
-            found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
-        runs = Runs(controller, found)
+            reference = next((one.reference for one in each.values()), None)
+            each[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
+        runs = Runs(next(iter(each.values())).name, each)
     if as_json:
-        print_json(runs.to_dict() if len(found) > 1 else runs.first.to_dict())
+        print_json(runs.to_dict() if len(each) > 1 else runs.first.to_dict())
     else:
         from train.cli.evaluations import runs_table, screen_table
 
-        print_table(runs_table(runs) if len(found) > 1 else screen_table([runs.first]))
+        print_table(runs_table(runs) if len(each) > 1 else screen_table([runs.first]))
 
 
 @app.command()
@@ -110,7 +116,7 @@ def compare(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -131,7 +137,7 @@ def compare(
         comparison = Comparison({**environment_arguments(preset, speed, blade, plant), "scenario": scenario}, budget, seeds)
         with Progressbar(budget) as bar:
             evaluations = run(comparison, folder, bar)
-        tiers = tiers_of(evaluations, bar.without)
+        tiers = tiers_of(evaluations)
     if as_json:
         print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:

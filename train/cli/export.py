@@ -44,7 +44,7 @@ def export(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     trained_seed: TrainedSeedOption = None,
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
@@ -56,6 +56,7 @@ def export(
         from beamenv.configuration import Refused
         from beamenv.task import resolve_task
         from train.controllers.choice import chosen
+        from train.controllers.ids import found
         from train.export import export, exported
         from train.export.exported import identifier
 
@@ -63,19 +64,19 @@ def export(
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
         task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
-        called = identifier(Path(controller).name) if name is None else name
+        called = identifier(found(controller, str(scenario), trained_seed).id) if name is None else name
         path = output or Path(f"{called}.{format}")
         _check_free(path, overwrite)
         law = chosen(controller, task, scenario, trained_seed)
         model = f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}" if plant is None else f"plant {plant}"
         more: dict[str, Any] = {"precision": precision, "name": called, "note": f"{controller}, {model}, scenario {scenario}"}
-        found = exported(law, task.design_plant, **more)
-        seconds = _measured(found) if measure else None
+        written = exported(law, task.design_plant, **more)
+        seconds = _measured(written) if measure else None
         export(law, task.design_plant, path, format=format, **more)
     if as_json:
-        print_json({"file": str(path), "format": format, "name": found.name, **found.facts, "seconds_a_step": seconds})
+        print_json({"file": str(path), "format": format, "name": written.name, **written.facts, "seconds_a_step": seconds})
     else:
-        _show(found, path, seconds)
+        _show(written, path, seconds)
 
 
 def _format(format: str | None, output: Path | None) -> str:

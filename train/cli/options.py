@@ -15,9 +15,9 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from beamenv.blade.presets import PRESETS
 from beamenv.configuration import shown
-from beamenv.scenarios.scenario import SCENARIOS
+from beamenv.scenarios.named import titles
+from beamenv.titles import BLADES
 from train.shared.interruption import status_of
 from train.workers.workers import Workers
 
@@ -27,14 +27,14 @@ RESUMES = "what was finished is kept, and the same command resumes"
 JOBS = 2
 """Processes, if nobody says how many."""
 
-PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
+PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(BLADES)}.")]
 SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
 BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
 PlantOption = Annotated[
     Path | None,
     typer.Option(help="A model of your own in the place of a blade: .npz, .mat or .json, with A, B, C and what is known."),
 ]
-ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
+ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(titles())}, or a TOML or JSON file.")]
 JobsOption = Annotated[
     int | None, typer.Option(min=1, help=f"Processes at work side by side; {JOBS}, or on a cluster as many as it has, if left out.")
 ]
@@ -43,9 +43,12 @@ ClusterOption = Annotated[
     typer.Option(help="HOST:PORT or ray://HOST:PORT of a Ray cluster that runs, or local: Ray here. Of the extra cluster."),
 ]
 ControllerArgument = Annotated[
-    str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
+    str, typer.Argument(help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one.")
 ]
-TrainedSeedOption = Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")]
+TrainedSeedOption = Annotated[
+    int | None,
+    typer.Option(help="Run of an agent that ships, by its training seed; if left out all, or the first where one alone is wanted."),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 

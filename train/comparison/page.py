@@ -64,7 +64,7 @@ def write_comparison_page(
 
 def lead(evaluations: Sequence[Evaluation], best: Evaluation, episode: RecordedEpisode, environment: Mapping[str, Any]) -> Lead:
     """The best controller's J, what moved under which loads, and how this was made."""
-    scenario, count = environment.get("scenario", "default"), len(best.episodes.seeds)
+    scenario, count = environment.get("scenario", "nominal"), len(best.episodes.seeds)
     named = f", those of the scenario {scenario!r}" if isinstance(scenario, str) else ""
     return Lead(
         f"Under {best.name}, {COST} is {COLUMN.text(best.relative_cost)} of what it is without control, the least of all the "

@@ -22,6 +22,10 @@ from beamenv.task import Task
 Array = NDArray[np.float64]
 
 
+IDLE = ("none", "no control")
+"""What no control is called: its id, and the name of its law."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
     """What one blade did at K instants, the reset and the end of every control interval; shorter where it failed."""
@@ -104,15 +108,15 @@ def record_episode(
 ) -> RecordedEpisode:
     """The episode of ``seed`` in the environment with these keyword arguments, without control and under each of the controllers.
 
-    They are called by their keys. One whose own name is that of ``baselines.laws.no_control`` counts as the episode without
-    control, and is not run. ``opens`` is the key of the one that is shown first, None that of the first. Raises ``ValueError``
+    They are called by their keys. One whose own name is in ``IDLE`` counts as the episode without control, and is
+    not run. ``opens`` is the key of the one that is shown first, None that of the first. Raises ``ValueError``
     for a key that there is not.
     """
     env = gym.make(beamenv.ENV_ID, **{"dtype": "float64", **arguments})
     try:
         inner: Any = env.unwrapped
         idle = no_control(inner.plant)
-        others = {name: law for name, law in controllers.items() if name_of(law) != idle.name}
+        others = {name: law for name, law in controllers.items() if name_of(law) not in IDLE}
         place = 1 + list(others).index(checked("opens", opens, Choice(tuple(others)))) if opens is not None else min(1, len(others))
         recordings = [replace(record(law, env, seed), name=name) for name, law in others.items()]
         return RecordedEpisode(inner.task, (record(idle, env, seed), *recordings), place)

@@ -8,9 +8,9 @@ from baselines import Controller
 from beamenv.knowledge import TRUTH
 from beamenv.task import Task, resolve_task
 from train.benchmark.table import BenchmarkTable, Row
-from train.controllers.named import KINDS, named
-from train.controllers.shipped import find_shipped, shipped
-from train.controllers.sources import Trained
+from train.controllers.choice import chosen
+from train.controllers.named import KINDS
+from train.controllers.shipped import shipped_agents
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
 
@@ -33,7 +33,7 @@ def shown_episode(table: BenchmarkTable) -> ShownEpisode | None:
     Without a shipped agent, and of a model of one's own, that of the first scenario; None where nobody can be made again.
     """
     environment = table.configuration.get("environment", {})
-    ships = {} if environment.get("plant") is not None else _ships()
+    ships = {} if environment.get("plant") is not None else shipped_agents()
     gains = [
         (row.estimates["difference_to_lqg"].value, row.scenario) for row in table.rows if row.controller in ships and row.measured
     ]
@@ -55,19 +55,9 @@ def shown_episode(table: BenchmarkTable) -> ShownEpisode | None:
 
 def _made(row: Row, task: Task) -> Controller | None:
     """The controller of a row; None of one that cannot be had from its name, such as a caller's own."""
+    if row.kind not in KINDS and row.controller not in shipped_agents():
+        return None
     try:
-        if row.kind in KINDS:
-            return named(row.controller).build_for(task)
-        agent = _ships().get(row.controller)
-        return None if agent is None else Trained(find_shipped(agent, _home(row)).folder).build(task)
+        return chosen(row.controller, task, row.scenario)
     except ValueError:  # the table's blade is another one than that which agents ship for
         return None
-
-
-def _ships() -> dict[str, str]:
-    """Agents that ship by what the table calls them."""
-    return {f"{each.agent}-{'generalist' if each.scenario == 'generalist' else 'specialist'}": each.agent for each in shipped()}
-
-
-def _home(row: Row) -> str:
-    return "generalist" if row.controller.endswith("-generalist") else row.scenario

@@ -10,7 +10,7 @@ from beamenv.knowledge import TRUTH
 from train.benchmark.listed import GENERALIST
 from train.benchmark.score import by_split
 from train.benchmark.statistics import interquartile_mean
-from train.benchmark.table import BOUND, RIVAL, BenchmarkTable
+from train.benchmark.table import CLAIRVOYANT, RIVAL, BenchmarkTable
 from train.benchmark.targets import best
 from train.figures.heat_map import HeatMap
 
@@ -18,9 +18,10 @@ MOST = 9
 """Controllers that a page's width holds in letters that are easy to read."""
 
 RULE = (
-    f"The picture has all controllers where there are {MOST} at most, and else LQG, the clairvoyant law, the caller's own and, of "
-    "tiers 0 to 2, the best law and the best agent; then the best of the other generalists and laws as far as there is room. The "
-    "better was measured in more scenarios or has the lower interquartile mean of J / J₀ over as many. The tables have all."
+    f"The picture has all controllers where there are {MOST} at most, and else lqg, clairvoyant, the caller's own and, of tiers 0 "
+    "to 2, the best classical controller and the best agent; then the best of the other generalists and classical controllers as "
+    "far as there is room. The better was measured in more scenarios or has the lower interquartile mean of J / J₀ over as many. "
+    "The tables have all."
 )
 """Who is shown, for whoever shows it."""
 
@@ -56,7 +57,7 @@ def shown(table: BenchmarkTable) -> tuple[str, ...]:
     firsts = {(rows[name].tier, rows[name].kind == "learned"): name for name in reversed(told_less)}
     generalists = [name for name in told_less if name.endswith(GENERALIST)]
     laws = [name for name in told_less if rows[name].kind != "learned"]
-    wanted = dict.fromkeys(name for name in [RIVAL, BOUND, *own, *firsts.values(), *generalists, *laws] if name in names)
+    wanted = dict.fromkeys(name for name in [RIVAL, CLAIRVOYANT, *own, *firsts.values(), *generalists, *laws] if name in names)
     kept = list(wanted)[:MOST]
     return tuple(name for name in names if name in kept)
 

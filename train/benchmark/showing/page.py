@@ -13,7 +13,7 @@ from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
 from train.benchmark.showing.section import Section
 from train.benchmark.table import RIVAL, BenchmarkTable, Row
 from train.benchmark.targets import findings
-from train.controllers.shipped import shipped
+from train.controllers.shipped import shipped_agents
 from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
 from train.page.lead import COST, blade_in_words, counted, load_in_words
 from train.shared.curve import drawn_as, read_curve
@@ -79,14 +79,13 @@ def _relative(row: Row) -> Estimate:
 def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
     """How the agents that ship for the nominal blade learned, the first run of each, beside LQG on it; None without any."""
     level = next((row for row in table.rows if (row.scenario, row.controller) == ("nominal", "lqg") and row.measured), None)
-    own = {row.controller.removesuffix("-specialist") for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
-    curves = {}
-    for each in shipped():
-        if each.agent in own and each.scenario == "nominal" and drawn_as(each.agent, each.folder) not in curves:
-            curves[drawn_as(each.agent, each.folder)] = read_curve(each.folder)
+    own = {row.controller for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
+    runs = {name: each.only_in["nominal"] for name, each in shipped_agents().items() if name in own and "nominal" in each.only_in}
+    firsts = {name: next(iter(each.values())).folder for name, each in runs.items()}
+    curves = {drawn_as(name, folder): read_curve(folder) for name, folder in firsts.items()}
     if level is None or not curves:
         return None
-    return LearningCurves(curves, {level.title: level.estimates["relative_cost"].value})
+    return LearningCurves(curves, {level.controller: level.estimates["relative_cost"].value})
 
 
 def page_table(table: BenchmarkTable) -> Table:
