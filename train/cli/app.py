@@ -11,6 +11,7 @@ from train.cli.benchmark import benchmark
 from train.cli.export import export
 from train.cli.frequencies import frequencies
 from train.cli.identify import identify
+from train.cli.names import check_controller, check_names, check_studies
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -77,6 +78,8 @@ def evaluate(
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
     with one_sentence():
+        check_controller(controller)
+        check_names(preset, scenario, blade, plant)
         import gymnasium as gym
 
         import baselines
@@ -119,6 +122,7 @@ def compare(
     An interrupted run resumes from what its folder holds.
     """
     with one_sentence(RESUMES):
+        check_names(preset, scenario, blade, plant)
         from beamenv.configuration import Number, checked
         from train.cli.evaluations import screen_table
         from train.cli.progress import Progressbar
@@ -148,6 +152,7 @@ def explore(
 ) -> None:
     """Serve a page whose sliders redraw a blade's frequencies, mode shapes, damping and step response. Ctrl-C ends it."""
     with one_sentence():
+        check_names(preset, blade=blade)
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
         from train.explore import serve
@@ -172,6 +177,7 @@ def reproduce(
     An interrupted run resumes from what its folder holds.
     """
     with one_sentence(RESUMES):
+        check_studies(names or ())
         from train.cli.reproduce import reproduce as run
 
         status = run(names or [], output, fresh, docs, working(jobs, cluster))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
-from beamenv.configuration.files import ENDINGS
+from beamenv.configuration.files import ENDINGS, content_of
 from train.cli.bars import Bars
 from train.cli.benchmark_options import (
     SEEDS,
@@ -29,6 +29,7 @@ from train.cli.benchmark_options import (
     TrustOption,
 )
 from train.cli.benchmark_table import finite_row, show_entry, show_table
+from train.cli.names import check_controller, check_names, check_scenarios
 from train.cli.options import (
     RESUMES,
     ClusterOption,
@@ -78,6 +79,7 @@ def benchmark(
     left out with its reason, which is no failure; asked for by name, it is refused.
     """
     with one_sentence(RESUMES):
+        check_all(scenario or (), controller or (), (model or ()) if trust else (), submit, plant)
         workers, asked = working(jobs, cluster), Asked(scenario, controller, seeds, runs, model, quick, plant)
         how = {"trusted": trust, "jobs": workers.jobs, "cluster": cluster}
         if submit is not None:
@@ -95,6 +97,20 @@ def benchmark(
     _show(table, None if as_json else home, quick)
     if table.sentences:
         raise typer.Exit(1)
+
+
+def check_all(
+    scenarios: Sequence[str], controllers: Sequence[str], models: Sequence[Path], submit: str | None, plant: Path | None
+) -> None:
+    """``ValueError`` of one sentence for a name that there is not, and for a file that is not there."""
+    check_scenarios(scenarios)
+    for each in controllers:
+        check_controller(each)
+    for path in models:
+        content_of(path, 1)
+    if submit is not None and not submit.lower().endswith(".zip"):
+        check_controller(submit, "submit", ", or a model's .zip file")
+    check_names(plant=plant)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
+from train.cli.names import FORMATS, PRECISIONS, check_controller, check_name, check_names
 from train.cli.options import (
     BladeOption,
     ControllerArgument,
@@ -34,12 +35,12 @@ STEPS, PASSES = 2000, 20
 def export(
     controller: ControllerArgument,
     format: Annotated[
-        str | None, typer.Option("--format", help="c, onnx or mat; what the output ends in if left out, or else c.")
+        str | None, typer.Option("--format", help=f"{', '.join(FORMATS)}; what the output ends in if left out, or else c.")
     ] = None,
     output: Annotated[
         Path | None, typer.Option(help="The file; the controller's name with the format's ending if left out.")
     ] = None,
-    precision: Annotated[str, typer.Option(help="double or single.")] = "double",
+    precision: Annotated[str, typer.Option(help=f"{' or '.join(PRECISIONS)}.")] = "double",
     name: Annotated[str | None, typer.Option(help="Of functions and types; the controller's if left out.")] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
@@ -53,6 +54,11 @@ def export(
 ) -> None:
     """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
     with one_sentence():
+        check_controller(controller)
+        check_names(preset, scenario, blade, plant)
+        check_name("precision", precision, PRECISIONS)
+        if format is not None:
+            check_name("format", format, FORMATS)
         from beamenv.configuration import Refused
         from beamenv.task import resolve_task
         from train.controllers.choice import chosen
@@ -80,7 +86,6 @@ def export(
 
 def _format(format: str | None, output: Path | None) -> str:
     """The one that is asked for, else that of the output's ending, else C."""
-    from train.export import FORMATS
     from train.export.writing import checked_format
 
     ending = "" if output is None else output.suffix.lower().removeprefix(".")

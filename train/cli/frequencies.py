@@ -10,6 +10,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
+from train.cli.names import check_names
 from train.cli.options import (
     BladeOption,
     JsonOption,
@@ -46,6 +47,7 @@ def frequencies(
         _of_model(plant, preset, speed, blade, count, as_json)
         return
     with one_sentence():
+        check_names(preset, blade=blade)
         from beamenv.blade.build import build_beam
         from beamenv.blade.clamp import clamp_note
         from beamenv.blade.files import load_config
@@ -105,6 +107,7 @@ def _frequency(modes: Any, mode: int) -> str:
 def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path | None, count: int, as_json: bool) -> None:
     """What is known of the modes of a model."""
     with one_sentence():
+        check_names(preset, blade=blade, plant=plant)
         from beamenv.plant.poles import swinging
         from beamenv.task import resolve_task
 

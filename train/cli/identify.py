@@ -11,6 +11,7 @@ import typer
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from beamenv.configuration.files import content_of
 from train.cli.bars import fleeting
 from train.cli.options import JsonOption, one_sentence, print_json, print_table, say
 from train.shared.files import check_folder
@@ -48,6 +49,7 @@ def identify(
     The folder gets plant.npz, an ensemble of plants within the spread, report.md, report.json, stabilisation.png and fit.png.
     """
     with one_sentence():
+        content_of(data, 1)
         from baselines.identification.files import read_measurement
         from baselines.identification.identify import identify as run
         from beamenv.configuration import Count, checked

@@ -9,17 +9,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
-from beamenv.blade.presets import PRESETS
 from beamenv.configuration import shown
-from beamenv.scenarios.scenario import SCENARIOS
+from train.cli.names import PRESETS, SCENARIOS, check_names
 from train.shared.interruption import status_of
-from train.workers.workers import Workers
+
+if TYPE_CHECKING:
+    from train.workers.workers import Workers
 
 RESUMES = "what was finished is kept, and the same command resumes"
 """What is said of an interruption where it holds."""
@@ -56,6 +57,7 @@ def overwriting(what: str) -> Any:
 
 def environment_arguments(preset: str, speed: float | None, blade: Path | None, plant: Path | None = None) -> dict[str, Any]:
     """Keyword arguments of the environment that the options stand for."""
+    check_names(preset, blade=blade, plant=plant)
     from beamenv.blade.files import load_config, to_dict
 
     arguments: dict[str, Any] = {"preset": preset}
@@ -70,6 +72,8 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None, 
 
 def working(jobs: int | None, cluster: str | None) -> Workers:
     """Who works, by the options; this process alone where joblib, which starts others, is not installed and nobody asks for any."""
+    from train.workers.workers import Workers
+
     if jobs is None and cluster is None and find_spec("joblib") is not None:
         return Workers(JOBS)
     return Workers(jobs, cluster)

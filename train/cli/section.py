@@ -10,6 +10,8 @@ import numpy as np
 import typer
 from rich.table import Table
 
+from beamenv.configuration import Number, checked
+from train.cli.names import check_names
 from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, print_table, say
 from train.shared.files import check_picture
 
@@ -29,13 +31,13 @@ def section(
 ) -> None:
     """Stiffness, mass and centres of a blade's section, without its patches, about the origin of its coordinates."""
     with one_sentence():
-        from beamenv.blade.files import load_config
-        from beamenv.blade.presets import blade_config
-        from beamenv.configuration import Number, checked
-
+        check_names(preset, blade=blade)
         at = checked("at", at, Number(ge=0.0, le=1.0))
         if picture is not None:
             check_picture(picture)
+        from beamenv.blade.files import load_config
+        from beamenv.blade.presets import blade_config
+
         config = blade_config(preset, load_config(blade) if blade else None)
         beam = config.beam.build(model=config.model)
         size = float(beam.planform.scale(np.array([at * beam.length]))[0])

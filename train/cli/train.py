@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from beamenv.configuration import FileName, Number, checked
+from beamenv.configuration import FileName, Number, Refused, checked
+from beamenv.configuration.files import read_table
+from train.cli.names import GENERALIST, RECIPES, check_device, check_name, check_names, check_scenario
 from train.cli.options import (
     BladeOption,
     ClusterOption,
@@ -75,13 +77,18 @@ def train(
     """
     homes: dict[Path, tuple[str, str, int]] = {}
     with one_sentence(lambda: _resumed_by(context, list(homes))):
+        _check(agent, scenario or [], recipe, start)
+        check_names(preset, blade=blade, plant=plant)
+        if device is not None:
+            check_device(device)
+        workers = working(jobs, cluster)
         recipes = {each: _recipe(each, recipe, device, len(agent)) for each in agent}
         budgets = {each: _budget(minutes, updates, recipes[each].updates) for each in agent}
         environment = environment_arguments(preset, speed, blade, plant)
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
         trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
-        failed = _trained(trainings, names, working(jobs, cluster), resume, overwrite)
+        failed = _trained(trainings, names, workers, resume, overwrite)
     if failed:
         raise typer.Exit(1)
 
@@ -120,11 +127,24 @@ def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> 
     return named
 
 
+def _check(agents: Sequence[str], scenarios: Sequence[str], recipe: Path | None, start: Path | None) -> None:
+    """``ValueError`` of one sentence for a name that there is not, and for a file or folder that is not there."""
+    for each in agents:
+        checked("agent", each, FileName())
+        if recipe is None:
+            check_name("agent", each, RECIPES)
+    for each in scenarios:
+        check_scenario(each, (GENERALIST,))
+    if recipe is not None:
+        read_table(recipe)
+    if start is not None and not start.exists():
+        raise Refused("from", str(start), "the folder of a trained agent")
+
+
 def _recipe(agent: str, own: Path | None, device: str | None, agents: int) -> Recipe:
     """By its name, or of the user's own file."""
     from train.learning.recipe import load_recipe, named_recipe
 
-    checked("agent", agent, FileName())
     if own is not None and agents > 1:
         raise ValueError(f"recipe = {str(own)!r} is of one agent: name one alone.")
     chosen = named_recipe(agent) if own is None else load_recipe(own)

@@ -13,8 +13,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.table import Table
 from rich.text import Text
 
-from beamenv.configuration import Count, FileName, Refused, checked
+from beamenv.configuration import Count, FileName, checked
+from beamenv.configuration.files import read_table
 from train.cli.bars import Bars
+from train.cli.names import GENERALIST, check_names, check_recipe, check_scenario
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -67,13 +69,16 @@ def tune(
     name = recipe if recipe in NAMES else Path(recipe).stem
     home = folder or Path("results/tuning") / f"{name}-{Path(scenario).stem}-{seed}"
     with one_sentence(RESUMES):
+        check_recipe(recipe, "recipe")
+        check_scenario(scenario, (GENERALIST,))
+        check_names(preset, blade=blade, plant=plant)
+        if space is not None:
+            read_table(space)
         from train.learning.recipe import load_recipe, named_recipe
         from train.tuning.space import space_of
         from train.tuning.tuning import Tuning
         from train.tuning.tuning import tune as run
 
-        if recipe not in NAMES and not recipe.endswith((".toml", ".json")):
-            raise Refused("recipe", recipe, f"one of {', '.join(NAMES)}, or a file that ends in .toml or .json")
         chosen = named_recipe(recipe) if recipe in NAMES else load_recipe(Path(recipe))
         chosen = chosen if updates is None else replace(chosen, updates=checked("updates", updates, Count()))
         environment = environment_arguments(preset, speed, blade, plant)

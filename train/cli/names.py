@@ -1,0 +1,119 @@
+"""Names that options take, checked before what they name is imported: a typo is answered at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterable
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from beamenv.configuration import Refused
+from beamenv.configuration.files import ENDINGS, content_of, read_table
+from beamenv.scenarios.named import GROUPS
+from beamenv.scenarios.named import NAMES as IN_FILES
+from train.controllers.near import near
+from train.learning.recipes import NAMES as RECIPES
+from train.reproduce.names import NAMES as STUDIES
+
+PRESETS = (
+    *("thesis", "sound-blade", "thesis-untwisted", "thesis-pretwisted", "chandra-chopra", "aluminium-cantilever", "takacs-beam"),
+    "airfoil-blade",
+)
+"""Of blades."""
+
+SCENARIOS = ("default", "step", "pulse", "deflection", "harmonic", "white", "quiet", *IN_FILES)
+
+GENERALIST = "generalist"
+"""In place of a scenario, where agents are trained: all but those kept for judging."""
+
+DEVICES = ("cpu", "cuda", "mps", "xpu")
+"""Kinds of them that torch has."""
+
+FORMATS = ("c", "onnx", "mat")
+"""Of a controller that is exported."""
+
+PRECISIONS = ("double", "single")
+
+MODELS = (".npz", ".mat", ".json")
+"""Endings of files of plants."""
+
+
+def check_names(
+    preset: str | None = None, scenario: str | Iterable[str] | None = None, blade: Path | None = None, plant: Path | None = None
+) -> None:
+    """``ValueError`` of one sentence for a preset or scenario that there is not, and for a file that cannot be read."""
+    if preset is not None:
+        check_name("preset", preset, PRESETS)
+    for each in [scenario] if isinstance(scenario, str) else scenario or ():
+        check_scenario(each)
+    if blade is not None:
+        read_table(blade)
+    if plant is not None and plant.suffix.lower() in MODELS:
+        content_of(plant, 1)
+
+
+def check_scenario(name: str, others: Collection[str] = ()) -> None:
+    """The same of a scenario's name or file, or one of some other words."""
+    if name.lower().endswith(ENDINGS):
+        read_table(name)
+    else:
+        check_name("scenario", name, [*others, *SCENARIOS], ", or a .toml or .json file")
+
+
+def check_scenarios(names: Iterable[str]) -> None:
+    """The same of those that a benchmark takes, groups of them too."""
+    for each in names:
+        check_scenario(each, tuple(GROUPS))
+
+
+def check_controller(name: str, argument: str = "controller", others: str = "") -> None:
+    """The same of a law, an agent that ships, or the folder or file of a trained one."""
+    if name in laws() or name in _agents_in_a_scenario() or os.path.exists(name):
+        return
+    known = f"one of {', '.join(laws())}, of the agents that ship, {', '.join(agents())}, or the folder of a trained agent{others}"
+    raise Refused(argument, name, known + near(name, [*laws(), *agents()]))
+
+
+def check_recipe(name: str, argument: str) -> None:
+    """The same of a recipe that ships, or a file of one's own."""
+    if name.lower().endswith(ENDINGS):
+        read_table(name)
+    else:
+        check_name(argument, name, RECIPES, ", or a file that ends in .toml or .json")
+
+
+def check_device(name: str) -> None:
+    """The same of a device of torch; whether it is here, torch itself says."""
+    if name.partition(":")[0] not in DEVICES:
+        raise Refused("device", name, "cpu, or a device that torch has here, such as cuda")
+
+
+def check_studies(names: Iterable[str]) -> None:
+    """The same of the thesis' tables and figures."""
+    for each in names:
+        check_name("name", each, STUDIES)
+
+
+def check_name(argument: str, name: str, known: Collection[str], others: str = "") -> None:
+    """The same of one of some names."""
+    if name not in known:
+        raise Refused(argument, name, f"one of {', '.join(known)}{others}{near(name, known)}")
+
+
+@cache
+def laws() -> tuple[str, ...]:
+    """The controllers that have a file each."""
+    own = (each.name for each in files("train.controllers").joinpath("named").iterdir())
+    return tuple(sorted(name[:-3].replace("_", "-") for name in own if name.endswith(".py") and not name.startswith("_")))
+
+
+@cache
+def agents() -> tuple[str, ...]:
+    """The agents that ship."""
+    trained = files("train.controllers").joinpath("trained")
+    return tuple(sorted(each.name for each in trained.iterdir() if each.is_dir()))
+
+
+def _agents_in_a_scenario() -> Iterable[str]:
+    return (name for each in agents() for name in (each, f"{each}-{GENERALIST}", f"{each}-specialist"))
