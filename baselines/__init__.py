@@ -37,8 +37,8 @@ from baselines.laws.positive_position_feedback import positive_position_feedback
 from baselines.laws.reference_lqg import full_order_lqg, reference_lqg
 from baselines.laws.robust_lqg import robust_lqg
 from baselines.laws.rotor_lqg import RotorHarmonics, rotor_lqg
-from baselines.laws.run_up_lqg import RunUpLQG, run_up_lqg
 from baselines.laws.scheduled_lqg import ScheduledLQG, scheduled_lqg, scheduled_lqg_for
+from baselines.laws.spin_up_lqg import SpinUpLQG, spin_up_lqg
 from baselines.laws.velocity_feedback import velocity_feedback
 
 __all__ = [
@@ -63,7 +63,7 @@ __all__ = [
     "PersistentLoad",
     "PredictiveController",
     "RotorHarmonics",
-    "RunUpLQG",
+    "SpinUpLQG",
     "ScheduledLQG",
     "StabilityMargins",
     "adaptive_neural",
@@ -90,7 +90,7 @@ __all__ = [
     "robust_lqg",
     "roll_out",
     "rotor_lqg",
-    "run_up_lqg",
+    "spin_up_lqg",
     "scheduled_lqg",
     "scheduled_lqg_for",
     "small_gain",

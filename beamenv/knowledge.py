@@ -6,10 +6,8 @@ beside each reading, such as the rotor's speed. 3, the truth: ``Truth``, and eac
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -26,11 +24,7 @@ from beamenv.simulation.blades import Blades
 from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.banks import build_bank
 from beamenv.simulation.signals.faults import DRAWS, Faults, Onsets, draw_faults, draw_onsets, fault_draws
-
-TIERS: Mapping[int, str] = MappingProxyType(
-    {0: "the nominal plant", 1: "the scenario's distribution", 2: "further measurements", 3: "the episode's truth"}
-)
-"""What a controller of each tier knows besides what lower ones do."""
+from beamenv.titles import TIERS as TIERS
 
 TRUTH = 3
 """The tier that is no rival but a reference."""

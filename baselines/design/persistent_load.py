@@ -15,7 +15,7 @@ from beamenv.configuration import configuration
 class PersistentLoad:
     """Line loads in lag and flap that last: independent first-order Gauss–Markov processes.
 
-    The rule for both numbers: root mean square and length of what may come. Of the environment's default load cases a quarter
+    The rule for both numbers: root mean square and length of what may come. Of the nominal scenario's load cases a quarter
     are steps of 30 N/m in any direction, 10 N/m root mean square over all episodes, and they stay for most of 0.5 s. Neither
     needs care: on the default blade from 5 to 20 N/m and from 0.2 to 0.5 s J moves by less than 2 %.
     """

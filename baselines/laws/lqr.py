@@ -1,4 +1,4 @@
-"""LQR: the sampled-data optimal regulator on the true state, an upper bound that no real blade can reach."""
+"""LQR: the sampled-data optimal regulator on the full state, which no sensor of a real blade offers."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def lqr(
 ) -> LinearController:
     """Feedback u = −K x with the gain that is least in the environment's own cost, integrated exactly between samples.
 
-    An upper bound on performance: it ``observes`` the true state (n,), which ``evaluate`` hands it. With white loads and no
-    saturation nothing that holds its voltages over the control interval costs less. Under a load that lasts it is none: it takes
+    It ``observes`` the true state (n,), which ``evaluate`` hands it: a reference, no rival. It is a bound with white loads and no
+    saturation: nothing that holds its voltages over the control interval costs less. Under a load that lasts it is none: it takes
     the static deflection for motion. ``persistent_load`` makes it one again: the load of each past interval is worked out exactly
     from two true states, filtered (it is the lasting load and the white one together; without white loads it is known as it is),
     and answered. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``; in them it is the optimum then. ``verified`` on
@@ -41,7 +41,7 @@ def lqr(
         return _with_load(plant, held, load, verify)
     with solvable(plant):
         regulated = sampled_regulator(held.A, held.B, held.state_weight, held.input_weight, held.cross_weight)
-    return verified(static_law(plant, "LQR (true state)", -regulated.gain, observes="state"), plant, regulated, verify=verify)
+    return verified(static_law(plant, "LQR (full state)", -regulated.gain, observes="state"), plant, regulated, verify=verify)
 
 
 def _with_load(plant: Plant, held: SampledPlant, load: PersistentLoad, verify: bool) -> LinearController:
@@ -56,7 +56,7 @@ def _with_load(plant: Plant, held: SampledPlant, load: PersistentLoad, verify: b
     felt: Array = decay @ L @ np.linalg.pinv(held.disturbance_input)  # (k, n): from x − (A x + B u of the interval before)
     estimate = np.hstack([-felt, decay @ (np.eye(k) - L)])
     law = LinearController(
-        name="LQR with load estimate (true state)",
+        name="LQR with load estimate (full state)",
         instruments=Instruments.of(plant, "state"),
         transition=np.vstack([np.zeros((n, n + k)), estimate]),
         measurement_input=np.vstack([held.A, felt]),

@@ -52,7 +52,7 @@ class Plan:
         if bank.groups > 1:
             raise ValueError(f"truth has a bank of {bank.groups} blades, but must have that of a single one.")
         if bank.walk is not None:
-            raise ValueError("truth has plants that wander within an episode, but allowed are one an episode, and a run-up's.")
+            raise ValueError("truth has plants that wander within an episode, but allowed are one an episode, and a spin-up's.")
         if not scenario.sensor_noise:
             plant = replace(plant, sensor_noise=np.zeros_like(plant.sensor_noise))
         models = {speed: _model(known, speed) for speed in dict.fromkeys(bank.speeds.tolist())}

@@ -59,9 +59,8 @@ PRESETS: Mapping[str, BladeConfig] = MappingProxyType(
         "airfoil-blade": AIRFOIL_BLADE,
     }
 )
-"""thesis: θ = 30°, pretwist 30°, 200 rad/s, four MFC actuators over four sensors; thesis-untwisted: Figs. 5.10–5.12;
-thesis-pretwisted: with 30° presetting too, Figs. 5.2 and 5.7; chandra-chopra: the CAS box of Table 3.2 at 1000 rev/min with
-7 mm wide MFC (M-8507-P1); aluminium-cantilever, takacs-beam and airfoil-blade: see ``lab_presets``.
+"""``beamenv.titles.BLADES`` says what each is; those that lie on benches are in ``lab_presets``. The MFC of chandra-chopra is the
+M-8507-P1.
 
 No real blade could turn as the thesis' does: at 200 rad/s its tip moves at 445 m/s, faster than sound, and its steady rotation
 alone strains its outer face by 2.8 %, stretches it by 32 mm and unwinds half of its pretwist. Its patches are rated for 0.45 %, and

@@ -54,7 +54,7 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
     """``num_envs`` blades, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
 
     In the scenarios with several plants (`off-speed`, `off-model`) every episode draws its own from one bank, in `spin-up` each
-    blade is at its own time of the run-up, and `delay` and `failure` draw faults blade by blade; ``rotor_speed`` (N,) and
+    blade is at its own time of the spin-up, and `delay` and `failure` draw faults blade by blade; ``rotor_speed`` (N,) and
     ``design_state`` (N, d) are those of each blade.
 
     ```python

@@ -89,7 +89,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
     `Box(-1, 1, (4,), float32)`: one reading of each sensor, from root to tip, in units of its full scale, with noise of 2 %
     of full scale, clipped as a data acquisition clips. Full scale is twice the largest current that a sudden 30 N/m brings
-    about, so that clipping is rare (one reading in 10⁵ in the default scenario). With `physical_units=True` it is in amperes.
+    about, so that clipping is rare (one reading in 10⁵ in the nominal scenario). With `physical_units=True` it is in amperes.
 
     | Num | Observation                | Min | Max | Unit       |
     |-----|----------------------------|-----|-----|------------|
@@ -112,7 +112,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     ## Starting State
 
     At rest, or released from a static deflection. Each episode has one load case, drawn from the `scenario`, a uniform line
-    load held constant over each control interval. In the default scenario it is, with equal chances,
+    load held constant over each control interval. In the nominal scenario it is, with equal chances,
 
     - a **step** of 15 … 45 N/m that sets in at 0 … 50 ms and stays,
     - a rectangular **pulse** of 15 … 45 N/m that sets in at 0 … 50 ms and lasts 5 … 50 ms,
@@ -164,7 +164,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     ## Episode End
 
     1. Termination: the blade fails, that is its spanwise strain exceeds what its patches bear, 0.45 % of MFC and less of ceramics,
-       or its state is no longer finite. The default scenario stays tens of times below. Which strain, says
+       or its state is no longer finite. The nominal scenario stays tens of times below. Which strain, says
        `blade={"strain_limit": ...}`: that of `"vibration"` alone, or the `"total"`, with that of steady rotation, as on the preset
        `sound-blade`. A blade that steady rotation alone would fail, at any speed that the scenario takes it to, is refused.
     2. Truncation: `duration` is over.
@@ -222,7 +222,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     | `cost_increment`   | J s  | the cost of this step; the reward is minus it over *s*     |
 
     `reset` tells besides what steady rotation does to the blade of this episode (all 0 with `model="thesis"`, whose world has
-    no steady state; in a run-up that of the first speed):
+    no steady state; in a spin-up that of the first speed):
 
     | Key                | Unit | What                                                                     |
     |--------------------|------|--------------------------------------------------------------------------|

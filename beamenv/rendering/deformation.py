@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from beamenv.blade.changed import changed_blade
 from beamenv.simulation.plants.banks import varied
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
-from beamenv.simulation.plants.run_ups import run_up_of
+from beamenv.simulation.plants.spin_up import Cycloid, SpinUp
+from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.task import Task
 
 Array = NDArray[np.float64]
@@ -22,9 +22,9 @@ class Deformation:
         self._index, self._operator = -1, np.empty(0)
         plants = task.scenario.plants
         self._varied = varied(plants, task.config) if plants.varies else None
-        self._run_up: RunUp | None = None
+        self._spin_up: SpinUp | None = None
         if plants.spin_up is not None:
-            self._run_up = run_up_of(task.blade, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
+            self._spin_up = spin_up_of(task.blade, Cycloid(*plants.spin_up, task.steps * task.config.control_interval))
 
     def displacement(self, state: Array, plant: int) -> Array:
         """(3, k): lag, flap (m) and twist (rad) of a state (n,) of the plant at this place of the bank."""
@@ -35,25 +35,25 @@ class Deformation:
 
     def _operator_of(self, plant: int) -> Array:
         """(3, k, n)."""
-        if self._run_up is not None:
-            return self._running_operator(self._run_up, plant)
+        if self._spin_up is not None:
+            return self._running_operator(self._spin_up, plant)
         blade = self._task.blade
         if self._varied is not None:
             blade = blade.with_fixed_order()
             blade = blade.changed(changed_blade(blade.config, *self._varied[plant].tolist()))
         return blade.displacement_operator(self._stations)
 
-    def _running_operator(self, run_up: RunUp, plant: int) -> Array:
+    def _running_operator(self, spin_up: SpinUp, plant: int) -> Array:
         """In the energy coordinates at the begin of interval ``plant``: x = [Uᵀη; η̇] with U Uᵀ = K.
 
         The blade has come there with the shapes of the interval before, those of its middle.
         """
         blade, interval = self._task.blade, self._task.config.control_interval
         time, before = np.asarray(plant * interval), np.asarray(max(plant - 0.5, 0.5) * interval)
-        root = np.linalg.cholesky(run_up.stiffness(time))
+        root = np.linalg.cholesky(spin_up.stiffness(time))
         operator = blade.displacement_operator(self._stations).copy()
         rows = blade.beam.displacements(self._stations)
         r = len(root)
         lag_flap_twist = np.stack([rows["u"], rows["v"], rows["phi"]])
-        operator[..., :r] = lag_flap_twist @ run_up.shapes(before) @ np.linalg.inv(root).T
+        operator[..., :r] = lag_flap_twist @ spin_up.shapes(before) @ np.linalg.inv(root).T
         return operator

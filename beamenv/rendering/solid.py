@@ -20,7 +20,7 @@ STATIONS = 49
 """Evenly spaced; the edges of the patches are stations too."""
 SHOWN_DEFLECTION = 0.075
 """Share of the span that the largest static tip deflection under the reference load is drawn as, at most: a step of the
-greatest load of the default scenario, with its overshoot, then reaches three times as far."""
+greatest load of the nominal scenario, with its overshoot, then reaches three times as far."""
 
 
 def reference_deflection(plant: Plant) -> float:

@@ -19,7 +19,7 @@ from beamenv.configuration.numbers import TURNED
 from beamenv.plant.named import ENDING
 from beamenv.scenarios import named
 from beamenv.scenarios.load_cases import CASES
-from beamenv.scenarios.named import NAMES
+from beamenv.scenarios.named import FORMER, NAMES, NOMINAL
 from beamenv.scenarios.own_loads import Load
 from beamenv.scenarios.series import ENDING as SERIES
 from beamenv.scenarios.tables import STRONGEST, Acquisition, Drive, Failures, Pair, PlantVariation, Rotor
@@ -109,31 +109,30 @@ def _with_lists(value: Any) -> Any:
 
 _ALONE = dict.fromkeys(CASES[:-1], 0.0)
 _SCENARIOS: dict[str, Scenario] = {
-    "default": Scenario(),
+    NOMINAL: Scenario(),
     **{case: Scenario(**{**_ALONE, case: 1.0}) for case in CASES[:-1]},  # type: ignore[arg-type]
     "white": Scenario(**_ALONE),  # type: ignore[arg-type]
     "quiet": Scenario(**_ALONE, white_load=False, sensor_noise=False),  # type: ignore[arg-type]
 }
 SCENARIOS: Mapping[str, Scenario] = MappingProxyType(_SCENARIOS)
-"""Named scenarios: all four load cases in turn; each one alone; white load and sensor noise only (what an LQG is
-designed for); nothing at all; and those that have a file each."""
+"""Named scenarios: ``beamenv.scenarios.named.titles`` says what each is. "nominal" is that of every default."""
 
 
 def scenario(given: Scenario | Mapping[str, Any] | str | os.PathLike[str] | None = None) -> Scenario:
-    """The scenario meant by a name in ``SCENARIOS``, a TOML or JSON file, a dictionary of fields or itself; None: "default".
+    """The scenario meant by a name in ``SCENARIOS``, a TOML or JSON file, a dictionary of fields or itself; None: "nominal".
 
     A dictionary or file may name the scenario it departs from under the key "preset". Raises ValueError for an unknown name
     or field and for a value out of range.
     """
     if given is None:
-        return SCENARIOS["default"]
+        return SCENARIOS[NOMINAL]
     if isinstance(given, os.PathLike) or (isinstance(given, str) and given.lower().endswith(ENDINGS)):
         return load_scenario(given)
     if isinstance(given, (str, Scenario)):
         return _named(given) if isinstance(given, str) else given
     if not isinstance(given, Mapping):
         raise Refused("scenario", given, "a name, a .toml or .json file, a dictionary of fields or a Scenario")
-    base = _named(given[PRESET], f"scenario.{PRESET}") if PRESET in given else SCENARIOS["default"]
+    base = _named(given[PRESET], f"scenario.{PRESET}") if PRESET in given else SCENARIOS[NOMINAL]
     return read(base, {name: value for name, value in given.items() if name != PRESET})
 
 
@@ -176,6 +175,7 @@ def scenario_schema() -> dict[str, Any]:
 
 
 def _named(name: Any, path: str = "scenario") -> Scenario:
+    name = FORMER.get(name, name) if isinstance(name, str) else name
     if not isinstance(name, str) or name not in SCENARIOS:
         others = ", a .toml or .json file, or a dictionary of fields" if path == "scenario" else ""
         raise Refused(path, name, f"one of {', '.join(SCENARIOS)}{others}")

@@ -49,7 +49,7 @@ class PlantVariation:
     design_modes: Annotated[int | None, Count()] = None
     """Modes of the plant that controllers are designed for; None: the configured number, 11 unless said otherwise."""
     spin_up: Annotated[Pair | None, Range(0.0, 1e6, unit="rad/s", falls=True)] = None
-    """rad/s: Ω(t) runs up or down from the first to the second over the episode (``spin_up`` of the simulation); nothing else
+    """rad/s: Ω(t) spins up or down from the first to the second over the episode (``spin_up`` of the simulation); nothing else
     varies then."""
     speed_wander: Annotated[float, Number(ge=0.0, le=0.1)] = 0.0
     """σ over the configured speed: Ω(t) wanders about it within the episode (``Wander`` of the simulation), and no tachometer
@@ -88,11 +88,11 @@ class PlantVariation:
         if self.walks and self.bank < 2:
             raise Refused("bank", self.bank, "at least 2 where the blade changes within an episode")
         if self.spin_up is not None and not max(self.spin_up):
-            raise Refused("spin_up", self.spin_up, "two speeds of which one is above 0 rad/s: from 0 to 0 no rotor runs up")
+            raise Refused("spin_up", self.spin_up, "two speeds of which one is above 0 rad/s: from 0 to 0 no rotor spins up")
         if self.spin_up is not None and self.varies:
             raise Refused("spin_up", self.spin_up, "None where other plants are drawn")
         if self.truth is not None and (self.varies or self.spin_up is not None):
-            raise Refused("truth", self.truth, "None where other plants are drawn or the rotor runs up")
+            raise Refused("truth", self.truth, "None where other plants are drawn or the rotor spins up")
 
     def _check_heat(self) -> None:
         if self.temperature is None:

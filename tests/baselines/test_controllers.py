@@ -30,8 +30,8 @@ from beamenv.plant.plant import sample
 LAWS = {
     "no control": no_control,
     "velocity feedback": velocity_feedback,
-    "LQR (true state)": lqr,
-    "LQR with load estimate (true state)": lambda plant: lqr(plant, persistent_load=PersistentLoad()),
+    "LQR (full state)": lqr,
+    "LQR with load estimate (full state)": lambda plant: lqr(plant, persistent_load=PersistentLoad()),
     "LQG": lqg,
     "LQG (thesis)": lambda plant: lqg(plant, "continuous"),
     "LQG with load estimate": lambda plant: lqg(plant, persistent_load=PersistentLoad()),

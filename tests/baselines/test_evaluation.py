@@ -177,8 +177,8 @@ def test_knowing_of_loads_that_last_pays_on_the_default_load_cases():
         costs[law.name], reference = result.metrics.cost, result.reference
     for less, more in (
         ("LQG with load estimate", "LQG"),
-        ("LQR with load estimate (true state)", "LQR (true state)"),
-        ("LQR with load estimate (true state)", "LQG with load estimate"),
+        ("LQR with load estimate (full state)", "LQR (full state)"),
+        ("LQR with load estimate (full state)", "LQG with load estimate"),
     ):
         saved = costs[more] - costs[less]
         assert saved.mean() > 3.0 * saved.std(ddof=1) / np.sqrt(len(saved)), (less, more)

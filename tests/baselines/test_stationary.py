@@ -63,7 +63,7 @@ def test_lqg_costs_what_lqr_costs_and_what_estimation_adds(small_plant):
 def test_controllers_rank_as_theory_says(small_plant):
     plant = small_plant()
     cost = {law.name: stationary_cost(plant, law) for law in (no_control(plant), velocity_feedback(plant), lqr(plant), lqg(plant))}
-    assert cost["LQR (true state)"] < cost["LQG"] < cost["velocity feedback"] < cost["no control"]
+    assert cost["LQR (full state)"] < cost["LQG"] < cost["velocity feedback"] < cost["no control"]
 
 
 def test_thesis_design_nears_the_sampled_optimum_as_the_interval_shrinks(small_plant):

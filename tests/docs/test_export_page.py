@@ -18,7 +18,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "export.md").read_text(encoding="ut
 def names_in(table):
     """The names in the first column."""
     rows = re.findall(r"^\| (`.*?) \|", table, flags=re.MULTILINE)
-    return {name for row in rows for name in re.findall(r"`([a-z-]+)`", row)} - {"default", "failure", "hysteresis"}
+    return {name for row in rows for name in re.findall(r"`([a-z-]+)`", row)} - {"nominal", "failure", "hysteresis"}
 
 
 def test_page_says_of_every_controller_whether_it_is_written():

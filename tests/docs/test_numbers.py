@@ -33,7 +33,7 @@ def plants():
 
 
 ELEVEN = {
-    "LQR (true state)": lambda design, full: lqr(design),
+    "LQR (full state)": lambda design, full: lqr(design),
     "LQG": lambda design, full: lqg(design),
     "LQG (thesis)": lambda design, full: lqg(design, "continuous"),
     "LQG with load estimate": lambda design, full: lqg(design, persistent_load=PersistentLoad()),

@@ -22,7 +22,7 @@ WRONG = [
     ({"blade": {"patches": {"actuators": (0.0, 0.01)}}}, "overlap"),
     ({"blade": {"patches": {"sensors": (2.0,)}}}, "sensors"),
     ({"design": "wing"}, "'wing'"),
-    ({"scenario": "storm"}, "scenario is 'storm', but must be one of default"),
+    ({"scenario": "storm"}, "scenario is 'storm', but must be one of nominal"),
     ({"duration": 0.0}, "duration is 0.0, but must be a number above 0.00025 and at most 500000 .s."),
     ({"duration": -1.0}, "duration is -1.0"),
     ({"duration": float("nan")}, "duration is nan"),

@@ -21,7 +21,7 @@ from beamenv.envs.torch_graph import StaticStep, leaves  # noqa: E402
 COUNT = 5
 SMALL = {"modes": 4, "truth_modes": 4, "beam": {"terms": 8}}
 SCENARIOS = {
-    "default": "default",
+    "nominal": "nominal",
     "brittle": {"magnitude": [100.0, 8000.0], "onset": [0.0, 0.005]},
     "failure on the way": {"preset": "mid-failure", "failures": {"onset": [0.0, 0.01]}},
     "hysteresis": "hysteresis",
@@ -29,7 +29,7 @@ SCENARIOS = {
     "delay": {"drive": {"delay": [0, 3]}},
     "drawn plants": {"plants": {"speed_ratio": [0.8, 1.2], "bank": 3}},
     "wandering speed": {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 4}},
-    "run-up": {"plants": {"spin_up": [100.0, 110.0]}},
+    "spin-up": {"plants": {"spin_up": [100.0, 110.0]}},
 }
 WAITS = {"aten::_local_scalar_dense", "aten::nonzero", "aten::equal"}
 """What a device must be waited for."""
@@ -94,7 +94,7 @@ def test_a_recorded_step_played_again_is_the_next_step(name, mode):
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning:torch.*")
 @pytest.mark.parametrize(
-    ("name", "mode"), [("default", "NextStep"), ("failure on the way", "Disabled"), ("wandering speed", "SameStep")]
+    ("name", "mode"), [("nominal", "NextStep"), ("failure on the way", "Disabled"), ("wandering speed", "SameStep")]
 )
 def test_a_compiled_step_is_the_plain_one(name, mode):
     made = {"scenario": SCENARIOS[name], "duration": 0.01, "blade": SMALL, "autoreset_mode": mode, "dtype": "float64"}

@@ -69,8 +69,8 @@ def tape(seeds, instants, shape=None):
     """(instants, blades, 2 + p) of what seeded disturbances give."""
     generators = [np.random.default_rng(seed) for seed in seeds]
     shape = (1, len(seeds)) if shape is None else shape
-    seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), Arrangement(shape))
-    cases = draw_load_cases(SCENARIOS["default"], PLANT, generators, len(seeds))
+    seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["nominal"]), Arrangement(shape))
+    cases = draw_load_cases(SCENARIOS["nominal"], PLANT, generators, len(seeds))
     noise = [seeded.begin(SomeRows(np.arange(len(seeds)), ()), cases, generators)]
     loads = []
     for _ in range(instants):
@@ -102,14 +102,14 @@ def test_a_blade_that_begins_again_meets_what_it_would_meet_alone(restart, rest)
     def second_episode(seeds, row):
         generators = [np.random.default_rng(seed) for seed in seeds]
         shape = (1, len(seeds))
-        seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["default"]), Arrangement(shape))
-        cases = draw_load_cases(SCENARIOS["default"], PLANT, generators, len(seeds))
+        seeded = SeededDisturbances(noise_factor(PLANT, SCENARIOS["nominal"]), Arrangement(shape))
+        cases = draw_load_cases(SCENARIOS["nominal"], PLANT, generators, len(seeds))
         seeded.begin(SomeRows(np.arange(len(seeds)), ()), cases, generators)
         for _ in range(restart):
             seeded.next(generators)
         for _ in range(rest):
             seeded.next(generators, np.array([row]))
-        again = draw_load_cases(SCENARIOS["default"], PLANT, [generators[row]], 1)
+        again = draw_load_cases(SCENARIOS["nominal"], PLANT, [generators[row]], 1)
         met = [seeded.begin(SomeRows(np.array([row]), ()), again, generators)[0].copy()]
         for _ in range(BLOCK + 3):
             out = np.empty((*shape, 2))

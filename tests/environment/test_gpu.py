@@ -65,7 +65,7 @@ def test_a_recorded_step_is_the_plain_one(name, recording):
     assert torch.equal(recorded.step(actions)[0], first)
 
 
-@pytest.mark.parametrize("name", ["default", "hysteresis", "wandering speed"])
+@pytest.mark.parametrize("name", ["nominal", "hysteresis", "wandering speed"])
 def test_a_compiled_step_of_32_bits_is_the_plain_one(name):
     plain, compiled = (batch(scenario=SCENARIOS[name], compiled=which) for which in (False, True))
     for envs in (plain, compiled):

@@ -16,7 +16,7 @@ SIZES = (3, 3, 2, 70)
 POSITIONS = ((0.1, 0.4, 0.7, 1.0), (0.1, 0.4, 0.8, 1.0), (0.2, 0.4, 0.7, 1.1), (0.2, 0.5, 0.7, 1.1))
 STARTS = np.cumsum((0, *SIZES))
 SCENARIOS = (
-    "default",
+    "nominal",
     "rotor",
     {"preset": "off-speed", "plants": {"bank": 3}},
     "spin-up",

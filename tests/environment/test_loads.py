@@ -24,7 +24,7 @@ def drawn(chosen, count=1, seed=0):
 
 
 def one(**load):
-    return draw_load_cases(with_load(SCENARIOS["default"], load), PLANT, np.random.default_rng(0), 1)
+    return draw_load_cases(with_load(SCENARIOS["nominal"], load), PLANT, np.random.default_rng(0), 1)
 
 
 def test_a_step_sets_in_and_stays():
@@ -68,7 +68,7 @@ def test_no_load_case_is_no_load():
 
 
 def test_blades_at_different_instants_are_evaluated_together():
-    cases = drawn("default", count=50)
+    cases = drawn("nominal", count=50)
     steps = np.arange(50) * 7
     together = cases.at(steps)
     alone = [cases.at(int(step))[row] for row, step in enumerate(steps)]
@@ -78,13 +78,13 @@ def test_blades_at_different_instants_are_evaluated_together():
 
 
 def test_load_cases_are_frozen():
-    cases = drawn("default", count=3)
+    cases = drawn("nominal", count=3)
     with pytest.raises(ValueError, match="read-only"):
         cases.amplitude[0] = 1.0
 
 
 def test_some_blades_get_other_load_cases():
-    cases, others = drawn("default", count=6, seed=1), drawn("default", count=2, seed=2)
+    cases, others = drawn("nominal", count=6, seed=1), drawn("nominal", count=2, seed=2)
     exchanged = cases.replace(SomeRows(np.array([1, 4]), ()), others)
     steps = np.arange(300)[:, None]
     np.testing.assert_array_equal(exchanged.at(steps)[:, [1, 4]], others.at(steps))
@@ -95,7 +95,7 @@ def test_some_blades_get_other_load_cases():
 
 
 def test_default_scenario_draws_the_four_cases_equally_often():
-    counts = np.bincount(drawn("default", count=40_000).case, minlength=5) / 40_000
+    counts = np.bincount(drawn("nominal", count=40_000).case, minlength=5) / 40_000
     np.testing.assert_allclose(counts, [0.25, 0.25, 0.25, 0.25, 0.0], atol=0.01)
 
 
@@ -166,9 +166,9 @@ def test_loads_keep_within_the_ranges_of_their_scenario(chosen, seed):
 
 @given(st.lists(st.integers(0, 2**32), min_size=1, max_size=8))
 def test_a_blade_with_its_own_generator_draws_the_same_in_any_company(seeds):
-    together = draw_load_cases(SCENARIOS["default"], PLANT, [np.random.default_rng(seed) for seed in seeds], len(seeds))
+    together = draw_load_cases(SCENARIOS["nominal"], PLANT, [np.random.default_rng(seed) for seed in seeds], len(seeds))
     for row, seed in enumerate(seeds):
-        alone = draw_load_cases(SCENARIOS["default"], PLANT, [np.random.default_rng(seed)], 1)
+        alone = draw_load_cases(SCENARIOS["nominal"], PLANT, [np.random.default_rng(seed)], 1)
         steps = np.arange(200)[:, None]
         np.testing.assert_array_equal(together.rows(np.array([row])).at(steps), alone.at(steps))
         np.testing.assert_array_equal(together.deflection[row], alone.deflection[0])
@@ -185,7 +185,7 @@ def test_a_fixed_magnitude_leaves_the_other_draws_as_they_were():
 @pytest.mark.parametrize(
     ("given_scenario", "sentence"),
     [
-        ("storm", "scenario is 'storm', but must be one of default, step"),
+        ("storm", "scenario is 'storm', but must be one of nominal, step"),
         (3, "scenario is 3, but must be a name, .* a dictionary of fields or a Scenario"),
         ({"preset": "storm"}, "scenario.preset is 'storm'"),
         ({"gust": 1.0}, "scenario has no field 'gust'"),

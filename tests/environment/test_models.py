@@ -91,7 +91,7 @@ def test_a_table_of_a_plant_is_the_plant(which, request):
 
 
 @pytest.mark.parametrize("which", ["plant", "uncommon"])
-@pytest.mark.parametrize("scenario", ["default", "failure"])
+@pytest.mark.parametrize("scenario", ["nominal", "failure"])
 def test_a_blade_of_a_batch_meets_what_it_meets_alone(which, scenario, request):
     arguments = {"plant": request.getfixturevalue(which), "scenario": scenario, "dtype": "float64"}
     envs, env = gym.make_vec(beamenv.ENV_ID, num_envs=3, **arguments), gym.make(beamenv.ENV_ID, **arguments)
@@ -260,7 +260,7 @@ def test_its_pictures_are_time_histories(plant, uncommon):
 
 @pytest.mark.parametrize("agent", ["gradient", "ppo"])
 def test_agents_train_on_it_and_are_its_own(agent, uncommon, tmp_path):
-    job = Job(agent, named_recipe(agent), "default", 0, Budget(updates=1), {"plant": plant_table(uncommon), "duration": 0.5})
+    job = Job(agent, named_recipe(agent), "nominal", 0, Budget(updates=1), {"plant": plant_table(uncommon), "duration": 0.5})
     places = run(job, tmp_path / agent, lambda progress: None)
     about = json.loads((places[0] / "agent.json").read_text())
     other = replace(uncommon, B=1.1 * uncommon.B)

@@ -8,7 +8,7 @@ from beamenv.simulation.mixed_blades import MixedBlades
 from beamenv.task import resolve_task
 
 SCENARIOS = [
-    "default",
+    "nominal",
     "delay",
     "failure",
     {"preset": "mid-failure", "failures": {"onset": [0.0, 0.05]}},
@@ -19,7 +19,15 @@ SCENARIOS = [
     {"plants": {"speed_ratio": [0.7, 1.3], "bank": 3}},
     {"plants": {"speed_wander": 0.05, "wander_frequency": 20.0, "bank": 8}},
 ]
-IDS = [*SCENARIOS[:3], "failure on the way", *SCENARIOS[4:6], "dropout and turbulence", "run-up", "drawn plants", "wandering speed"]
+IDS = [
+    *SCENARIOS[:3],
+    "failure on the way",
+    *SCENARIOS[4:6],
+    "dropout and turbulence",
+    "spin-up",
+    "drawn plants",
+    "wandering speed",
+]
 
 
 def batch_of(scenario, count):
@@ -93,4 +101,4 @@ def test_a_batch_of_several_plants_goes_on_too():
 
 def test_before_the_first_episode_there_is_no_state():
     with pytest.raises(ValueError, match="call reset first"):
-        batch_of("default", 2).state_dict()
+        batch_of("nominal", 2).state_dict()

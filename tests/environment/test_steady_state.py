@@ -14,7 +14,7 @@ from beamenv.patches.material import MFC_STRAIN
 from beamenv.scenarios.named import NAMES
 from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.plants.banks import build_bank
-from beamenv.simulation.plants.run_up import Cycloid
+from beamenv.simulation.plants.spin_up import Cycloid
 from beamenv.simulation.strain_limit import safe_energy
 from beamenv.structure.base_motion import base_loads
 from beamenv.structure.steady_deformation import steady_deformation
@@ -123,7 +123,7 @@ def test_a_blade_that_fails_as_it_turns_is_refused(make):
         make(blade={"strain_limit": "total"})
 
 
-def test_so_is_one_that_fails_at_a_speed_it_may_be_drawn_with_or_run_up_to():
+def test_so_is_one_that_fails_at_a_speed_it_may_be_drawn_with_or_spin_up_to():
     drawn = {"plants": {"speed_ratio": [0.5, 4.5], "bank": 8}}
     with pytest.raises(ValueError, match=r"^blade.strain_limit is 'total', but .* rad/s alone"):
         RotatingBeamEnv(preset="sound-blade", scenario=drawn)
@@ -136,7 +136,7 @@ def test_the_thesis_model_is_refused_total_strain():
         beamenv.blade_config("thesis", {"model": "thesis", "strain_limit": "total"})
 
 
-def test_a_run_up_strains_the_blade_by_each_speed_s_steady_state_and_by_euler_s_force():
+def test_a_spin_up_strains_the_blade_by_each_speed_s_steady_state_and_by_euler_s_force():
     """Against the static deflection of the full model under Euler's force, where the speed rises most and where it does not."""
     blade = Blade(beamenv.PRESETS["sound-blade"])
     course = Cycloid(100.0, 300.0, 0.5)

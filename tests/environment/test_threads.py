@@ -117,7 +117,7 @@ def episode(env, seed):
     return np.concatenate(rows)
 
 
-@pytest.mark.parametrize("scenario", ["default", {"preset": "off-model", "plants": {"bank": 4}}, "hysteresis"])
+@pytest.mark.parametrize("scenario", ["nominal", {"preset": "off-model", "plants": {"bank": 4}}, "hysteresis"])
 def test_environments_of_one_task_whose_bank_is_built_by_whoever_comes_first(scenario):
     def task():
         return resolve_task(blade=SMALL, scenario=scenario, duration=0.02)

@@ -52,8 +52,8 @@ def told(returned):
 @pytest.mark.parametrize(
     ("scenario", "dtype"),
     [
-        ("default", "float64"),
-        ("default", "float32"),
+        ("nominal", "float64"),
+        ("nominal", "float32"),
         (BRITTLE, "float64"),  # readings a hundred full scales large, were they not clipped: 32 bits do not tell their small ones
         ("mid-failure", "float64"),
         ("mid-failure", "float32"),
@@ -188,7 +188,7 @@ def test_blades_that_began_again_by_a_mask_may_step():
     envs.step(torch.zeros(COUNT, 4))
 
 
-@pytest.mark.parametrize("scenario", ["default", "mid-failure", {"rotor": {"turbulence": 5.0}}, "hysteresis"])
+@pytest.mark.parametrize("scenario", ["nominal", "mid-failure", {"rotor": {"turbulence": 5.0}}, "hysteresis"])
 def test_an_equal_batch_goes_on_bit_for_bit_from_a_state(scenario):
     first, second = (batch_of(scenario=scenario) for _ in range(2))
     episode(first, 1, 33)

@@ -54,7 +54,7 @@ def assert_same(expected, actual):
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
-@pytest.mark.parametrize("scenario", ["default", BRITTLE])
+@pytest.mark.parametrize("scenario", ["nominal", BRITTLE])
 def test_the_batch_is_what_gymnasium_makes_of_single_environments(mode, scenario):
     (sync, native), (expected, actual) = both(mode, scenario=scenario)
     assert_same(expected, actual)

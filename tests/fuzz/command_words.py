@@ -1,6 +1,7 @@
 """Every command with its arguments and options, and the work that is too long for its door."""
 
 COMMANDS = {
+    "list": (("presets",), {}, ("--json",), ()),
     "frequencies": (
         (),
         {"--preset": "thesis", "--speed": "20", "--count": "2", "--blade": "blade.toml", "--plant": None},

@@ -61,13 +61,13 @@ DOORS = [
         public="robust_lqg",
     ),
     Door(
-        "run_up_lqg",
-        baselines.run_up_lqg,
+        "spin_up_lqg",
+        baselines.spin_up_lqg,
         {"prior": instance(Prior)},
         lambda: {"prior": small.env().unwrapped.task.prior},
         told=("prior",),
         plain=False,
-        public="run_up_lqg",
+        public="spin_up_lqg",
     ),
     Door(
         "inverse_hysteresis",

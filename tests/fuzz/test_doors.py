@@ -121,7 +121,7 @@ RECORDS = {
     "BENCHMARK_SCENARIOS", "ENV_ID", "OPEN_SCENARIOS", "PRESETS", "SCENARIOS", "UNSEEN_SCENARIOS",  # no callables
     "Controller", "Episodes", "EpisodeMetrics", "Estimate", "Evaluation", "Identified", "StabilityMargins",  # what functions give
     "PredictiveController", "ScheduledLQG", "ClairvoyantLQG",  # what mpc, scheduled_lqg and clairvoyant_lqg give
-    "InverseHysteresis", "RunUpLQG",  # what inverse_hysteresis and run_up_lqg give
+    "InverseHysteresis", "SpinUpLQG",  # what inverse_hysteresis and spin_up_lqg give
     "BeamConfig",
 }  # fmt: skip
 

@@ -57,7 +57,7 @@ def test_a_batch_of_blades_of_different_sheets_bears_what_each_does():
     assert Bank.joined([task.bank, other.bank]).failure_strain.tolist() == [PIC255.failure_strain, 0.0045]
 
 
-def test_a_run_up_and_a_state_are_held_to_the_sheets_limit():
+def test_a_spin_up_and_a_state_are_held_to_the_sheets_limit():
     chosen = {"preset": "spin-up", "plants": {"spin_up": [60.0, 72.0]}}
     config = blade_config("airfoil-blade")
     ceramic = tuple(

@@ -143,7 +143,7 @@ def test_other_coordinates_move_and_cost_the_same():
     actions = generator.uniform(-1.0, 1.0, (50, 3, 2)) * 1e-3
     motions, states = [], []
     for each in (plant, other):
-        blades, own = Blades(each, SCENARIOS["default"], 3), np.random.default_rng(2)
+        blades, own = Blades(each, SCENARIOS["nominal"], 3), np.random.default_rng(2)
         series = [blades.begin(own)] + [blades.step(action, own) for action in actions]
         motions.append(series)
         states.append(blades.state)

@@ -36,9 +36,9 @@ SHARED = {
     "plant": lambda: build_plant(CONFIG),
     "sampled plant": lambda: sample(build_plant(CONFIG)),
     "modal model": lambda: truncate(build_beam(CONFIG), 200.0, 11),
-    "bank of one": lambda: bank_of("default"),
+    "bank of one": lambda: bank_of("nominal"),
     "bank": lambda: bank_of({"preset": "off-model", "plants": {"bank": 3}}),
-    "run-up": lambda: bank_of("spin-up"),
+    "spin-up": lambda: bank_of("spin-up"),
 }
 
 
@@ -93,7 +93,7 @@ def test_a_plant_keeps_its_numbers_when_the_array_it_was_made_of_changes():
     np.testing.assert_array_equal(plant.C, before)
 
 
-@pytest.mark.parametrize("kind", ["plant", "sampled plant", "bank of one", "bank", "run-up"])
+@pytest.mark.parametrize("kind", ["plant", "sampled plant", "bank of one", "bank", "spin-up"])
 def test_each_says_in_one_line_what_it_is(kind):
     told = repr(SHARED[kind]())
     assert "\n" not in told and len(told) < 120

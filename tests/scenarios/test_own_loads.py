@@ -178,9 +178,9 @@ def test_the_same_seed_has_the_same_loads_alone_and_in_a_batch():
         {"course": "noise", "magnitude": 1.0, "cutoff": 30.0},
         {"magnitude": [1.0, 2.0], "onset": [0.0, 0.05], "shape": "base"},
     )
-    single = acting(make(*loads, preset="default"), seed=4)
-    assert np.array_equal(single, acting(make(*loads, preset="default"), seed=4))
-    assert not np.array_equal(single, acting(make(*loads, preset="default"), seed=5))
+    single = acting(make(*loads, preset="nominal"), seed=4)
+    assert np.array_equal(single, acting(make(*loads, preset="nominal"), seed=4))
+    assert not np.array_equal(single, acting(make(*loads, preset="nominal"), seed=5))
     chosen = {"loads": list(loads)}
     envs = gym.make_vec(beamenv.ENV_ID, 2, preset="aluminium-cantilever", scenario=chosen)
     envs.reset(seed=[3, 4])
@@ -192,7 +192,7 @@ def test_the_same_seed_has_the_same_loads_alone_and_in_a_batch():
 
 
 def test_a_copied_environment_goes_on_alike():
-    env = make({"course": "noise", "cutoff": 30.0}, {"shape": "line"}, preset="default")
+    env = make({"course": "noise", "cutoff": 30.0}, {"shape": "line"}, preset="nominal")
     acting(env, 1100)
     for other in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
         assert np.array_equal(env.unwrapped._blade.coming_loads, other.unwrapped._blade.coming_loads)
@@ -273,7 +273,7 @@ def test_a_function_that_takes_no_time_is_named():
         env.step(np.zeros(1))
 
 
-def test_a_force_on_a_blade_of_the_thesis_model_acts_at_rest_and_in_a_run_up():
+def test_a_force_on_a_blade_of_the_thesis_model_acts_at_rest_and_in_a_spin_up():
     """At the tip, F L³/3EI by 8 over 3 the displacement under the line load F/L."""
     force = {"magnitude": 1.0}
     for scenario in ({}, {"plants": {"spin_up": [0.0, 1.0]}}):

@@ -16,8 +16,8 @@ from gymnasium.utils.env_checker import check_env
 import beamenv
 from beamenv import BENCHMARK_SCENARIOS, OPEN_SCENARIOS, UNSEEN_SCENARIOS, RotatingBeamEnv
 from beamenv.configuration import files
-from beamenv.scenarios.named import GROUPS, NAMES, expanded
-from beamenv.scenarios.scenario import SCENARIOS, load_scenario, scenario
+from beamenv.scenarios.named import GROUPS, LOADS, NAMES, expanded, titles
+from beamenv.scenarios.scenario import SCENARIOS, Scenario, load_scenario, scenario
 
 GUST = """
 preset = "rotor"
@@ -38,7 +38,19 @@ def test_the_benchmark_has_twelve_scenarios():
         "delay", "failure", "hysteresis", "nominal", "off-model", "off-speed", "overload", "rotor", "solid", "solid-20",
         "spillover", "spin-up",
     )  # fmt: skip
-    assert SCENARIOS["nominal"] == SCENARIOS["default"]
+
+
+def test_the_nominal_scenario_is_that_of_every_default_and_has_its_former_name_too():
+    former = scenario("default"), scenario({"preset": "default"})
+    assert {scenario(None), scenario({}), scenario("nominal"), *former} == {Scenario()}
+    assert "default" not in SCENARIOS
+
+
+def test_every_scenario_has_a_line_that_says_what_it_is():
+    assert list(titles()) == list(dict.fromkeys(["nominal", *LOADS, *NAMES]))
+    assert titles().keys() == SCENARIOS.keys()
+    assert all(title.endswith(".") and "#" not in title for title in titles().values())
+    assert titles()["delay"] == "Voltages come 1 to 3 control intervals late, and 5 % of the readings are lost."
 
 
 def test_what_is_kept_for_judging_is_not_what_is_learnt_on():
@@ -139,7 +151,7 @@ WRONG = [
     ({"plants": {"truth": "nowhere.npz"}}, "file 'nowhere.npz' cannot be read: No such file or directory"),
     (
         {"preset": "solid", "plants": {"speed_ratio": [0.9, 1.1]}},
-        "scenario.plants.truth is 'solid-blade', but must be None where other plants are drawn or the rotor runs up",
+        "scenario.plants.truth is 'solid-blade', but must be None where other plants are drawn or the rotor spins up",
     ),
     ({"preset": "solid", "plants": {"spin_up": [100.0, 300.0]}}, "scenario.plants.truth is 'solid-blade', but must be None where"),
     (
@@ -191,7 +203,7 @@ def test_what_a_scenario_cannot_hold_is_named_in_one_sentence(given, sentence):
     [
         ("[plants]\nwind = 1.0\n", "file '.*broken.toml': scenario.plants has no field 'wind'"),
         ("step = \n", "file '.*broken.toml' cannot be read: .*line 1, column 8"),
-        ('preset = "storm"\n', "scenario.preset is 'storm', but must be one of default"),
+        ('preset = "storm"\n', "scenario.preset is 'storm', but must be one of nominal"),
         (b"\xff\xfe", "file '.*broken.toml' cannot be read: .*position 0"),
         (None, "file '.*broken.toml' cannot be read: .*No such file"),
     ],

@@ -1,4 +1,4 @@
-"""Run-up of the rotor: the environment beside an integration of the whole time-varying equation by ``solve_ivp``."""
+"""Spin-up of the rotor: the environment beside an integration of the whole time-varying equation by ``solve_ivp``."""
 
 from dataclasses import replace
 
@@ -11,9 +11,9 @@ from scipy.interpolate import CubicSpline
 from beamenv import RotatingBeamEnv
 from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
-from beamenv.simulation.plants.run_up import Cycloid
-from beamenv.simulation.plants.run_ups import run_up_of
-from beamenv.simulation.plants.spin_up import _worked_out
+from beamenv.simulation.plants.spin_up import Cycloid
+from beamenv.simulation.plants.spin_up_bank import _worked_out
+from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.task import resolve_task
 
 CONFIG = blade_config(overrides={"truth_modes": 11})
@@ -28,21 +28,21 @@ QUIET = {
 
 
 @pytest.fixture(scope="module")
-def run_up():
-    return run_up_of(Blade(CONFIG), COURSE)
+def spin_up():
+    return spin_up_of(Blade(CONFIG), COURSE)
 
 
-def energy_of(run_up, times, q, rate):
-    return 0.5 * (np.einsum("ki,kij,kj->k", q, run_up.stiffness(times), q) + (rate**2).sum(axis=1))
+def energy_of(spin_up, times, q, rate):
+    return 0.5 * (np.einsum("ki,kij,kj->k", q, spin_up.stiffness(times), q) + (rate**2).sum(axis=1))
 
 
 @pytest.fixture(scope="module")
-def integrated(run_up):
+def integrated(spin_up):
     """Times (K + 1,) and motion ξ, ξ̇ (K + 1, r) about the steady states, from that of 100 rad/s on."""
-    r = len(run_up.damping)
+    r = len(spin_up.damping)
 
     times = CONFIG.control_interval * np.arange(1001)
-    terms = [run_up.base_load(times)[..., None], -run_up.restoring(times), -run_up.rate_matrix(times)]
+    terms = [spin_up.base_load(times)[..., None], -spin_up.restoring(times), -spin_up.rate_matrix(times)]
     smooth = CubicSpline(times, np.concatenate(terms, axis=-1))  # quicker than the steady states' polynomials
 
     def rate(time, state):
@@ -61,10 +61,10 @@ def episode():
     return env, {key: np.array([info[key] for info in infos]) for key in ("energy", "tip_displacement", "cost_increment")}
 
 
-def about_equilibrium(run_up, integrated):
+def about_equilibrium(spin_up, integrated):
     times, q, rate = integrated
     share = 2.0 * times / COURSE.duration - 1.0
-    displaced, moving = (chebyshev.chebval(share, part).T for part in run_up.equilibrium())
+    displaced, moving = (chebyshev.chebval(share, part).T for part in spin_up.equilibrium())
     return q - displaced, rate - moving
 
 
@@ -76,36 +76,36 @@ def test_the_speed_follows_a_cycloid():
 
 
 @pytest.mark.parametrize("duration", [0.02, 0.1, 0.5, 5.0])
-def test_the_moving_equilibrium_solves_the_equation_of_motion(run_up, duration):
-    """Residual over the load that moves it, at times that are no Chebyshev nodes: 1.2e-5, however quick the run-up."""
-    run_up = replace(run_up, course=Cycloid(100.0, 300.0, duration))
+def test_the_moving_equilibrium_solves_the_equation_of_motion(spin_up, duration):
+    """Residual over the load that moves it, at times that are no Chebyshev nodes: 1.2e-5, however quick the spin-up."""
+    spin_up = replace(spin_up, course=Cycloid(100.0, 300.0, duration))
     times = np.linspace(0.0, duration, 173)
     share = 2.0 * times / duration - 1.0
-    displaced, moving = run_up.equilibrium()
+    displaced, moving = spin_up.equilibrium()
     second = chebyshev.chebder(moving[:-1], axis=0) * 2.0 / duration
     q, rate, acceleration = (chebyshev.chebval(share, part).T for part in (displaced, moving, second))
-    load = run_up.base_load(times)
-    terms = ((run_up.rate_matrix, rate), (run_up.restoring, q))
+    load = spin_up.base_load(times)
+    terms = ((spin_up.rate_matrix, rate), (spin_up.restoring, q))
     forces = acceleration + sum(np.einsum("kij,kj->ki", form(times), part) for form, part in terms)
     assert np.abs(forces - load).max() < 2e-5 * np.abs(load).max()
 
 
-def test_vibration_is_that_of_the_whole_equation_about_the_moving_equilibrium(run_up, integrated, episode):
+def test_vibration_is_that_of_the_whole_equation_about_the_moving_equilibrium(spin_up, integrated, episode):
     """Tip displacement within 0.2 % of its largest in flap, 0.03 % in lag, energy within 0.04 %."""
     _, course = episode
-    q, rate = about_equilibrium(run_up, integrated)
-    tip = np.einsum("in,knj,kj->ki", Blade(CONFIG).full.tip, run_up.shapes(integrated[0]), q)
-    energy = energy_of(run_up, integrated[0], q, rate)
+    q, rate = about_equilibrium(spin_up, integrated)
+    tip = np.einsum("in,knj,kj->ki", Blade(CONFIG).full.tip, spin_up.shapes(integrated[0]), q)
+    energy = energy_of(spin_up, integrated[0], q, rate)
     error = np.abs(course["tip_displacement"] - tip).max(axis=0) / np.abs(tip).max(axis=0)
     assert error[0] < 5e-4
     assert error[1] < 3e-3
     assert np.abs(course["energy"] - energy).max() < 1e-3 * energy.max()
 
 
-def test_the_cost_is_the_integral_of_the_time_varying_energy(run_up, integrated, episode):
+def test_the_cost_is_the_integral_of_the_time_varying_energy(spin_up, integrated, episode):
     _, course = episode
-    q, rate = about_equilibrium(run_up, integrated)
-    energy = energy_of(run_up, integrated[0], q, rate)
+    q, rate = about_equilibrium(spin_up, integrated)
+    energy = energy_of(spin_up, integrated[0], q, rate)
     expected = np.trapezoid(energy, integrated[0])
     assert course["cost_increment"].sum() == pytest.approx(expected, rel=1e-3)
 
@@ -116,9 +116,9 @@ def test_the_modes_of_200_rad_s_serve_at_other_speeds(model, speed):
     """Beside the whole model the first six frequencies are 0.16 % too high at most with the thesis' eleven modes, all eleven 0.62 %
     (the fifth at 300 rad/s); about steady states, carried by a step of inverse iteration, 1e-5 and 0.25 %."""
     blade = Blade(blade_config(overrides={"model": model}))
-    run_up, beam, time = run_up_of(blade, COURSE), blade.beam, np.asarray(0.0 if speed == 100.0 else COURSE.duration)
-    r = len(run_up.damping)
-    stiffness, rate = run_up.stiffness(time), speed * run_up.coupling(time)
+    spin_up, beam, time = spin_up_of(blade, COURSE), blade.beam, np.asarray(0.0 if speed == 100.0 else COURSE.duration)
+    r = len(spin_up.damping)
+    stiffness, rate = spin_up.stiffness(time), speed * spin_up.coupling(time)
     plain = np.sqrt(np.linalg.eigvalsh(stiffness)[:11])
     plain = plain / beam.natural_frequencies(speed=speed, count=11, gyroscopic=False) - 1.0
     assert plain.min() > -1e-7  # Rayleigh and Ritz: never below
@@ -144,7 +144,7 @@ def test_a_plant_that_is_told_from_few_is_the_plant_of_its_interval(speeds):
     """Of 400 in 0.2 s, up and down: everything that a step needs, within 1e-9 of the largest number."""
     task = resolve_task(blade=CONFIG, scenario={"preset": "spin-up", "plants": {"spin_up": speeds}}, duration=0.2)
     course = Cycloid(*speeds, 0.2)
-    one = _worked_out(task.blade, task.design_blade, run_up_of(task.blade, course), CONFIG.control_interval * np.array([137.5]))
+    one = _worked_out(task.blade, task.design_blade, spin_up_of(task.blade, course), CONFIG.control_interval * np.array([137.5]))
     axes = task.bank.axes[137]
     assert task.bank.speeds[137] == pytest.approx(float(course.speed(137.5 * CONFIG.control_interval)), rel=1e-12)
     for name in ("readout", "tip"):
@@ -155,27 +155,27 @@ def test_a_plant_that_is_told_from_few_is_the_plant_of_its_interval(speeds):
     np.testing.assert_allclose(task.bank.operators.fused[137, :n, :told], moved[:, :told], rtol=0.0, atol=1e-9)
 
 
-def test_a_run_down_is_the_whole_equation_too():
+def test_a_spin_down_is_the_whole_equation_too():
     """From 300 to 100 rad/s in 0.2 s, without control: the tip within 0.5 % of its largest displacement."""
     course = Cycloid(300.0, 100.0, 0.2)
-    run_down = run_up_of(Blade(CONFIG), course)
+    spin_down = spin_up_of(Blade(CONFIG), course)
     env = RotatingBeamEnv(blade=CONFIG, scenario=QUIET | {"plants": {"spin_up": [300.0, 100.0]}}, duration=0.2)
     env.reset(seed=0)
     assert float(env.rotor_speed) == pytest.approx(300.0, rel=1e-4)
     shown = np.array([env.step(np.zeros(4))[4]["tip_displacement"] for _ in range(400)])
-    times, r = CONFIG.control_interval * np.arange(401), len(run_down.damping)
-    terms = [run_down.base_load(times)[..., None], -run_down.restoring(times), -run_down.rate_matrix(times)]
+    times, r = CONFIG.control_interval * np.arange(401), len(spin_down.damping)
+    terms = [spin_down.base_load(times)[..., None], -spin_down.restoring(times), -spin_down.rate_matrix(times)]
     smooth = CubicSpline(times, np.concatenate(terms, axis=-1))
     found = solve_ivp(
         lambda time, state: np.concatenate([state[r:], smooth(time) @ np.concatenate([[1.0], state])]),
         (0.0, times[-1]), np.zeros(2 * r), "DOP853", t_eval=times, rtol=1e-7, atol=1e-11,
     ).y[:r].T  # fmt: skip
-    displaced = chebyshev.chebval(2.0 * times / 0.2 - 1.0, run_down.equilibrium()[0]).T
-    tip = np.einsum("in,knj,kj->ki", Blade(CONFIG).full.tip, run_down.shapes(times), found - displaced)[1:]
+    displaced = chebyshev.chebval(2.0 * times / 0.2 - 1.0, spin_down.equilibrium()[0]).T
+    tip = np.einsum("in,knj,kj->ki", Blade(CONFIG).full.tip, spin_down.shapes(times), found - displaced)[1:]
     assert (np.abs(shown - tip).max(axis=0) < 5e-3 * np.abs(tip).max(axis=0)).all()
 
 
-def test_a_run_up_beyond_what_the_blade_bears_is_told():
+def test_a_spin_up_beyond_what_the_blade_bears_is_told():
     with pytest.raises(
         ValueError,
         match=r"^scenario.plants.spin_up is \[0.0, 1700.0\], but must be speeds at which the blade has a steady state[.]$",
@@ -197,7 +197,7 @@ def test_a_rotor_that_keeps_its_speed_is_the_nominal_plant():
         assert ours[4]["cost_increment"] == pytest.approx(theirs[4]["cost_increment"], rel=1e-7)
 
 
-def test_a_slow_run_up_excites_less(run_up):
+def test_a_slow_spin_up_excites_less(spin_up):
     """From 100 to 300 rad/s in 0.5 s and in 5 s: the velocity at the start falls a hundredfold, with Ω̈, at least."""
-    quick, slow = (np.linalg.norm(replace(run_up, course=Cycloid(100.0, 300.0, T)).initial_vibration()[1]) for T in (0.5, 5.0))
+    quick, slow = (np.linalg.norm(replace(spin_up, course=Cycloid(100.0, 300.0, T)).initial_vibration()[1]) for T in (0.5, 5.0))
     assert slow < 0.01 * quick

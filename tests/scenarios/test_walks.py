@@ -13,7 +13,7 @@ from beamenv.scenarios.scenario import SCENARIOS, scenario
 from beamenv.simulation.blades import Blades
 from beamenv.simulation.plants import walks
 from beamenv.simulation.plants.banks import build_bank, varied
-from beamenv.simulation.plants.run_up import Cycloid
+from beamenv.simulation.plants.spin_up import Cycloid
 from beamenv.simulation.plants.walks import COMPONENTS, Drift, Wander, walk_of
 from beamenv.task import resolve_task
 
@@ -113,7 +113,7 @@ class _Along:
         return np.abs(self.stations - speed[:, None]).argmin(axis=1)
 
 
-def test_a_slow_run_up_is_met_as_by_the_equations_of_a_run_up():
+def test_a_slow_spin_up_is_met_as_by_the_equations_of_a_spin_up():
     """Vibration of a released blade, from 190 to 210 rad/s in 0.5 s: from station to station it is within 1 % of that by the
     time-varying equations about the moving equilibrium. Damping is left out: here it is that of the speed now, there of one speed.
     """

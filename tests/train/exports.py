@@ -20,7 +20,7 @@ NOT_EXPORTED = {
     "lqr-load": "the blade's true state",
     "mpc": "quadratic program",
     "mpc-load": "quadratic program",
-    "run-up-lqg": "worked out on the way",
+    "spin-up-lqg": "worked out on the way",
 }
 """By name, with what its sentence says."""
 
@@ -48,14 +48,14 @@ def _agent(folder):
 def _agents():
     for each in shipped():
         if each.seed == 0:
-            scenario = "default" if each.scenario == "generalist" else each.scenario
+            scenario = "nominal" if each.scenario == "generalist" else each.scenario
             slow = each.agent not in QUICK or each.scenario not in ("generalist", "nominal")
             yield _case(each.agent, _agent(each.folder), scenario, slow)
 
 
 LAWS = [
-    *(_case(name, _law(name), "default", name in BIG) for name in discover() if name not in NOT_EXPORTED),
-    _case("multiple-model", _law("multiple-model"), "delay", False),  # otherwise made than in the default scenario
+    *(_case(name, _law(name), "nominal", name in BIG) for name in discover() if name not in NOT_EXPORTED),
+    _case("multiple-model", _law("multiple-model"), "delay", False),  # otherwise made than in the nominal scenario
     _case("multiple-model", _law("multiple-model"), "mid-failure", True),
     _case("multiple-model", _law("multiple-model"), "failure", True),
     _case("inverse-hysteresis", _law("inverse-hysteresis"), "hysteresis", True),

@@ -63,7 +63,7 @@ def by_python(controller, plant, scenario, reads_speed, steps):
 
 def in_a_loop(step, scenario, reads_speed=False, steps=STEPS, seed=1, **blade):
     """What is measured (k, p) and the voltages (k, m) of a controller's own episode."""
-    duration = STEPS * 5e-4  # whatever part of it is run: a run-up is as long as the episode
+    duration = STEPS * 5e-4  # whatever part of it is run: a spin-up is as long as the episode
     env = gym.make(beamenv.ENV_ID, scenario=scenario, physical_units=True, duration=duration, dtype="float64", **blade)
     observation, _ = env.reset(seed=seed)
     measured, voltages = [], []

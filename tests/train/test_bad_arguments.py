@@ -20,9 +20,9 @@ TASK = resolve_task()
 NOTHING = Comparison({"duration": 0.02}, {}, 2)
 
 DOORS = {
-    "chosen": lambda bad: chosen(bad, TASK, "default"),
-    "chosen_runs": lambda bad: chosen_runs(bad, TASK, "default"),
-    "chosen, task": lambda bad: chosen("lqg", bad, "default"),
+    "chosen": lambda bad: chosen(bad, TASK, "nominal"),
+    "chosen_runs": lambda bad: chosen_runs(bad, TASK, "nominal"),
+    "chosen, task": lambda bad: chosen("lqg", bad, "nominal"),
     "named": named,
     "named, task": lambda bad: named("lqg").build_for(bad),
     "find_shipped": lambda bad: find_shipped(bad, "nominal"),

@@ -14,11 +14,11 @@ from train.benchmark.statistics import over_scenarios, scores, summary
 from train.benchmark.table import tabulate
 
 UNCONTROLLED = np.array([2.0, 4.0, 6.0, 8.0])
-BOUND = np.array([[1.0, 2.0, 3.0, 2.0]])  # mean 2 of 5: 3 can be gained
+REFERENCE = np.array([[1.0, 2.0, 3.0, 2.0]])  # mean 2 of 5: 3 can be gained
 
 
 def costs_of(seed, scenarios, runs, seeds=40, by_run=0.05, shared=0.3):
-    """J (S, K, N), J₀ and J of the bound (S, N): a seed's load is the same in every scenario, a run's error its own."""
+    """J (S, K, N), J₀ and J of the reference (S, N): a seed's load is the same in every scenario, a run's error its own."""
     generator = np.random.default_rng(seed)
     load = np.exp(shared * generator.normal(size=seeds))
     uncontrolled = load * np.exp(0.1 * generator.normal(size=(scenarios, seeds)))
@@ -27,74 +27,74 @@ def costs_of(seed, scenarios, runs, seeds=40, by_run=0.05, shared=0.3):
     return cost, uncontrolled, 0.4 * uncontrolled
 
 
-def interval_of(cost, uncontrolled, bound, apart=False):
+def interval_of(cost, uncontrolled, reference, apart=False):
     """The aggregate's estimate; with ``apart``, as if each scenario had seeds of its own."""
     found = []
     for index in range(len(cost)):
-        own = scores(cost[index], bound[index][None], uncontrolled[index], str(index))
+        own = scores(cost[index], reference[index][None], uncontrolled[index], str(index))
         if apart:
             own = np.concatenate([own[:1], np.random.default_rng(index).permutation(own[1:])])
         found.append(own)
     return summary(over_scenarios(found))
 
 
-def test_no_control_scores_zero_and_the_bound_one_and_half_of_the_gain_a_half():
+def test_no_control_scores_zero_and_the_reference_one_and_half_of_the_gain_a_half():
     def scored(cost):
-        estimate = summary(scores(np.atleast_2d(cost), BOUND, UNCONTROLLED))
+        estimate = summary(scores(np.atleast_2d(cost), REFERENCE, UNCONTROLLED))
         return estimate.value, estimate.low, estimate.high
 
     assert scored(UNCONTROLLED) == (0.0, 0.0, 0.0)
-    assert scored(BOUND) == (1.0, 1.0, 1.0)
-    assert scored(0.5 * (UNCONTROLLED + BOUND)) == pytest.approx((0.5, 0.5, 0.5))
+    assert scored(REFERENCE) == (1.0, 1.0, 1.0)
+    assert scored(0.5 * (UNCONTROLLED + REFERENCE)) == pytest.approx((0.5, 0.5, 0.5))
     assert scored([[5.0, 5.0, 5.0, 1.0], [3.0, 5.0, 3.0, 1.0]])[0] == pytest.approx((5.0 - 3.5) / 3.0)
 
 
-def test_what_beats_the_bound_scores_above_one_and_what_feeds_vibration_below_zero():
-    assert summary(scores(BOUND - 0.5, BOUND, UNCONTROLLED)).value == pytest.approx(3.5 / 3.0)
-    assert summary(scores(UNCONTROLLED[None] + 6.0, BOUND, UNCONTROLLED)).value == pytest.approx(-2.0)
+def test_what_beats_the_reference_scores_above_one_and_what_feeds_vibration_below_zero():
+    assert summary(scores(REFERENCE - 0.5, REFERENCE, UNCONTROLLED)).value == pytest.approx(3.5 / 3.0)
+    assert summary(scores(UNCONTROLLED[None] + 6.0, REFERENCE, UNCONTROLLED)).value == pytest.approx(-2.0)
 
 
 def test_a_blade_that_a_law_breaks_makes_its_score_infinitely_low():
-    lost = summary(scores(np.array([[1.0, np.inf, 1.0, 1.0]]), BOUND, UNCONTROLLED))
+    lost = summary(scores(np.array([[1.0, np.inf, 1.0, 1.0]]), REFERENCE, UNCONTROLLED))
     assert (lost.value, lost.low) == (-np.inf, -np.inf)
     assert lost.high > 0.0  # some resamples do not draw it
 
 
 @pytest.mark.parametrize(
-    "bound", [UNCONTROLLED, UNCONTROLLED + [0.0, 0.0, 0.0, -9e-9], [1.0, np.inf, 1.0, 1.0], [9.0, 1.0, 1.0, 1.0]]
+    "reference", [UNCONTROLLED, UNCONTROLLED + [0.0, 0.0, 0.0, -9e-9], [1.0, np.inf, 1.0, 1.0], [9.0, 1.0, 1.0, 1.0]]
 )
-def test_without_a_clear_gain_of_the_bound_there_is_no_score(bound):
-    assert scores(np.ones((1, 4)), np.array([bound]), UNCONTROLLED) is None
+def test_without_a_clear_gain_of_the_reference_there_is_no_score(reference):
+    assert scores(np.ones((1, 4)), np.array([reference]), UNCONTROLLED) is None
 
 
 @pytest.mark.parametrize("scenarios", [1, 2, 4, 9, 10])
 def test_the_aggregate_is_scipys_mean_of_what_a_quarter_cut_off_at_either_end_leaves(scenarios):
-    cost, uncontrolled, bound = costs_of(3, scenarios, runs=5)
-    by_hand = [(uncontrolled[s].mean() - cost[s].mean()) / (uncontrolled[s].mean() - bound[s].mean()) for s in range(scenarios)]
-    assert interval_of(cost, uncontrolled, bound).value == pytest.approx(trim_mean(by_hand, 0.25), rel=1e-12)
+    cost, uncontrolled, reference = costs_of(3, scenarios, runs=5)
+    by_hand = [(uncontrolled[s].mean() - cost[s].mean()) / (uncontrolled[s].mean() - reference[s].mean()) for s in range(scenarios)]
+    assert interval_of(cost, uncontrolled, reference).value == pytest.approx(trim_mean(by_hand, 0.25), rel=1e-12)
 
 
 def test_a_quarter_of_scenarios_with_broken_blades_does_not_sink_the_aggregate_and_more_does():
-    cost, uncontrolled, bound = costs_of(4, 8, runs=1)
+    cost, uncontrolled, reference = costs_of(4, 8, runs=1)
     cost[:2, 0, 0] = np.inf
-    assert np.isfinite(interval_of(cost, uncontrolled, bound).value)
+    assert np.isfinite(interval_of(cost, uncontrolled, reference).value)
     cost[2, 0, 0] = np.inf
-    assert interval_of(cost, uncontrolled, bound).value == -np.inf
+    assert interval_of(cost, uncontrolled, reference).value == -np.inf
 
 
 def test_the_interval_is_that_of_a_bootstrap_written_out():
     """Runs drawn within each scenario, seeds together for all of them."""
-    cost, uncontrolled, bound = costs_of(5, 6, runs=4)
+    cost, uncontrolled, reference = costs_of(5, 6, runs=4)
     generator, drawn = np.random.default_rng(11), []
     for _ in range(1500):
         seeds, found = generator.choice(40, size=40), []
         for s in range(6):
             j = cost[s][generator.choice(4, size=4)][:, seeds].mean()
-            j0, jc = uncontrolled[s, seeds].mean(), bound[s, seeds].mean()
+            j0, jc = uncontrolled[s, seeds].mean(), reference[s, seeds].mean()
             found.append((j0 - j) / (j0 - jc))
         drawn.append(sum(sorted(found)[1:-1]) / 4)
     low, high = np.quantile(drawn, [0.025, 0.975])
-    ours = interval_of(cost, uncontrolled, bound)
+    ours = interval_of(cost, uncontrolled, reference)
     assert (ours.low, ours.high) == pytest.approx((low, high), abs=0.1 * (high - low))
 
 

@@ -99,7 +99,7 @@ def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
     assert trained.exit_code == 0, trained.output
     result = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--json")
     assert result.exit_code == 0
-    assert json.loads(result.stdout)["controller"].startswith("gradient")
+    assert json.loads(result.stdout)["controller"] == "agent"
     refused = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--scenario", "hysteresis")
     assert refused.exit_code == 2
     assert "is none of those the agent" in refused.stderr

@@ -92,7 +92,7 @@ def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished
     shown = [json.loads(figures[name])["layout"]["title"]["text"] for name in ("blade-left", "blade-right")]
     best = sorted(evaluations, key=lambda evaluation: evaluation.relative_cost.value)
     agents = notes.evaluated_names[len(CLASSICAL) :]
-    laws = [each.name for each in best if each.name not in agents and "true state" not in each.name]
+    laws = [each.name for each in best if each.name not in agents and "lqr" not in each.name]
     assert shown == [laws[0], next(each.name for each in best if each.name in agents)]
     assert all(evaluation.name in page for evaluation in evaluations)
 

@@ -53,8 +53,8 @@ def test_laws_that_need_pairs_are_left_out_in_one_sentence_and_the_others_go_on(
     assert len(evaluations) == len(CLASSICAL) - len(PAIRS) + 2
     with (folder / "table.csv").open() as file:
         rows = {row["controller"]: row for row in csv.DictReader(file)}
-    assert rows["LQR (true state)"]["tier"] == "3" and rows["LQG"]["tier"] == "0" and rows["PPO"]["tier"] == "1"
-    assert float(rows["LQG"]["relative_cost"]) < 0.5
+    assert rows["lqr"]["tier"] == "3" and rows["lqg"]["tier"] == "0" and rows["ppo"]["tier"] == "1"
+    assert float(rows["lqg"]["relative_cost"]) < 0.5
     for name in PAIRS:
         assert f"\n{name} is left out: plant has 2 actuators and 3 sensors" in (folder / "table.md").read_text()
 

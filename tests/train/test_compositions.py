@@ -17,7 +17,7 @@ from train.learning.training import on_training_bank
 
 def kinds(chosen):
     """Of fault, whatever their size."""
-    plants, plain = chosen.plants, SCENARIOS["default"]
+    plants, plain = chosen.plants, SCENARIOS["nominal"]
     there = {
         "delay": chosen.drive.delay != plain.drive.delay,
         "hysteresis": chosen.drive.hysteresis > 0.0,

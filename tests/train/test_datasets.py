@@ -64,10 +64,10 @@ def test_actions_are_those_of_the_controller_on_the_readings(tmp_path):
 
 
 def test_the_same_command_gives_the_same_arrays_and_more_episodes_begin_with_them(tmp_path):
-    first, again = (arrays(record("residual", "default", 3, folder=tmp_path / name, environment=SHORT)) for name in "ab")
+    first, again = (arrays(record("residual", "nominal", 3, folder=tmp_path / name, environment=SHORT)) for name in "ab")
     assert_equal(first, again)
-    assert_equal(first[:2], arrays(record("residual", "default", 2, folder=tmp_path / "c", environment=SHORT)))
-    longer = arrays(record("residual", "default", 66, folder=tmp_path / "d", environment=SHORT))  # more than are run side by side
+    assert_equal(first[:2], arrays(record("residual", "nominal", 2, folder=tmp_path / "c", environment=SHORT)))
+    longer = arrays(record("residual", "nominal", 66, folder=tmp_path / "d", environment=SHORT))  # more than are run side by side
     assert len(longer) == 66
     assert_equal(first, longer[:3])
     assert len({each["observations"].tobytes() for each in longer}) == 66
@@ -102,10 +102,16 @@ def test_a_data_set_tells_who_acted_and_how_well(tmp_path):
     assert own["cost"] == pytest.approx(
         {"unit": "J s", "mean": np.mean(costs), "standard_deviation": np.std(costs), "failed_episodes": 0}
     )
-    assert (own["controller"], own["trained_seed"], own["tier"], own["scenario"]) == ("residual", 1, 1, "nominal")
+    assert (own["controller"], own["trained_seed"], own["tier"], own["scenario"]) == (
+        "residual-generalist",
+        1,
+        1,
+        "nominal",
+    )
     assert own["seeds"] == [17, 20] == [each["seed"] for each in data.storage.get_episode_metadata([0, 3])]
     assert own["versions"]["beamenv"] == beamenv.__version__ and len(own["code"]) == 16
-    assert about["algorithm_name"] == "residual" and about["dataset_id"] == "beamenv/residual-nominal-v0"
+    assert about["algorithm_name"] == "residual-generalist"
+    assert about["dataset_id"] == "beamenv/residual-generalist-nominal-v0"
     assert f"None of the episodes ended by failure; the mean cost J is {np.mean(costs):.4g} J s" in about["description"]
 
 
@@ -168,7 +174,7 @@ def test_the_environment_to_evaluate_in_has_the_plants_that_controllers_are_comp
 def test_a_model_of_ones_own_comes_back_without_its_file(tmp_path):
     path = tmp_path / "mine.json"
     path.write_text(json.dumps(MODEL))
-    data = record("lqg", "default", 2, folder=tmp_path / "sets", environment={"plant": str(path), "duration": 0.1})
+    data = record("lqg", "nominal", 2, folder=tmp_path / "sets", environment={"plant": str(path), "duration": 0.1})
     path.unlink()
     env = data.recover_environment()
     assert env.observation_space.shape == (1,)
@@ -179,8 +185,8 @@ def test_a_model_of_ones_own_comes_back_without_its_file(tmp_path):
 
 def test_controllers_may_be_objects_and_functions(tmp_path):
     plant = resolve_task(**SHORT).design.full_plant
-    of_law = record(lqg(plant), "default", 1, folder=tmp_path, name="law-v0", environment=SHORT)
-    of_function = record(lambda readings: -0.5 * readings, "default", 1, folder=tmp_path, name="own-v0", environment=SHORT)
+    of_law = record(lqg(plant), "nominal", 1, folder=tmp_path, name="law-v0", environment=SHORT)
+    of_function = record(lambda readings: -0.5 * readings, "nominal", 1, folder=tmp_path, name="own-v0", environment=SHORT)
     assert of_law.storage.metadata["beamenv"]["tier"] == 1  # nobody knows what it was made from
     (each,) = arrays(of_function)
     np.testing.assert_allclose(each["actions"], -0.5 * each["observations"][:-1], atol=1e-7)
@@ -188,14 +194,14 @@ def test_controllers_may_be_objects_and_functions(tmp_path):
 
 def test_other_units_and_numbers_are_those_asked_for(tmp_path):
     asked = {**SHORT, "physical_units": True, "dtype": "float64"}
-    (each,) = arrays(record("lqg", "default", 1, folder=tmp_path, environment=asked))
-    (usual,) = arrays(record("lqg", "default", 1, folder=tmp_path, name="usual-v0", environment=SHORT))
+    (each,) = arrays(record("lqg", "nominal", 1, folder=tmp_path, environment=asked))
+    (usual,) = arrays(record("lqg", "nominal", 1, folder=tmp_path, name="usual-v0", environment=SHORT))
     assert each["observations"].dtype == each["actions"].dtype == np.float64
     np.testing.assert_allclose(each["actions"], 1500.0 * usual["actions"], atol=0.01)
 
 
 def test_actions_are_kept_within_their_space(tmp_path):
-    (each,) = arrays(record(lambda readings: 1e3 * readings, "default", 1, folder=tmp_path, environment=SHORT))
+    (each,) = arrays(record(lambda readings: 1e3 * readings, "nominal", 1, folder=tmp_path, environment=SHORT))
     assert np.abs(each["actions"]).max() == 1.0
     np.testing.assert_allclose(each["volts"][1:], 1500.0 * each["actions"])
 
@@ -222,7 +228,7 @@ def test_actions_are_kept_within_their_space(tmp_path):
     ],
 )
 def test_what_is_wrong_is_said_and_nothing_is_written(tmp_path, wrong, said):
-    given = {"controller": "lqg", "scenario": "default", "episodes": 2, "environment": SHORT, "folder": tmp_path / "sets", **wrong}
+    given = {"controller": "lqg", "scenario": "nominal", "episodes": 2, "environment": SHORT, "folder": tmp_path / "sets", **wrong}
     with pytest.raises(ValueError, match=".*") as refused:
         record(**given)
     assert said in str(refused.value) and "\n" not in str(refused.value)
@@ -231,15 +237,15 @@ def test_what_is_wrong_is_said_and_nothing_is_written(tmp_path, wrong, said):
 
 def test_the_seeds_beside_those_that_are_kept_are_taken(tmp_path):
     for seed in (999_998, 4_000_000):
-        data = record("none", "default", 2, seed, folder=tmp_path, name=f"at-{seed}-v0", environment=SHORT)
+        data = record("none", "nominal", 2, seed, folder=tmp_path, name=f"at-{seed}-v0", environment=SHORT)
         assert data.storage.metadata["beamenv"]["seeds"] == [seed, seed + 1]
 
 
 def test_a_data_set_is_replaced_only_where_that_is_asked_for(tmp_path):
-    record("none", "default", 1, folder=tmp_path, name="mine-v0", environment=SHORT)
+    record("none", "nominal", 1, folder=tmp_path, name="mine-v0", environment=SHORT)
     with pytest.raises(ValueError, match="^name = 'mine-v0' is a data set already, in .*: overwrite it, or give another name.$"):
-        record("lqg", "default", 1, folder=tmp_path, name="mine-v0", environment=SHORT)
-    data = record("lqg", "default", 2, folder=tmp_path, name="mine-v0", environment=SHORT, overwrite=True)
+        record("lqg", "nominal", 1, folder=tmp_path, name="mine-v0", environment=SHORT)
+    data = record("lqg", "nominal", 2, folder=tmp_path, name="mine-v0", environment=SHORT, overwrite=True)
     assert data.total_episodes == 2
     assert [each.name for each in tmp_path.iterdir()] == ["mine-v0"]
 
@@ -248,10 +254,10 @@ def test_a_folder_that_is_no_data_set_is_never_replaced(tmp_path):
     (tmp_path / "mine-v0").mkdir()
     (tmp_path / "mine-v0" / "thesis.txt").write_text("years of work")
     with pytest.raises(ValueError, match="is there, and is no data set"):
-        record("none", "default", 1, folder=tmp_path, name="mine-v0", environment=SHORT, overwrite=True)
-    record("none", "default", 1, folder=tmp_path, name="whole-v0", environment=SHORT)
+        record("none", "nominal", 1, folder=tmp_path, name="mine-v0", environment=SHORT, overwrite=True)
+    record("none", "nominal", 1, folder=tmp_path, name="whole-v0", environment=SHORT)
     with pytest.raises(ValueError, match="outside the data set 'whole-v0'"):
-        record("none", "default", 1, folder=tmp_path, name="whole-v0/part-v0", environment=SHORT)
+        record("none", "nominal", 1, folder=tmp_path, name="whole-v0/part-v0", environment=SHORT)
 
 
 def test_an_interrupted_recording_leaves_what_was_there(tmp_path):
@@ -259,11 +265,11 @@ def test_an_interrupted_recording_leaves_what_was_there(tmp_path):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        record("none", "default", 1, folder=tmp_path / "sets", environment=SHORT, progress=interrupt)
+        record("none", "nominal", 1, folder=tmp_path / "sets", environment=SHORT, progress=interrupt)
     assert not list(tmp_path.iterdir())
-    before = arrays(record("none", "default", 1, folder=tmp_path, name="mine-v0", environment=SHORT))
+    before = arrays(record("none", "nominal", 1, folder=tmp_path, name="mine-v0", environment=SHORT))
     with pytest.raises(KeyboardInterrupt):
-        record("lqg", "default", 1, folder=tmp_path, name="mine-v0", environment=SHORT, overwrite=True, progress=interrupt)
+        record("lqg", "nominal", 1, folder=tmp_path, name="mine-v0", environment=SHORT, overwrite=True, progress=interrupt)
     assert [each.name for each in tmp_path.iterdir()] == ["mine-v0"]
     assert_equal(before, arrays(minari.MinariDataset(tmp_path / "mine-v0" / "data")))
 
@@ -271,19 +277,19 @@ def test_an_interrupted_recording_leaves_what_was_there(tmp_path):
 def test_what_a_killed_recording_has_left_goes_with_the_next(tmp_path):
     left = tmp_path / ".mine-v0.0123abcd.part"
     (left / "data").mkdir(parents=True)
-    record("none", "default", 1, folder=tmp_path, name="mine-v0", environment=SHORT)
+    record("none", "nominal", 1, folder=tmp_path, name="mine-v0", environment=SHORT)
     assert [each.name for each in tmp_path.iterdir()] == ["mine-v0"]
 
 
 def test_progress_is_told_in_episodes(tmp_path):
     told = []
-    record("none", "default", 65, folder=tmp_path, environment=SHORT, progress=lambda *each: told.append(each))
+    record("none", "nominal", 65, folder=tmp_path, environment=SHORT, progress=lambda *each: told.append(each))
     assert told == [(64, 65), (65, 65)]
 
 
 def test_rows_of_a_batch_are_its_seeds():
     envs = gym.make_vec(beamenv.ENV_ID, num_envs=2, **SHORT)
-    law = chosen("none", envs.unwrapped.task, "default")
+    law = chosen("none", envs.unwrapped.task, "nominal")
     one, other = episodes_of(law, envs, [5, 6])
     again = episodes_of(law, envs, [6, 5])
     np.testing.assert_array_equal(one.observations, again[1].observations)
@@ -292,8 +298,8 @@ def test_rows_of_a_batch_are_its_seeds():
 
 def test_a_relative_folder_will_do_and_minari_finds_what_is_where_it_looks(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    data = record("none", "default", 1, folder="sets", environment=SHORT)
+    data = record("none", "nominal", 1, folder="sets", environment=SHORT)
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path / "sets"))
-    assert_equal(arrays(data), arrays(minari.load_dataset("beamenv/none-default-v0")))
+    assert_equal(arrays(data), arrays(minari.load_dataset("beamenv/none-nominal-v0")))
     record("none", "white", 1, environment=SHORT)
-    assert list(minari.list_local_datasets()) == ["beamenv/none-default-v0", "beamenv/none-white-v0"]
+    assert list(minari.list_local_datasets()) == ["beamenv/none-nominal-v0", "beamenv/none-white-v0"]

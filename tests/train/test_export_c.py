@@ -29,7 +29,7 @@ def agrees(controller, plant, /, scenario, **blade):
     reads_speed = len(found["double"].diagram.inputs) > 1
     with in_double_precision(controller) as own:
         measured, voltages = in_a_loop(python_steps(own, plant), scenario, reads_speed, **blade)
-    assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "no control")
+    assert len(voltages) == STEPS and (np.ptp(voltages) > 0.0 or controller.name == "none")
     for precision, each in found.items():
         with running(each) as step:
             if falls_apart(controller, blade):
@@ -99,7 +99,7 @@ def test_blade_with_fewer_voltages_than_sensors(name):
 @pytest.mark.parametrize("name", ["velocity", "lqg", "clipped-lqg-load", "multiple-model"])
 def test_strip_with_one_patch_pair(name):
     task = resolve_task(preset="aluminium-cantilever")
-    agrees(discover()[name].build_for(task), task.design_plant, "default", preset="aluminium-cantilever")
+    agrees(discover()[name].build_for(task), task.design_plant, "nominal", preset="aluminium-cantilever")
 
 
 @needs_a_compiler
@@ -109,7 +109,7 @@ def test_accelerometer_that_feels_the_voltages(name):
     task = resolve_task(preset="aluminium-cantilever", blade=blade)
     law, plant = discover()[name].build_for(task), task.design_plant
     assert plant.D[0].any()
-    agrees(law, plant, "default", preset="aluminium-cantilever", blade=blade)
+    agrees(law, plant, "nominal", preset="aluminium-cantilever", blade=blade)
 
 
 def test_sensors_are_called_what_the_plant_calls_them():
@@ -186,4 +186,4 @@ def test_law_of_a_model_whose_sensors_feel_the_voltages(name):
     B, C = [[0.0, 0.0], [1.0, 0.3], [1.0, -0.9]], [[0.0, 1.0, 0.2], [0.3, 0.0, -0.8], [0.1, 0.5, 0.3]]
     model = {"A": A, "B": B, "C": C, "D": [[0.01, 0.0], [0.0, 0.01], [0.01, 0.01]], "interval": 0.01}
     task = resolve_task(plant=model)
-    agrees(discover()[name].build_for(task), task.design_plant, "default", plant=model)
+    agrees(discover()[name].build_for(task), task.design_plant, "nominal", plant=model)

@@ -19,7 +19,7 @@ def command(tmp_path, monkeypatch):
 def test_file_is_called_after_the_controller(command, tmp_path):
     result = command("lqg-load", "--precision", "single")
     assert result.exit_code == 0, result.output
-    assert "written to lqg_load.c: LQG with load estimate, in single precision, with 24 numbers to remember" in result.stdout
+    assert "written to lqg_load.c: lqg-load, in single precision, with 24 numbers to remember" in result.stdout
     content = (tmp_path / "lqg_load.c").read_text()
     assert "int lqg_load_step(lqg_load_state *state, const float sensors[4], float volts_out[4]);" in content
     assert "#define LQG_LOAD_INTERVAL 0.0005" in content and "double" not in content.partition("*/")[2]
@@ -41,7 +41,7 @@ def test_a_model_of_ones_own_is_what_it_is_designed_for(command, tmp_path):
     assert result.exit_code == 0, result.output
     content = (tmp_path / "lqg.c").read_text()
     assert "int lqg_step(lqg_state *state, const double sensors[1], double volts_out[1]);" in content
-    assert "note:         lqg, plant mine.npz, scenario default" in content
+    assert "note:         lqg, plant mine.npz, scenario nominal" in content
 
 
 @pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
@@ -77,7 +77,7 @@ def test_the_format_is_what_the_output_ends_in(command, tmp_path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("lqr",), "LQR (true state) (LinearController) cannot be exported: it observes the blade's true state"),
+        (("lqr",), "lqr (LinearController) cannot be exported: it observes the blade's true state"),
         (("mpc",), "it solves a quadratic program at every instant"),
         (("lqg", "--format", "ada"), "format is 'ada', but must be one of c, onnx, mat."),
         (

@@ -24,7 +24,7 @@ def hypotheses(**more):
     ]
 
 
-def agrees(law, scenario="default", lost=()):
+def agrees(law, scenario="nominal", lost=()):
     """On the readings of the law's own loop, some of which show the one before."""
     step = python_steps(law, plant())
     measured, _ = in_a_loop(step, scenario, steps=STEPS)

@@ -49,7 +49,7 @@ def test_gradients_through_the_kernel_are_those_of_finite_differences(plant):
         assert float(voltages.grad[step, actuator]) == pytest.approx(float(rise) / 2e-3, abs=1e-6 * largest)
 
 
-def task_of(scenario="default", duration=0.5):
+def task_of(scenario="nominal", duration=0.5):
     return resolve_task(scenario=scenario, duration=duration)
 
 

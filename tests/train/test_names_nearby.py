@@ -31,10 +31,11 @@ def test_near_a_name_are_those_that_differ_in_few_letters_or_begin_with_it(name,
 def test_a_controller_that_nobody_has_may_have_been_an_agent_that_ships():
     task = resolve_task(duration=0.02)
     with pytest.raises(
-        ValueError, match="controller is 'residul', but must be one of .* of the agents that ship, .*; near it is residual[.]"
+        ValueError,
+        match="controller is 'residul', but must be one of .* of the agents that ship, .*; near it is residual-generalist[.]",
     ):
         chosen("residul", task, "nominal")
-    with pytest.raises(ValueError, match="near it is residual, an agent that ships"):
+    with pytest.raises(ValueError, match="near it is residual-generalist, an agent that ships"):
         named("residual")
     with pytest.raises(ValueError, match="controller is 'residual', .*; near it is residual-generalist"):
         listed_controllers(["residual"], {}, [], False)

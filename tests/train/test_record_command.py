@@ -31,7 +31,7 @@ def test_the_command_says_where_the_data_set_is_what_it_is_and_how_it_loads(comm
     assert result.exit_code == 0, result.output
     written, told, loads = result.stdout.splitlines()
     assert written == f"written to {tmp_path / 'sets/beamenv/velocity-white-v0/data'}: 2 episodes, 2000 steps"
-    assert "velocity feedback on 2 episodes of the scenario white" in told and "tier 0, told the nominal plant" in told
+    assert "velocity on 2 episodes of the scenario white" in told and "tier 0, told the nominal plant" in told
     assert loads == "minari.load_dataset('beamenv/velocity-white-v0') loads it"
 
 

@@ -9,8 +9,6 @@ import pytest
 from beamenv.blade.presets import PRESETS
 from beamenv.scenarios.scenario import SCENARIOS
 from train.cli import names
-from train.controllers.named import discover
-from train.controllers.shipped import shipped
 from train.export import FORMATS, PRECISIONS
 from train.reproduce.catalogue import NAMES
 
@@ -77,8 +75,6 @@ def test_typos_are_told_in_one_line_each_and_nothing_heavy_is_imported(tmp_path)
     [
         (names.PRESETS, tuple(PRESETS)),
         (sorted(names.SCENARIOS), sorted(SCENARIOS)),
-        (names.laws(), tuple(discover())),
-        (names.agents(), tuple(sorted({each.agent for each in shipped()}))),
         (names.STUDIES, NAMES),
         (names.FORMATS, tuple(FORMATS)),
         (names.PRECISIONS, PRECISIONS),

@@ -19,7 +19,7 @@ def plant():
     return build_plant(blade_config())
 
 
-def task_of(scenario="default", duration=0.5):
+def task_of(scenario="nominal", duration=0.5):
     return resolve_task(scenario=scenario, duration=duration)
 
 

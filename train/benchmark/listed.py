@@ -12,17 +12,17 @@ from typing import Any
 from baselines.design.controller import as_controller
 from beamenv.configuration import FileName, Refused, checked
 from beamenv.scenarios.scenario import Scenario
+from train.controllers.choice import folder_id
+from train.controllers.known import FORMER
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, any_scenario, discover
 from train.controllers.near import near
 from train.controllers.runs import runs_in
-from train.controllers.shipped import FOLDER, shipped
+from train.controllers.shipped import FOLDER, Shipped, shipped_agents
+from train.controllers.shipped import GENERALIST as GENERALIST
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
 from train.controllers.tiers import LEARNT as LEARNT
 from train.controllers.tiers import own_tier, told_tier
-
-GENERALIST = "generalist"
-"""Trained on every scenario at once, and therefore run in every one."""
 
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
@@ -38,7 +38,7 @@ class ListedController:
     name: str
     kind: str
     tier: int
-    """Of information: what it was built from and what it sees, in ``beamenv.knowledge.TIERS``."""
+    """Of information: what it was built from and what it sees, in ``beamenv.titles.TIERS``."""
     everywhere: Mapping[str, Source] = field(default_factory=dict)
     """Runs by name that are put into every scenario."""
     only_in: Mapping[str, Mapping[str, Source]] = field(default_factory=dict)
@@ -47,6 +47,8 @@ class ListedController:
     """Whether it has something to do in a scenario."""
     at_most: int | None = None
     """How many of an agent's runs take part, if not all of them."""
+    title: str = ""
+    """In a line; empty of what a caller brings along."""
 
     def runs(self, name: str, scenario: Scenario) -> Mapping[str, Source]:
         """Those in a scenario of this name, none if it has nothing to do there."""
@@ -71,10 +73,12 @@ def listed_controllers(
     if models and not trusted:
         raise ValueError(UNTRUSTED)
     classical = [
-        ListedController(name, each.kind, each.tier, {"": Classical(each)}, suits=each.suits) for name, each in discover().items()
+        ListedController(name, each.kind, each.tier, {"": Classical(each)}, suits=each.suits, title=each.title)
+        for name, each in discover().items()
     ]
     known = {each.name: each for each in [*classical, *agents(trained)]}
-    names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *controllers]))
+    asked = () if controllers is None else (FORMER.get(name, name) for name in controllers)
+    names = list(known) if controllers is None else list(dict.fromkeys([*INDISPENSABLE, *asked]))
     known |= {name: of_folder(Path(name)) for name in names if name not in known and os.path.isdir(name)}
     if unknown := [name for name in names if name not in known]:
         others = f"one of {', '.join(known)}, or the folder of a trained agent"
@@ -88,12 +92,12 @@ def listed_controllers(
 
 
 def of_folder(folder: Path, tier: int | None = None) -> ListedController:
-    """The agent in a folder, with all runs that lie there, by the folder's name.
+    """The agent in a folder, with all runs that lie there, by the folder's id.
 
     Its tier is ``tier``, or else what its own file tells, or else ``LEARNT``. ``ValueError`` of one sentence if there is no agent,
     and for a ``tier`` below what its file tells.
     """
-    name, places = checked("controller", folder.resolve().name, FileName()), runs_in(folder)
+    name, places = checked("controller", folder_id(folder), FileName()), runs_in(folder)
     told = max((each for place in places.values() if (each := told_tier(place)) is not None), default=None)
     if tier is not None and told is not None and tier < told:
         raise Refused("tier", tier, f"at least {told}, as the agent in {str(folder)!r} says of itself")
@@ -119,13 +123,18 @@ def _given(name: str, controller: Any) -> Given:
 
 def agents(folder: Path) -> list[ListedController]:
     """The trained agents in a folder: of each the generalist and the specialists, with all their training runs."""
-    homes: dict[str, dict[str, dict[str, Source]]] = {}
-    for each in shipped(folder):
-        homes.setdefault(each.agent, {}).setdefault(each.scenario, {})[str(each.seed)] = Trained(each.folder)
-    found = []
-    for agent, runs in homes.items():
-        if general := runs.pop(GENERALIST, {}):
-            found.append(ListedController(f"{agent}-{GENERALIST}", "learned", LEARNT, general))
-        if runs:
-            found.append(ListedController(f"{agent}-specialist", "learned", LEARNT, only_in=runs))
-    return found
+    return [
+        ListedController(
+            each.id,
+            "learned",
+            LEARNT,
+            _sources(each.everywhere),
+            {scenario: _sources(runs) for scenario, runs in each.only_in.items()},
+            title=each.title,
+        )
+        for each in shipped_agents(folder).values()
+    ]
+
+
+def _sources(runs: Mapping[int, Shipped]) -> dict[str, Source]:
+    return {str(seed): Trained(run.folder) for seed, run in runs.items()}

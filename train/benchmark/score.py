@@ -15,7 +15,7 @@ from beamenv.knowledge import TRUTH
 from beamenv.scenarios.named import BENCHMARK, OPEN, UNSEEN
 from beamenv.scenarios.scenario import SCENARIOS
 from train.benchmark import statistics
-from train.benchmark.table import BOUND, RIVAL, BenchmarkTable, Row
+from train.benchmark.table import CLAIRVOYANT, RIVAL, BenchmarkTable, Row
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class Headroom:
     scenario: str
     best: Row
     """The least mean J on these very seeds."""
-    bound: Row
+    clairvoyant: Row
     cost: Estimate
     """Of J / J₀, in pairs."""
     score: Estimate | None
@@ -130,12 +130,12 @@ def headrooms(table: BenchmarkTable) -> list[Headroom]:
 
 def headroom(rows: Sequence[Row]) -> Headroom | None:
     """Of one scenario's rows; None without the clairvoyant law or without any other."""
-    bound = next((row for row in rows if row.controller == BOUND and row.measured), None)
+    clairvoyant = next((row for row in rows if row.controller == CLAIRVOYANT and row.measured), None)
     told_less = [row for row in rows if row.measured and row.tier < TRUTH]
-    if bound is None or not told_less:
+    if clairvoyant is None or not told_less:
         return None
     best = min(told_less, key=lambda row: row.mean_cost)
-    assert best.cost is not None and bound.cost is not None and best.uncontrolled is not None
+    assert best.cost is not None and clairvoyant.cost is not None and best.uncontrolled is not None
     scored = best.estimates.get("score")
     left = None if scored is None else Estimate(1.0 - scored.value, 1.0 - scored.high, 1.0 - scored.low)
-    return Headroom(best.scenario, best, bound, statistics.difference(best.cost, bound.cost, best.uncontrolled), left)
+    return Headroom(best.scenario, best, clairvoyant, statistics.difference(best.cost, clairvoyant.cost, best.uncontrolled), left)

@@ -51,18 +51,19 @@ def difference(cost: Array, rival: Array, uncontrolled: Array) -> Estimate:
     return interval(value, less(ours.mean(cost), theirs.mean(rival)) / _mean_of_seeds(uncontrolled, ours))
 
 
-def scores(cost: Array, bound: Array, uncontrolled: Array, stratum: str = "") -> Array | None:
-    """(1 + R,): how much of what can be gained is, (J₀ − J) / (J₀ − J of the bound), each a mean; and the same of R resamples.
+def scores(cost: Array, reference: Array, uncontrolled: Array, stratum: str = "") -> Array | None:
+    """(1 + R,): how much of what can be gained is, (J₀ − J) / (J₀ − J of the reference), each a mean; and the same of R resamples.
 
-    Of ``cost`` (K, N) and ``bound`` (1, N). 0 is no control and 1 the bound; nothing is clipped, and an infinite ``cost`` has the
-    score −∞. None where the bound breaks a blade, or gains nothing in some resample: then there is nothing to relate to.
+    Of ``cost`` (K, N) and ``reference`` (1, N). 0 is no control and 1 the reference; nothing is clipped, and an infinite ``cost``
+    has the score −∞. None where the reference breaks a blade, or gains nothing in some resample: then there is nothing to relate
+    to.
 
     Seeds are drawn together for all scenarios and controllers, as all meet the same ones. Runs are drawn by ``stratum``: one for
     each scenario's own trainings, and the same one for all scenarios that the same runs are put through.
     """
     seeds = _seed_counts(cost.shape[1])
     without = _means(uncontrolled[None], seeds)
-    reach = without - _means(bound, seeds)
+    reach = without - _means(reference, seeds)
     if not (np.isfinite(reach).all() and (reach > 0.0).all()):
         return None
     return np.asarray((without - _means(cost, seeds, run_counts(len(cost), stratum))) / reach)

@@ -18,7 +18,7 @@ from train.benchmark.campaign import Progress, checked_progress, jobs_of, of_lis
 from train.benchmark.leaderboard import NAME, Entry, check_entry, enter
 from train.benchmark.listed import ListedController, agents, listed_controllers, of_folder
 from train.benchmark.score import SPLITS, aggregates
-from train.benchmark.table import BOUND, BenchmarkTable, Row
+from train.benchmark.table import CLAIRVOYANT, BenchmarkTable, Row
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import discover
 from train.controllers.near import near
@@ -85,7 +85,7 @@ def submit(
     check_entry(place, listed.name, mark, overwrite)
     if folder is not None:
         check_folder(folder)
-    beside = [each for each in listed_controllers([BOUND], {}, [], False) if each.name != listed.name]
+    beside = [each for each in listed_controllers([CLAIRVOYANT], {}, [], False) if each.name != listed.name]
     table = of_listed(
         [*beside, listed], SCENARIOS, SEEDS, folder, workers=workers, arguments=ENVIRONMENT, progress=checked_progress(progress)
     )

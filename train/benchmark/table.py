@@ -24,7 +24,7 @@ controller that feeds vibration may well take longer than an episode to break th
 
 RIVAL = "lqg"
 
-BOUND = "clairvoyant"
+CLAIRVOYANT = "clairvoyant"
 """What scores relate to: it is told each episode's truth."""
 
 
@@ -37,7 +37,7 @@ class Row:
     title: str
     kind: str
     tier: int
-    """Of information, in ``beamenv.knowledge.TIERS``."""
+    """Of information, in ``beamenv.titles.TIERS``."""
     runs: int
     """Training runs that were measured; 1 for what does not learn."""
     seeds: int
@@ -113,8 +113,8 @@ def tabulate(
     rows = []
     for scenario in dict.fromkeys(cell.scenario for cell in cells):
         found = {each.name: [c for c in cells if (c.scenario, c.controller) == (scenario, each.name)] for each in listed}
-        rivals, bound = costs(found.get(RIVAL, [])), costs(found.get(BOUND, []))
-        rows += [row(found[each.name], each, rivals, bound) for each in listed if found[each.name]]
+        rivals, clairvoyant = costs(found.get(RIVAL, [])), costs(found.get(CLAIRVOYANT, []))
+        rows += [row(found[each.name], each, rivals, clairvoyant) for each in listed if found[each.name]]
     return BenchmarkTable(tuple(rows), refused, configuration)
 
 
@@ -129,10 +129,10 @@ def _judged(cell: Cell) -> Array:
     return judged(cell.metrics["cost"], cell.uncontrolled, cell.fails > 0.0)
 
 
-def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None, bound: Array | None) -> Row:
+def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None, clairvoyant: Array | None) -> Row:
     """The training runs of one controller in one scenario taken together."""
     served = [cell for cell in cells if cell.metrics is not None]
-    title = (served or cells)[0].title or listed.name
+    title = listed.title or (served or cells)[0].title or listed.name
     sentences = tuple(dict.fromkeys(cell.sentence for cell in cells if cell.sentence))
     if served and len(served) < len(cells):
         sentences = (f"{len(cells) - len(served)} of {len(cells)} runs could not be measured:", *sentences)
@@ -148,7 +148,7 @@ def row(cells: Sequence[Cell], listed: ListedController, rival: Array | None, bo
     counted = failures(series["cost"], fails)
     measured = replace(empty, runs=len(served), seeds=len(uncontrolled), estimates=found, failures=counted)
     measured = replace(measured, cost=cost, uncontrolled=uncontrolled)
-    scored = None if bound is None else statistics.scores(cost, bound, uncontrolled, "" if everywhere else scenario)
+    scored = None if clairvoyant is None else statistics.scores(cost, clairvoyant, uncontrolled, "" if everywhere else scenario)
     if scored is None:
         return measured
     return replace(measured, estimates={"score": statistics.summary(scored), **found}, scored=scored)

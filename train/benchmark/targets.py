@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import inf, isfinite
 
-from beamenv.knowledge import TIERS
 from beamenv.scenarios.named import UNSEEN
+from beamenv.titles import TIERS
 from train.benchmark import choice
 from train.benchmark.contests import AHEAD, BEHIND, Contest, contests, gap
 from train.benchmark.listed import GENERALIST, LEARNT

@@ -11,6 +11,7 @@ from train.cli.benchmark import benchmark
 from train.cli.export import export
 from train.cli.frequencies import frequencies
 from train.cli.identify import identify
+from train.cli.listing import list_ids
 from train.cli.names import check_controller, check_names, check_studies
 from train.cli.options import (
     RESUMES,
@@ -45,6 +46,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+app.command("list")(list_ids)
 app.command()(frequencies)
 app.command()(section)
 app.command()(identify)
@@ -63,14 +65,14 @@ def evaluate(
     controller: Annotated[
         str,
         typer.Argument(
-            help="A controller by name, say none, lqg or lqr-load, an agent that ships, or a trained one's folder; where that "
-            "holds several runs, 0, 1 and so on, all of them, with mean and spread."
+            help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one. Of several runs "
+            "all, with mean and spread."
         ),
     ],
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
     trained_seed: TrainedSeedOption = None,
@@ -96,7 +98,7 @@ def evaluate(
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
             reference = next((each.reference for each in found.values()), None)
             found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
-        runs = Runs(controller, found)
+        runs = Runs(next(iter(found.values())).name, found)
     if as_json:
         print_json(runs.to_dict() if len(found) > 1 else runs.first.to_dict())
     else:
@@ -113,7 +115,7 @@ def compare(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -135,7 +137,7 @@ def compare(
         comparison = Comparison({**environment_arguments(preset, speed, blade, plant), "scenario": scenario}, budget, seeds)
         with Progressbar(budget) as bar:
             evaluations = run(comparison, folder, bar)
-        tiers = tiers_of(evaluations, bar.without)
+        tiers = tiers_of(evaluations)
     if as_json:
         print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:

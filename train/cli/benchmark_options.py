@@ -19,7 +19,8 @@ ScenariosOption = Annotated[
 ControllersOption = Annotated[
     list[str] | None,
     typer.Option(
-        help="Name of a controller or shipped agent, or a trained one's folder; repeat for more. All with a name if left out."
+        help="Id of a controller or of an agent that ships (see beamenv list), or a trained one's folder; repeat for more. "
+        "All with an id if left out."
     ),
 ]
 EpisodesOption = Annotated[int | None, typer.Option(min=2, help=f"How many held-out episodes; {SEEDS} if left out.")]
@@ -41,7 +42,7 @@ QuickOption = Annotated[
 SubmitOption = Annotated[
     str | None,
     typer.Option(
-        help="Enter a trained agent's folder, a model's .zip or a controller by name on the leaderboard, once it has been run "
+        help="Enter a trained agent's folder, a model's .zip or a controller by its id on the leaderboard, once it has been run "
         "in every scenario."
     ),
 ]

@@ -45,7 +45,7 @@ def export(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     trained_seed: TrainedSeedOption = None,
     measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,

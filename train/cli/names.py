@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 from beamenv.configuration import Refused
 from beamenv.configuration.files import ENDINGS, content_of, read_table
-from beamenv.scenarios.named import GROUPS
+from beamenv.scenarios.named import FORMER as FORMER_SCENARIOS
+from beamenv.scenarios.named import GROUPS, LOADS, NOMINAL
 from beamenv.scenarios.named import NAMES as IN_FILES
+from beamenv.titles import BLADES
+from train.controllers.known import FORMER, known_controllers
 from train.controllers.near import near
+from train.controllers.shipped import recipes, shipped_agents
 from train.learning.recipes import NAMES as RECIPES
 from train.reproduce.names import NAMES as STUDIES
 
-PRESETS = (
-    *("thesis", "sound-blade", "thesis-untwisted", "thesis-pretwisted", "chandra-chopra", "aluminium-cantilever", "takacs-beam"),
-    "airfoil-blade",
-)
-"""Of blades."""
+PRESETS = tuple(BLADES)
 
-SCENARIOS = ("default", "step", "pulse", "deflection", "harmonic", "white", "quiet", *IN_FILES)
-
-GENERALIST = "generalist"
-"""In place of a scenario, where agents are trained: all but those kept for judging."""
+SCENARIOS = tuple(dict.fromkeys((NOMINAL, *LOADS, *IN_FILES)))
 
 DEVICES = ("cpu", "cuda", "mps", "xpu")
 """Kinds of them that torch has."""
@@ -40,13 +36,13 @@ MODELS = (".npz", ".mat", ".json")
 
 
 def check_names(
-    preset: str | None = None, scenario: str | Iterable[str] | None = None, blade: Path | None = None, plant: Path | None = None
+    preset: str | None = None, scenario: str | None = None, blade: Path | None = None, plant: Path | None = None
 ) -> None:
     """``ValueError`` of one sentence for a preset or scenario that there is not, and for a file that cannot be read."""
     if preset is not None:
         check_name("preset", preset, PRESETS)
-    for each in [scenario] if isinstance(scenario, str) else scenario or ():
-        check_scenario(each)
+    if scenario is not None:
+        check_scenario(scenario)
     if blade is not None:
         read_table(blade)
     if plant is not None and plant.suffix.lower() in MODELS:
@@ -57,7 +53,7 @@ def check_scenario(name: str, others: Collection[str] = ()) -> None:
     """The same of a scenario's name or file, or one of some other words."""
     if name.lower().endswith(ENDINGS):
         read_table(name)
-    else:
+    elif name not in FORMER_SCENARIOS:
         check_name("scenario", name, [*others, *SCENARIOS], ", or a .toml or .json file")
 
 
@@ -68,11 +64,12 @@ def check_scenarios(names: Iterable[str]) -> None:
 
 
 def check_controller(name: str, argument: str = "controller", others: str = "") -> None:
-    """The same of a law, an agent that ships, or the folder or file of a trained one."""
-    if name in laws() or name in _agents_in_a_scenario() or os.path.exists(name):
+    """The same of the id of a controller or of an agent that ships, and of the folder or file of a trained one."""
+    ids, agents, short = _ids()
+    if name in ids or name in agents or name in short or name in FORMER or os.path.exists(name):
         return
-    known = f"one of {', '.join(laws())}, of the agents that ship, {', '.join(agents())}, or the folder of a trained agent{others}"
-    raise Refused(argument, name, known + near(name, [*laws(), *agents()]))
+    known = f"one of {', '.join(ids)}, of the agents that ship, {', '.join(agents)}, or the folder of a trained agent{others}"
+    raise Refused(argument, name, known + near(name, [*ids, *agents, *short], short))
 
 
 def check_recipe(name: str, argument: str) -> None:
@@ -102,18 +99,7 @@ def check_name(argument: str, name: str, known: Collection[str], others: str = "
 
 
 @cache
-def laws() -> tuple[str, ...]:
-    """The controllers that have a file each."""
-    own = (each.name for each in files("train.controllers").joinpath("named").iterdir())
-    return tuple(sorted(name[:-3].replace("_", "-") for name in own if name.endswith(".py") and not name.startswith("_")))
-
-
-@cache
-def agents() -> tuple[str, ...]:
-    """The agents that ship."""
-    trained = files("train.controllers").joinpath("trained")
-    return tuple(sorted(each.name for each in trained.iterdir() if each.is_dir()))
-
-
-def _agents_in_a_scenario() -> Iterable[str]:
-    return (name for each in agents() for name in (each, f"{each}-{GENERALIST}", f"{each}-specialist"))
+def _ids() -> tuple[Collection[str], Collection[str], Mapping[str, str]]:
+    """Of controllers, of agents that ship, and the recipes of these with what is said of each."""
+    agents = shipped_agents()
+    return tuple(known_controllers()), tuple(agents), recipes(agents)

@@ -44,9 +44,9 @@ ClusterOption = Annotated[
     typer.Option(help="HOST:PORT or ray://HOST:PORT of a Ray cluster that runs, or local: Ray here. Of the extra cluster."),
 ]
 ControllerArgument = Annotated[
-    str, typer.Argument(help="A controller by name, say lqg, an agent that ships, or the folder of a trained one.")
+    str, typer.Argument(help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one.")
 ]
-TrainedSeedOption = Annotated[int | None, typer.Option(help="Training seed of an agent that ships; the first if left out.")]
+TrainedSeedOption = Annotated[int | None, typer.Option(help="Run of an agent that ships, by its training seed.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 

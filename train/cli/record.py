@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 def record(
     controller: ControllerArgument,
-    scenario: ScenarioOption = "default",
+    scenario: ScenarioOption = "nominal",
     episodes: Annotated[int, typer.Option(min=1, help="How many.")] = 100,
     seed: Annotated[
         int | None,

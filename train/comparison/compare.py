@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, field, replace
-from itertools import chain, repeat
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -86,7 +85,7 @@ class Comparison:
     def job(self, agent: str) -> Job:
         """The training of an agent."""
         environment = dict(self.environment)
-        scenario = environment.pop("scenario", "default")
+        scenario = environment.pop("scenario", "nominal")
         return Job(agent, self.recipe(agent), scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
 
 
@@ -147,10 +146,10 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
             evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener, alone)
     finally:
         envs.close()
-    tiers = tiers_of(evaluations, left_out)
+    tiers = tiers_of(evaluations)
     write_tables(folder, evaluations, tiers, left_out)
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
-    levels = {laws[name].name: by_name[laws[name].name] for name in ("lqg", "lqg-load") if name in laws}
+    levels = {name: by_name[name] for name in ("lqg", "lqg-load") if name in laws}
     drawn: list[LinearController] = [laws[name] for name in DRAWN if name in laws]
     write_figures(folder, plant, evaluations, drawn, curves, levels)
     episodes = comparison.environment
@@ -174,10 +173,9 @@ def _law_or_sentence(name: str, task: Task) -> Any:
     return law
 
 
-def tiers_of(evaluations: Sequence[Evaluation], left_out: Collection[str] = ()) -> dict[str, int]:
-    """Tiers of information by the controllers' names, in the order in which a comparison evaluates: its laws, then the agents."""
-    tiers = chain((named(name).tier for name in CLASSICAL if name not in left_out), repeat(LEARNT))
-    return {evaluation.name: tier for evaluation, tier in zip(evaluations, tiers, strict=False)}
+def tiers_of(evaluations: Sequence[Evaluation]) -> dict[str, int]:
+    """Tiers of information by the controllers' ids: the laws' own, and that of agents."""
+    return {each.name: named(each.name).tier if each.name in CLASSICAL else LEARNT for each in evaluations}
 
 
 def described(comparison: Comparison, task: Any) -> dict[str, Any]:
@@ -223,7 +221,7 @@ def claimed(folder: Path, content: Mapping[str, Any]) -> Iterator[None]:
 
 
 def trained(comparison: Comparison, name: str, folder: Path, task: Task, listener: Listener) -> Controller:
-    """The agent of an earlier run, or one trained now, from its checkpoint on if it was interrupted."""
+    """The agent of an earlier run, or one trained now, from its checkpoint on if it was interrupted; called as it is here."""
     home = folder / "agents" / name
     if not ((home / "agent.json").exists() and read_about(home).get("finished", True)):
         budget, resumes = comparison.budget[name], (home / CHECKPOINT).exists()
@@ -234,7 +232,7 @@ def trained(comparison: Comparison, name: str, folder: Path, task: Task, listene
             resume=resumes,
             keeps_unfinished=False,
         )
-    return Trained(home).build(task)
+    return replace(Trained(home).build(task), name=name)
 
 
 def evaluate_all(

@@ -8,13 +8,12 @@ from types import MappingProxyType
 
 from baselines import Evaluation
 from beamenv.configuration.writing import write_whole
+from beamenv.knowledge import TRUTH
+from train.controllers.known import known_controllers
 from train.controllers.tiers import tiers_told
 from train.shared import markdown
 from train.shared.columns import EVALUATION
 from train.shared.files import write_csv
-
-TRUE_STATE = "(true state)"
-"""In the names of laws that see it."""
 
 Tiers = Mapping[str, int] | None
 """Of controllers by their names, for a column of its own; None where there is none."""
@@ -43,14 +42,15 @@ def caption(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:
     return (
         f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]}), the same for every controller; "
         f"brackets: {100 * first.confidence:.0f} % bootstrap intervals over seeds. "
-        f"{tiers_told() if tiers else _told_of_state(evaluations)}"
+        f"{tiers_told() if tiers else _told_of_references(evaluations)}"
     ).rstrip()
 
 
-def _told_of_state(evaluations: Sequence[Evaluation]) -> str:
-    """Empty where nobody sees the true state."""
-    seen = any(TRUE_STATE in each.name for each in evaluations)
-    return f"Controllers marked {TRUE_STATE} see what no sensor shows: references, not rivals." if seen else ""
+def _told_of_references(evaluations: Sequence[Evaluation]) -> str:
+    """Empty where nobody is told what no sensor offers."""
+    known = known_controllers()
+    found = [each.name for each in evaluations if each.name in known and known[each.name].tier == TRUTH]
+    return " ".join(f"{name} is told what no sensor offers: a reference, no rival." for name in found)
 
 
 def markdown_table(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:

@@ -24,7 +24,7 @@ PLANTS = 32
 """Of what varies: a Latin hypercube with the seed of the training bank."""
 
 SPEEDS = 13
-"""Of a run-up."""
+"""Of a spin-up."""
 
 SOONER = 1e-6
 """How likely what breaks within the episode is broken already at its start."""
@@ -50,8 +50,8 @@ class Fault:
 def hypotheses_of(prior: Prior, plants: int | None = None) -> list[Hypothesis]:
     """Every plant, delay and fault that a scenario may draw, with every other; from more than ``MOST``, so many drawn ones.
 
-    Of what varies there are so many ``plants``; None: ``PLANTS``, or ``SPEEDS`` of a run-up. Where faults set in within the episode
-    the first hypothesis is that there is none. Hysteresis is left to the fallback.
+    Of what varies there are so many ``plants``; None: ``PLANTS``, or ``SPEEDS`` of a spin-up. Where faults set in within the
+    episode the first hypothesis is that there is none. Hysteresis is left to the fallback.
     """
     scenario, faults = prior.scenario, _faults_of(prior)
     if are_drawn(prior, plants):

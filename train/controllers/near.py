@@ -20,5 +20,5 @@ def near(name: Any, known: Iterable[str], titles: Mapping[str, str] = MappingPro
         return ""
     plain, names = name.strip().lower().replace("_", "-").replace(" ", "-"), list(dict.fromkeys(known))
     begun = [each for each in names if plain and each.startswith(plain)]
-    found = list(dict.fromkeys([*get_close_matches(plain, names), *begun]))[:3]
-    return f"; near it {'is' if len(found) == 1 else 'are'} {', '.join(titles.get(each, each) for each in found)}" if found else ""
+    found = list(dict.fromkeys(titles.get(each, each) for each in [*get_close_matches(plain, names), *begun]))[:3]
+    return f"; near it {'is' if len(found) == 1 else 'are'} {', '.join(found)}" if found else ""

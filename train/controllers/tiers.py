@@ -8,12 +8,11 @@ from typing import Any
 from baselines.design.controller import LEAST_TIER
 from beamenv.configuration import Count, checked
 from beamenv.configuration.files import of_file
-from beamenv.knowledge import TIERS, TRUTH
+from beamenv.knowledge import TRUTH
+from beamenv.titles import LEARNT as LEARNT
+from beamenv.titles import TIERS
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT
-
-LEARNT = 1
-"""The tier of agents: what they train on is the scenario's distribution, and they see the readings alone."""
 
 TIER = "tier"
 """What an agent's own file tells; agents that ship tell none, and are of tier ``LEARNT``."""

@@ -11,8 +11,8 @@ import numpy as np
 
 import beamenv
 from baselines import Controller
-from baselines.design.controller import name_of
-from beamenv.knowledge import TIERS
+from beamenv.titles import TIERS
+from train.controllers.known import FORMER
 from train.controllers.named import discover
 from train.controllers.runs import AGENT
 from train.controllers.tiers import LEARNT, own_tier, told_tier
@@ -30,8 +30,8 @@ def tier_of(controller: Any, law: Controller) -> int:
     """Of information: a named law's own, an agent's as its file tells, that of what it sees of anything else."""
     if not isinstance(controller, str):
         return own_tier(law)
-    if controller in discover():
-        return discover()[controller].tier
+    if (law_id := FORMER.get(controller, controller)) in discover():
+        return discover()[law_id].tier
     told = told_tier(Path(controller)) if (Path(controller) / AGENT).is_file() else None
     return LEARNT if told is None else told
 
@@ -63,7 +63,6 @@ def metadata(
     own = {
         "controller": controller,
         "trained_seed": trained_seed,
-        "law": name_of(law),
         "tier": tier,
         "told": "; ".join(told),
         "observes": observes,
@@ -79,7 +78,7 @@ def metadata(
         "dataset_id": name,
         "algorithm_name": controller,
         "description": (
-            f"{name_of(law)} on {len(costs)} episodes of the scenario {scenario} of {beamenv.ENV_ID}; "
+            f"{controller} on {len(costs)} episodes of the scenario {scenario} of {beamenv.ENV_ID}; "
             f"tier {tier}, told {' and '.join(told)}; "
             f"it acts on the {observes}{shown}. {failed or 'None'} of the episodes ended by failure"
             + ("." if mean is None else f"; the mean cost J{' of the others' if failed else ''} is {mean:.4g} J s.")

@@ -23,7 +23,7 @@ from beamenv.scenarios.named import UNSEEN
 from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task import Task, checked_dtype, resolve_task
-from train.controllers.choice import chosen
+from train.controllers.choice import chosen, id_of
 from train.datasets.about import metadata, tier_of
 from train.datasets.storage import DATA, add, begun, checked_place, put_in_place, root_of
 from train.datasets.taped import Episode, episodes_of
@@ -43,7 +43,7 @@ ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units",
 
 def record(
     controller: str | ControllerArgument,
-    scenario: Any = "default",
+    scenario: Any = "nominal",
     episodes: int = 100,
     seed: int = RECORDED,
     *,
@@ -74,7 +74,7 @@ def record(
     count, overwrite = checked("episodes", episodes, EPISODES), checked("overwrite", overwrite, Flag())
     seeds, progress = recorded(seed, count), checked_progress(progress)
     root = root_of(None if folder is None else as_path("folder", folder))
-    called = controller if isinstance(controller, str) else name_of(as_controller(controller))
+    called = id_of(controller, _word(scenario), trained_seed) if isinstance(controller, str) else name_of(as_controller(controller))
     place = checked_place(root, _default_name(called, scenario) if name is None else name, overwrite)
     stage = Stage.of(controller, scenario, {} if environment is None else environment, trained_seed)
     with put_in_place(place) as hidden:
@@ -93,11 +93,13 @@ def record(
 
 
 def _default_name(controller: str, scenario: Any) -> str:
-    """Of a data set, with - for whatever Minari does not take; a run of several is called after their folder too."""
-    path = Path(controller)
-    own = f"{path.parent.name}-{path.name}" if path.name.isdecimal() else path.name
+    """Of a data set, with - for whatever Minari does not take."""
     where = Path(scenario).stem if isinstance(scenario, (str, Path)) else "own"
-    return f"beamenv/{'-'.join(re.sub(r'[^-a-zA-Z0-9_]+', '-', each) for each in (own, where))}-v0"
+    return f"beamenv/{'-'.join(re.sub(r'[^-a-zA-Z0-9_]+', '-', each) for each in (controller, where))}-v0"
+
+
+def _word(scenario: Any) -> str:
+    return str(scenario) if isinstance(scenario, (str, Path)) else "one of the caller's own"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +132,7 @@ class Stage:
         played = {**arguments, "scenario": on_recording_bank(known)}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=WIDTH, **played)
         task = replace(envs.unwrapped.task, told_scenario=known)
-        word = str(scenario) if isinstance(scenario, (str, Path)) else "one of the caller's own"
+        word = _word(scenario)
         if isinstance(controller, str):
             law = chosen(controller, task, word, trained_seed)
         elif trained_seed is not None:

@@ -44,7 +44,7 @@ HIDDEN = {"state": "the blade's true state", "observation and truth": "what the 
 REASONS: Mapping[type[Any], str] = {
     PredictiveController: "it solves a quadratic program at every instant, for which it needs a solver",
     AdaptiveNeural: "its network learns at every instant, with a memory of some thousand numbers, which blocks have no words for",
-    TimeVaryingLQG: "its gains are those of a run-up that is known beforehand, worked out on the way",
+    TimeVaryingLQG: "its gains are those of a spin-up that is known beforehand, worked out on the way",
 }
 
 

@@ -19,6 +19,7 @@ from beamenv.task import Task, resolve_task
 from train.controllers.policies import Policy
 from train.controllers.policy_files import load_policy, save_policy
 from train.controllers.runs import best_run
+from train.controllers.shipped import GENERALIST as GENERALIST
 from train.controllers.tiers import LEARNT, TIER
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import FORMAT, NAME, damaged, read_checkpoint, write_checkpoint
@@ -33,9 +34,6 @@ from train.shared.interruption import Interrupted, ending_as_interrupted
 from train.shared.lock import alone_in
 from train.shared.threads import one_torch_thread
 from train.shared.versions import versions
-
-GENERALIST = "generalist"
-"""In place of a scenario: all of ``NAMES``, in one training."""
 
 NAMES = tuple(name for name in (*BENCHMARK, *OPEN) if name not in UNSEEN)
 """All scenarios but those that are kept for judging."""
@@ -55,7 +53,7 @@ class Job:
     """Of the recipe."""
     recipe: Recipe
     scenario: Any
-    """A name, a TOML file, a table as JSON can hold it, or ``GENERALIST``."""
+    """A name, a TOML file, a table as JSON can hold it, or ``GENERALIST``: all of ``NAMES``, in one training."""
     seed: int
     budget: Budget
     environment: Mapping[str, Any]

@@ -2,7 +2,26 @@
 
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
+from itertools import takewhile
 from types import MappingProxyType
+
+NOMINAL = "nominal"
+"""The scenario that is meant where none is given."""
+
+LOADS: Mapping[str, str] = MappingProxyType(
+    {
+        "step": "A load that sets in and stays, in every episode.",
+        "pulse": "A rectangular pulse in every episode.",
+        "deflection": "Every episode starts from rest in a static deflection, released at t = 0.",
+        "harmonic": "A sinusoidal load in every episode.",
+        "white": "White loads and sensor noise alone: what LQG is designed for.",
+        "quiet": "Nothing at all: no load and no noise.",
+    }
+)
+"""What those without a file are, which no benchmark and no environment id is of."""
+
+FORMER: Mapping[str, str] = MappingProxyType({"default": NOMINAL})
+"""Names that scenarios once had, and that still mean them."""
 
 NAMES: tuple[str, ...] = tuple(
     sorted(entry.name.removesuffix(".toml") for entry in files(__name__).iterdir() if entry.name.endswith(".toml"))
@@ -33,3 +52,15 @@ GROUPS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 def expanded(names: Iterable[str]) -> tuple[str, ...]:
     """Names and files, and of groups their scenarios, each once."""
     return tuple(dict.fromkeys(name for each in names for name in GROUPS.get(each, (each,))))
+
+
+def titles() -> dict[str, str]:
+    """What every scenario is, in a line: the comment that its file opens with. ``NOMINAL`` first, those without a file next."""
+    texts = {name: files(__name__).joinpath(f"{name}.toml").read_text(encoding="utf-8") for name in NAMES}
+    told = {name: opening(text) for name, text in texts.items()}
+    return {NOMINAL: told[NOMINAL], **LOADS, **told}
+
+
+def opening(text: str) -> str:
+    """The comment that a TOML file opens with."""
+    return " ".join(line.lstrip("#").strip() for line in takewhile(lambda line: line.startswith("#"), text.splitlines()))

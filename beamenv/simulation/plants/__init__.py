@@ -1,1 +1,1 @@
-"""Which plant a blade has: banks, run-ups, plants over a range of speeds."""
+"""Which plant a blade has: banks, spin-ups, plants over a range of speeds."""

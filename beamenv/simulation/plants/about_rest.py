@@ -1,4 +1,4 @@
-"""A run-up in the thesis' model, which knows no steady state: about the blade at rest (see ``run_up``)."""
+"""A spin-up in the thesis' model, which knows no steady state: about the blade at rest (see ``spin_up``)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.blade.build import Blade
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.spin_up import Cycloid, SpinUp
 from beamenv.structure.base_motion import base_loads
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class AboutRest(RunUp):
+class AboutRest(SpinUp):
     """In the thesis' model."""
 
     elastic: Array

@@ -1,4 +1,4 @@
-"""A run-up in the blade's model: about the steady state of the speed that it has now (see ``run_up``)."""
+"""A spin-up in the blade's model: about the steady state of the speed that it has now (see ``spin_up``)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from beamenv.blade.build import Blade
 from beamenv.patches import actuation, sensing
 from beamenv.plant.reduction import surface_strain
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.spin_up import Cycloid, SpinUp
 from beamenv.structure.base_motion import base_loads
 from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import between
@@ -23,7 +23,7 @@ STEADY_STATES = 8
 
 
 @dataclass(frozen=True, eq=False)
-class AboutSteadyStates(RunUp):
+class AboutSteadyStates(SpinUp):
     """In the blade's model: what the blade has at n squared speeds, leading axis."""
 
     squares: Array

@@ -1,4 +1,4 @@
-"""Which bank a scenario asks for: plants that are drawn, or the plants of a run-up."""
+"""Which bank a scenario asks for: plants that are drawn, or the plants of a spin-up."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from beamenv.simulation.plants.bank import Bank
 from beamenv.simulation.plants.coordinates import seen_from
 from beamenv.simulation.plants.model_bank import model_bank
 from beamenv.simulation.plants.pyroelectric import pyroelectric_readings
-from beamenv.simulation.plants.run_up import Cycloid
-from beamenv.simulation.plants.run_ups import run_up_of
-from beamenv.simulation.plants.spin_up import spin_up_bank
+from beamenv.simulation.plants.spin_up import Cycloid
+from beamenv.simulation.plants.spin_up_bank import spin_up_bank
+from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.simulation.plants.standing import about_moving_equilibrium, about_steady_states
 from beamenv.simulation.plants.walks import Warming, stations_of, walk_of
 
@@ -31,8 +31,8 @@ Array = NDArray[np.float64]
 def build_bank(blade: Blade, design: Blade, variation: PlantVariation, steps: int) -> Bank:
     """The bank of a true blade, seen from a design blade, for episodes of ``steps`` control intervals."""
     if variation.spin_up is not None:
-        run_up = run_up_of(blade, Cycloid(*variation.spin_up, steps * blade.config.control_interval))
-        return about_moving_equilibrium(spin_up_bank(blade, design, run_up, steps), blade, run_up)
+        spin_up = spin_up_of(blade, Cycloid(*variation.spin_up, steps * blade.config.control_interval))
+        return about_moving_equilibrium(spin_up_bank(blade, design, spin_up, steps), blade, spin_up)
     return drawn_bank(blade, design, variation)
 
 

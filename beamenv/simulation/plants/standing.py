@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from beamenv.blade.build import Blade
 from beamenv.plant.reduction import steady_and_strain
 from beamenv.simulation.plants.bank import Bank
-from beamenv.simulation.plants.run_up import RunUp
+from beamenv.simulation.plants.spin_up import SpinUp
 from beamenv.structure.steady_deformation import steady_deformation
 
 Array = NDArray[np.float64]
 
 NODES = 8
-"""Squared speeds between whose steady states those of a run-up are interpolated."""
+"""Squared speeds between whose steady states those of a spin-up are interpolated."""
 
 
 def about_steady_states(bank: Bank, blades: Sequence[Blade]) -> Bank:
@@ -35,22 +35,22 @@ def about_steady_states(bank: Bank, blades: Sequence[Blade]) -> Bank:
     return replace(bank, steady=steady, standing=standing, failure_strain=limits)
 
 
-def about_moving_equilibrium(bank: Bank, blade: Blade, run_up: RunUp) -> Bank:
-    """The bank of a run-up, with the steady state of the first speed and what the moving equilibrium strains the blade.
+def about_moving_equilibrium(bank: Bank, blade: Blade, spin_up: SpinUp) -> Bank:
+    """The bank of a spin-up, with the steady state of the first speed and what the moving equilibrium strains the blade.
 
     That is the strain of each speed's steady state, and that of what the equilibrium of the modes departs from their static one.
     ``ValueError`` where one of these steady states alone is beyond the blade's strain limit.
     """
-    first = steady_deformation(blade.beam, run_up.course.first)
+    first = steady_deformation(blade.beam, spin_up.course.first)
     limits = np.full(len(bank), blade.config.patches.failure_strain)
     bank = replace(bank, steady=np.tile(astuple(first), (len(bank), 1)), failure_strain=limits)
     if blade.config.strain_limit == "vibration":
         return bank
-    times = np.linspace(0.0, run_up.course.duration, len(bank), endpoint=False)
-    patches = run_up.patches(times)
+    times = np.linspace(0.0, spin_up.course.duration, len(bank), endpoint=False)
+    patches = spin_up.patches(times)
     assert patches is not None  # in the thesis' model the limit is on vibration
-    moving = np.einsum("tkr,tr->tk", patches[2], run_up.departure(times))
-    return replace(bank, standing=standing_strains(blade, run_up.course.speed(times)) + moving)
+    moving = np.einsum("tkr,tr->tk", patches[2], spin_up.departure(times))
+    return replace(bank, standing=standing_strains(blade, spin_up.course.speed(times)) + moving)
 
 
 def check_strain(strain: float, speed: float, limit: float) -> None:

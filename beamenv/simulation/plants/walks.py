@@ -6,7 +6,7 @@ electronics hold go on; damping is that of the plant. With K stations evenly ove
 distance of two, range/2(K − 1): in the scenarios that ship 0.14 % of the speed, at most 0.5 % of mass and 0.7 % of stiffness, and
 2.4 K; twice as many stations change J by less than 1 % (``tests/scenarios/test_walks.py``).
 
-What so slow a change does to the steady state is not vibration, as in a run-up (``run_up``): with it, and with what Euler's force
+What so slow a change does to the steady state is not vibration, as in a spin-up (``spin_up``): with it, and with what Euler's force
 displaces, moves the equilibrium that vibration is about. Unlike there, the start of an episode excites nothing, for the change was
 under way before; and of the strains that the total limit counts, those of Euler's force are left out.
 """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from beamenv.knowledge import TIERS
+from beamenv.titles import TIERS
 from train.benchmark.contests import Contest, contests, rule
 from train.benchmark.showing.section import COST, Entry, Section, gap, words
 from train.benchmark.table import BenchmarkTable, Row

@@ -10,7 +10,7 @@ from beamenv.knowledge import TRUTH
 from train.benchmark.listed import GENERALIST
 from train.benchmark.score import by_split
 from train.benchmark.statistics import interquartile_mean
-from train.benchmark.table import BOUND, RIVAL, BenchmarkTable
+from train.benchmark.table import CLAIRVOYANT, RIVAL, BenchmarkTable
 from train.benchmark.targets import best
 from train.figures.heat_map import HeatMap
 
@@ -55,8 +55,8 @@ def shown(table: BenchmarkTable) -> tuple[str, ...]:
     ranked = sorted(names, key=lambda name: _rank(table, name))
     groups = {name: _group(table, name) for name in ranked}
     firsts = {group: next(name for name in ranked if groups[name] == group) for group in groups.values() if group}
-    if BOUND in names:
-        firsts[REFERENCE] = BOUND
+    if CLAIRVOYANT in names:
+        firsts[REFERENCE] = CLAIRVOYANT
     chosen = dict.fromkeys([RIVAL, *firsts.values(), *(name for name in ranked if not groups[name])])
     kept = list(chosen)[:MOST]
     return tuple(name for name in names if name in kept)

@@ -43,7 +43,7 @@ def headroom(table: BenchmarkTable) -> Section:
     """How far the best of those who are told less is from the clairvoyant law, scenario by scenario."""
     rows = []
     for each in headrooms(table):
-        absolute = [cost(one.estimates["relative_cost"]) for one in (each.bound, each.best)]
+        absolute = [cost(one.estimates["relative_cost"]) for one in (each.clairvoyant, each.best)]
         whose = words(each.scenario, each.best.controller, each.best.tier, each.best.kind)
         rows.append([*whose, *absolute, gap(each.cost), gap(each.score)])
     headings = ["scenario", "least J, tier 3 aside", "tier", "kind", "J / J₀ of clairvoyant", "J / J₀", "headroom", "as score"]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import pkgutil
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType
@@ -18,10 +19,12 @@ from typing import Any
 from baselines import Controller, Law
 from baselines.design.controller import LEAST_TIER
 from beamenv.configuration import Count, Refused, checked
-from beamenv.knowledge import TIERS
 from beamenv.scenarios.scenario import Scenario
 from beamenv.task import Task, checked_task
+from beamenv.titles import TIERS
+from train.controllers.known import FORMER
 from train.controllers.near import near
+from train.controllers.shipped import recipes, shipped_agents
 
 KINDS = ("fixed", "scheduled", "adaptive", "predictive")
 """Linear laws that stay as they were designed; laws that follow the rotor's speed or the time; laws that find out what is the case;
@@ -46,11 +49,13 @@ class NamedController:
     build: Callable[[Any], Controller]
     """From what its tier is told."""
     tier: int = 0
-    """Of information, in ``beamenv.knowledge.TIERS``."""
+    """Of information, in ``beamenv.titles.TIERS``."""
     suits: Callable[[Scenario], bool] = any_scenario
     """Whether it is meant for a scenario: the benchmark leaves out the others."""
     check: Callable[[Any], None] = nothing_asked
     """``ValueError`` where what its tier is told has not what it asks for; at once, and not of all that may go wrong."""
+    title: str = ""
+    """In a line: the first of its file."""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -62,7 +67,7 @@ class NamedController:
         self.check(checked_task(task).told(self.tier))
 
     def build_for(self, task: Task) -> Controller:
-        """The controller for a task, in its units, built from what its tier is told.
+        """The controller for a task, in its units and called by its short name, built from what its tier is told.
 
         Raises ``ValueError`` for one that observes what its tier does not see.
         """
@@ -71,7 +76,16 @@ class NamedController:
         least = LEAST_TIER.get(observes, 0)
         if least > self.tier:
             raise Refused(f"{self.name}.TIER", self.tier, f"at least {least} for what observes the {observes}")
-        return law.in_physical_units() if task.physical_units and isinstance(law, Law) else law
+        if not isinstance(law, Law):
+            return law
+        return called(law.in_physical_units() if task.physical_units else law, self.name)
+
+
+def called(law: Law, name: str) -> Law:
+    """The same law under another name; a copy, for some take long to be made once more."""
+    same = copy(law)
+    object.__setattr__(same, "name", name)
+    return same
 
 
 def discover() -> Mapping[str, NamedController]:
@@ -85,16 +99,17 @@ def discover() -> Mapping[str, NamedController]:
                 f"controller file {module.name + '.py'!r} has no {missing[0]}, but must have KIND, TIER and build(known)."
             )
         optional = getattr(content, "suits", any_scenario), getattr(content, "check", nothing_asked)
-        found[name] = NamedController(name, content.KIND, content.build, content.TIER, *optional)
+        title = (content.__doc__ or "").strip().partition("\n")[0]
+        found[name] = NamedController(name, content.KIND, content.build, content.TIER, *optional, title)
     return MappingProxyType(found)
 
 
 def named(name: str) -> NamedController:
     """A controller by its short name; ``ValueError`` lists the known ones, and who has a name like it, agents that ship as well."""
     known = discover()
+    name = FORMER.get(name, name) if isinstance(name, str) else name
     if not isinstance(name, str) or name not in known:
-        from train.controllers.shipped import shipped  # loads what an agent is made of
-
-        agents = {each.agent: f"{each.agent}, an agent that ships" for each in shipped()}
+        ids = shipped_agents()
+        agents = {short: f"{each}, an agent that ships" for short, each in [*recipes(ids).items(), *zip(ids, ids, strict=True)]}
         raise Refused("controller", name, f"one of {', '.join(known)}{near(name, [*known, *agents], agents)}")
     return known[name]

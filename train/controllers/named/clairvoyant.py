@@ -14,5 +14,5 @@ def build(truth: Truth) -> Controller:
 
 
 def suits(scenario: Scenario) -> bool:
-    """Not where plants wander within the episode: it is told one plant, or a run-up that is the same in every episode."""
+    """Not where plants wander within the episode: it is told one plant, or a spin-up that is the same in every episode."""
     return not scenario.plants.walks

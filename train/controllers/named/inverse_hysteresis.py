@@ -11,5 +11,5 @@ TIER = 1
 def build(prior: Prior) -> Controller:
     """Told the loop; where there is none, the LQG alone."""
     loads = foreseen_loads(prior.scenario, prior.blade.config.speed, prior.blade.truth.loads)
-    law = full_order_lqg(prior.blade.truth, load=loads, name="LQG with foreseen loads")
+    law = full_order_lqg(prior.blade.truth, load=loads)
     return inverse_hysteresis(law, prior.scenario.drive.hysteresis)

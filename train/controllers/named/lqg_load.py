@@ -9,4 +9,4 @@ TIER = 0
 
 def build(design: Design) -> Controller:
     """The load is part of the state."""
-    return reference_lqg(design.full_plant, load=PersistentLoad(), name="LQG with load estimate")
+    return reference_lqg(design.full_plant, load=PersistentLoad())

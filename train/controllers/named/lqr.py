@@ -1,4 +1,4 @@
-"""LQR on the true state."""
+"""LQR on the full state, which no sensor offers."""
 
 from baselines import Controller, lqr
 from beamenv.knowledge import Truth
@@ -8,7 +8,7 @@ TIER = 3
 
 
 def check(truth: Truth) -> None:
-    """It asks for the true state."""
+    """It asks for the full state."""
     truth.check_state_told()
 
 

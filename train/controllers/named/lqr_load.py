@@ -1,4 +1,4 @@
-"""LQR on the true state and an estimate of the load that lasts."""
+"""LQR on the full state, which no sensor offers, and an estimate of a load that lasts."""
 
 from baselines import Controller, PersistentLoad, lqr
 from beamenv.knowledge import Truth
@@ -8,7 +8,7 @@ TIER = 3
 
 
 def check(truth: Truth) -> None:
-    """It asks for the true state."""
+    """It asks for the full state."""
     truth.check_state_told()
 
 

@@ -15,4 +15,4 @@ def check(design: Design) -> None:
 def build(design: Design) -> Controller:
     """Tuned to the speed of the design; the lasting load also takes up what is slow in turbulence."""
     loads = (RotorHarmonics(design.turning_config("rotor-lqg").speed), PersistentLoad())
-    return reference_lqg(design.full_plant, load=loads, name="LQG with rotor harmonics")
+    return reference_lqg(design.full_plant, load=loads)

@@ -1,4 +1,4 @@
-"""A run-up beside the whole non-linear blade, every trial function of it, integrated in time with its finite rotations."""
+"""A spin-up beside the whole non-linear blade, every trial function of it, integrated in time with its finite rotations."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from beamenv.blade.build import Blade
 from beamenv.blade.presets import blade_config
-from beamenv.simulation.plants.run_up import Cycloid
-from beamenv.simulation.plants.run_ups import run_up_of
+from beamenv.simulation.plants.spin_up import Cycloid
+from beamenv.simulation.plants.spin_ups import spin_up_of
 from beamenv.structure.geometrically_exact.inertia import AXIS
 from beamenv.structure.geometrically_exact.kinematics import INCREMENT, MOVE, SPIN, Placement
 
@@ -66,17 +66,17 @@ def integrated(exact, tip):
 @pytest.mark.slow
 def test_the_motion_about_steady_states_is_that_of_the_whole_blade():
     """76 mm in lag within 0.1 %; 8 mm in flap, to which stresses that Euler's force raises contribute, within 3 %."""
-    run_up, tip = run_up_of(BLADE, COURSE), BLADE.full.tip
+    spin_up, tip = spin_up_of(BLADE, COURSE), BLADE.full.tip
     times, whole = integrated(BLADE.beam.exact, tip)
-    r = len(run_up.damping)
+    r = len(spin_up.damping)
 
     def rate(time, state):
         at = np.asarray(time)
-        force = run_up.base_load(at) - run_up.restoring(at) @ state[:r] - run_up.rate_matrix(at) @ state[r:]
+        force = spin_up.base_load(at) - spin_up.restoring(at) @ state[:r] - spin_up.rate_matrix(at) @ state[r:]
         return np.concatenate([state[r:], force])
 
     found = solve_ivp(rate, (0.0, times[-1]), np.zeros(2 * r), "BDF", t_eval=times, rtol=1e-6, atol=1e-9).y[:r].T
-    ours = np.einsum("in,knj,kj->ki", tip, run_up.shapes(times), found)
+    ours = np.einsum("in,knj,kj->ki", tip, spin_up.shapes(times), found)
     steady = [tip @ BLADE.beam.at(float(COURSE.speed(time))).steady.coefficients for time in times[::10]]
     error = np.abs(whole[::10] - steady - ours[::10]).max(axis=0)
     assert np.abs(ours).max(axis=0) == pytest.approx([0.0758, 0.0081], rel=0.02)

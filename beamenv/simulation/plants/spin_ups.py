@@ -1,4 +1,4 @@
-"""Which equations a blade runs up by: those of its model."""
+"""Which equations a blade spins up by: those of its model."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from beamenv.blade.build import Blade
 from beamenv.configuration import Refused
 from beamenv.simulation.plants.about_rest import AboutRest
 from beamenv.simulation.plants.about_steady_states import AboutSteadyStates
-from beamenv.simulation.plants.run_up import Cycloid, RunUp
+from beamenv.simulation.plants.spin_up import Cycloid, SpinUp
 
 
-def run_up_of(blade: Blade, course: Cycloid) -> RunUp:
+def spin_up_of(blade: Blade, course: Cycloid) -> SpinUp:
     """In the modes of the configured speed, with their damping; ``ValueError`` where the blade cannot turn so fast."""
     critical, speeds = blade.beam.critical_speed, [course.first, course.last]
     if max(speeds) >= critical:

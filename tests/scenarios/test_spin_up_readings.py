@@ -1,11 +1,11 @@
-"""Sensors and loads of one's own along a run-up: those of a steady speed where it is steady, and kinematics on the way."""
+"""Sensors and loads of one's own along a spin-up: those of a steady speed where it is steady, and kinematics on the way."""
 
 import numpy as np
 import pytest
 
-from baselines.laws.run_up_lqg import run_up_lqg
+from baselines.laws.spin_up_lqg import spin_up_lqg
 from beamenv import RotatingBeamEnv
-from beamenv.simulation.plants.run_up import Cycloid
+from beamenv.simulation.plants.spin_up import Cycloid
 from beamenv.task import resolve_task
 
 SENSORS = [
@@ -24,7 +24,7 @@ LOADS = [
 RAW = {"amplifier_bandwidth": None, "filter_cutoff": None}
 
 
-def run_up(low, high, sensors, loads=(), **arguments):
+def spin_up(low, high, sensors, loads=(), **arguments):
     blade = {"sensors": [{**each, "range": 1e4} for each in sensors], **arguments.pop("blade", {})}
     chosen = {"preset": "quiet", "plants": {"spin_up": [low, high]}, "loads": list(loads)}
     return RotatingBeamEnv(blade=blade, scenario=chosen, dtype="float64", physical_units=True, **arguments)
@@ -64,7 +64,7 @@ def test_on_the_way_a_displacement_sensor_shows_the_tip_and_a_vibrometer_its_rat
         {"kind": kind, "direction": way} for kind in ("displacement", "velocity") for way in ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
     ]
     blade = {"electronics": RAW, "control_interval": 1e-4, "truth_modes": 6}
-    readings, tips = shown(run_up(100.0, 300.0, sensors, LOADS[:1], blade=blade, duration=0.2), 1000)
+    readings, tips = shown(spin_up(100.0, 300.0, sensors, LOADS[:1], blade=blade, duration=0.2), 1000)
     np.testing.assert_allclose(readings[:, :2], tips, rtol=0.0, atol=1e-9 * np.abs(tips).max())
     rate = (tips[2:] - tips[:-2]) / 2e-4
     error = np.abs(readings[1:-1, 2:] - rate).max(axis=0) / np.abs(rate).max(axis=0)
@@ -78,7 +78,7 @@ def test_on_the_way_an_accelerometer_feels_the_path_of_its_point_in_space():
     sensors = [{"kind": "accelerometer", "direction": direction.tolist()}]
     sensors += [{"kind": "displacement", "point": list(at), "direction": way.tolist()} for at in points for way in ways]
     blade = {"control_interval": 1e-4, "truth_modes": 4}
-    env = run_up(100.0, 300.0, sensors, LOADS[:1], blade=blade, duration=0.2)
+    env = spin_up(100.0, 300.0, sensors, LOADS[:1], blade=blade, duration=0.2)
     readings, _ = shown(env, 1000)
     beam, course = env.task.blade.beam, Cycloid(100.0, 300.0, 0.2)
     moved, beside, above = np.moveaxis(readings[:, 1:].reshape(-1, 3, 3), 1, 0)
@@ -104,11 +104,11 @@ def test_on_the_way_an_accelerometer_feels_the_path_of_its_point_in_space():
     assert error < 0.01  # 0.004
 
 
-def test_lqg_along_a_run_up_reads_an_accelerometer():
+def test_lqg_along_a_spin_up_reads_an_accelerometer():
     sensors = [{"kind": "accelerometer"}, {"kind": "strain-gauge", "position": 0.3, "wall": "top"}]
     chosen = {"preset": "white", "plants": {"spin_up": [200.0, 201.0]}}
     env = RotatingBeamEnv(blade={"sensors": sensors, "modes": 4, "truth_modes": 4}, scenario=chosen, dtype="float64", duration=0.1)
-    law, energies = run_up_lqg(env.task.prior), []
+    law, energies = spin_up_lqg(env.task.prior), []
     for controlled in (False, True):
         observation, info = env.reset(seed=0)
         memory, energy = None, 0.0
@@ -120,7 +120,7 @@ def test_lqg_along_a_run_up_reads_an_accelerometer():
     assert energies[1] < 0.95 * energies[0]
 
 
-def test_a_run_up_tells_few_plants_of_sensors_from_others_as_it_does_of_currents():
+def test_a_spin_up_tells_few_plants_of_sensors_from_others_as_it_does_of_currents():
     task = resolve_task(blade={"sensors": SENSORS, "truth_modes": 11}, scenario={"preset": "spin-up", "loads": LOADS}, duration=0.1)
     assert len(task.bank) == 200
     assert task.bank.plant.disturbance_input.shape[1] == 5

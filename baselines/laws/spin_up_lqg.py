@@ -1,4 +1,4 @@
-"""LQG along a run-up that is known beforehand: the gains of every instant's own plant, by Riccati recursions over the episode."""
+"""LQG along a spin-up that is known beforehand: the gains of every instant's own plant, by Riccati recursions over the episode."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from beamenv.scenarios.tables import PlantVariation
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class RunUpLQG(TimeVaryingLQG):
+class SpinUpLQG(TimeVaryingLQG):
     """The optimum under white noise for a blade that does what it was designed to, over the episode; it sees the readings alone."""
 
     def told(self, seen: Array) -> tuple[Array, Array]:
-        """Of every blade that it is the first of the bank, or runs up along it, with the mean delay and nothing broken."""
+        """Of every blade that it is the first of the bank, or spins up along it, with the mean delay and nothing broken."""
         m, p = self._plan.sizes[1:]
         delay = round(sum(self.known.scenario.drive.delay) / 2.0)
         return seen, np.tile([0.0, delay, *np.ones(m + p), *np.zeros(p)], (len(seen), 1))
 
 
-def run_up_lqg(prior: Prior) -> RunUpLQG:
+def spin_up_lqg(prior: Prior) -> SpinUpLQG:
     """LQG with the gains of a linear time-varying plant (Kwakernaak and Sivan, Linear Optimal Control Systems, 1972, sections 3.3,
-    4.3 and 5.3), for scenarios whose rotor runs up or down on a course that is known.
+    4.3 and 5.3), for scenarios whose rotor spins up or down on a course that is known.
 
-    Along the run-up each interval has its own plant, and the filter begins with what the start of the run-up itself excites. Where
-    the rotor does not run up all intervals have the plant that others depart from; what is left then are gains that know when
-    episodes begin and end. Other plants that a scenario draws, and what may be broken, it does not know of. It is no loop that
+    Along the spin-up each interval has its own plant, and the filter begins with what the start of the spin-up itself excites.
+    Where the rotor does not spin up all intervals have the plant that others depart from; what is left then are gains that know
+    when episodes begin and end. Other plants that a scenario draws, and what may be broken, it does not know of. It is no loop that
     has to last, and so nothing is verified but that its recursions have solutions. ``ValueError`` for what is no ``Prior``.
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
     if prior.scenario.plants.spin_up is None:
         prior = replace(prior, scenario=replace(prior.scenario, plants=PlantVariation()))
-    return RunUpLQG("run-up LQG", Instruments.of(prior.bank.plant), prior)
+    return SpinUpLQG("spin-up LQG", Instruments.of(prior.bank.plant), prior)

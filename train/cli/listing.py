@@ -1,0 +1,152 @@
+"""The command ``beamenv list``: everything with an id, what it is, and how to get it in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated, Any
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from train.cli.options import JsonOption, one_sentence, print_json, say
+
+
+class Kind(str, Enum):
+    """What has ids."""
+
+    controllers = "controllers"
+    agents = "agents"
+    scenarios = "scenarios"
+    presets = "presets"
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """All of a kind."""
+
+    rows: Sequence[dict[str, Any]]
+    """Each with its "id", "title" and "python", and what else there is to tell."""
+    shown: Sequence[str]
+    """What the table shows between id and title."""
+    note: str
+    """Below the table: what its columns say."""
+    example: str
+    """How one of them is had in Python."""
+
+
+def list_ids(
+    kind: Annotated[Kind, typer.Argument(help="What is listed.")],
+    as_json: JsonOption = False,
+) -> None:
+    """List every controller, agent, scenario or preset: its id, what it is and knows, and how to get it in Python."""
+    with one_sentence():
+        found = LISTS[kind]()
+    if as_json:
+        print_json(list(found.rows))
+    else:
+        _show(kind.value, found)
+
+
+def controllers() -> Listed:
+    """Those that are built."""
+    from train.controllers.known import known_controllers
+
+    rows = [
+        {"id": each.id, "title": each.title, "kind": each.kind, "tier": each.tier, "told": each.told, "python": each.python}
+        for each in known_controllers().values()
+    ]
+    return Listed(rows, ("tier",), _tiers(), f'{CONTROLLER}; controller("lqg", env)')
+
+
+def agents() -> Listed:
+    """Those that ship."""
+    from train.controllers.known import known_agents
+
+    rows = [
+        {
+            "id": each.id,
+            "title": each.title,
+            "tier": each.tier,
+            "told": each.told,
+            "scenarios": list(each.scenarios),
+            "runs": list(each.runs),
+            "python": each.python,
+        }
+        for each in known_agents().values()
+    ]
+    note = (
+        "Generalists are trained on all scenarios but those kept for judging, specialists on each that is named. All are of tier 1."
+    )
+    return Listed(rows, ("runs",), note, f'{CONTROLLER}; controller("residual-generalist", env, run=0)')
+
+
+def scenarios() -> Listed:
+    """Those with a name."""
+    from beamenv.scenarios.named import GROUPS, NAMES, titles
+
+    rows = [
+        {
+            "id": name,
+            "title": title,
+            "in": [group for group, members in GROUPS.items() if name in members and group != "all"],
+            "python": f'gym.make("beamenv/RotatingBeam-{name}-v0")'
+            if name in NAMES
+            else f'gym.make("beamenv/RotatingBeam-v0", scenario="{name}")',
+        }
+        for name, title in titles().items()
+    ]
+    groups = "In: groups, which beamenv benchmark --scenario takes too; what is unseen is kept for judging."
+    return Listed(rows, ("in",), groups, 'gym.make("beamenv/RotatingBeam-v0", scenario="delay")')
+
+
+def presets() -> Listed:
+    """Those of blades."""
+    from beamenv.titles import BLADES
+
+    rows = [
+        {"id": name, "title": title, "python": f'gym.make("beamenv/RotatingBeam-v0", preset="{name}")'}
+        for name, title in BLADES.items()
+    ]
+    return Listed(rows, (), "", 'gym.make("beamenv/RotatingBeam-v0", preset="sound-blade")')
+
+
+CONTROLLER = "from beamenv.train.controllers import controller"
+
+LISTS: dict[Kind, Callable[[], Listed]] = {
+    Kind.controllers: controllers,
+    Kind.agents: agents,
+    Kind.scenarios: scenarios,
+    Kind.presets: presets,
+}
+
+
+def _tiers() -> str:
+    from beamenv.titles import TIERS
+
+    return f"Tier: what it is told, each what those before are too: {', '.join(f'{tier} {what}' for tier, what in TIERS.items())}."
+
+
+def _show(kind: str, found: Listed) -> None:
+    """As wide as the terminal; ids are never cut."""
+    table = Table(box=SIMPLE_HEAD, caption=Text(found.note), caption_justify="left", pad_edge=False)
+    table.add_column(kind.removesuffix("s"), no_wrap=True)
+    for column in found.shown:
+        table.add_column(column, overflow="fold")
+    table.add_column("what it is", overflow="fold")
+    for row in found.rows:
+        where = f" Trained on {', '.join(row['scenarios'])}." if row.get("scenarios") else ""
+        table.add_row(row["id"], *(_text(row[column]) for column in found.shown), Text(row["title"] + where))
+    Console().print(table)
+    say(f"In Python: {found.example}")
+
+
+def _text(value: Any) -> str:
+    """Of several their names, of seeds in a row the first and the last."""
+    if isinstance(value, list) and len(value) > 2 and value == list(range(value[0], value[-1] + 1)):
+        return f"{value[0]}–{value[-1]}"
+    return ", ".join(map(str, value)) if isinstance(value, list) else "–" if value is None else str(value)
