@@ -1,19 +1,17 @@
 """The comparison in small: what it writes, what it resumes from, what it refuses."""
 
 import csv
-import io
 import json
 import re
 
 import gymnasium
 import pytest
-from rich.console import Console
 
 import beamenv
 import train.comparison.compare
 import train.learning.job
 from beamenv.task import resolve_task
-from train.cli.evaluations import screen_table
+from train.cli.evaluations import show_compared
 from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, tiers_of, trained
 from train.comparison.page import shown_pair
 from train.controllers.named import named
@@ -68,7 +66,7 @@ def test_the_table_has_every_controller_on_the_same_seeds(finished):
     assert all(row["controller"] in markdown for row in rows)
 
 
-def test_every_table_shows_the_tiers_of_laws_and_agents(finished):
+def test_every_table_shows_the_tiers_of_laws_and_agents(finished, capsys):
     folder, evaluations, notes = finished
     with (folder / "table.csv").open() as file:
         tiers = {row["controller"]: row["tier"] for row in csv.DictReader(file)}
@@ -80,9 +78,8 @@ def test_every_table_shows_the_tiers_of_laws_and_agents(finished):
     told = "Tiers say what a controller is told and sees"
     assert markdown.count(told) == 1
     assert told in (folder / "report.html").read_text(encoding="utf-8")
-    console = Console(width=200, record=True, file=io.StringIO())
-    console.print(screen_table(evaluations, tiers_of(evaluations)))
-    assert told in " ".join(console.export_text().split())
+    show_compared(evaluations, tiers_of(evaluations))
+    assert told in capsys.readouterr().out
 
 
 def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished):

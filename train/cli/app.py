@@ -25,9 +25,9 @@ from train.cli.options import (
     SpeedOption,
     TrainedSeedOption,
     environment_arguments,
+    moving,
     one_sentence,
     print_json,
-    print_table,
     say,
     working,
 )
@@ -100,11 +100,11 @@ def evaluate(
             found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
         runs = Runs(next(iter(found.values())).name, found)
     if as_json:
-        print_json(runs.to_dict() if len(found) > 1 else runs.first.to_dict())
+        print_json(runs.to_dict() if len(found) > 1 else runs.one_to_dict())
     else:
-        from train.cli.evaluations import runs_table, screen_table
+        from train.cli.evaluations import show_one
 
-        print_table(runs_table(runs) if len(found) > 1 else screen_table([runs.first]))
+        show_one(runs, f"scenario {scenario}, {moving(preset, speed, blade, plant)}")
 
 
 @app.command()
@@ -126,7 +126,7 @@ def compare(
     with one_sentence(RESUMES):
         check_names(preset, scenario, blade, plant)
         from beamenv.configuration import Number, checked
-        from train.cli.evaluations import screen_table
+        from train.cli.evaluations import show_compared
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison, tiers_of
         from train.comparison.compare import compare as run
@@ -141,7 +141,7 @@ def compare(
     if as_json:
         print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:
-        print_table(screen_table(evaluations, tiers))
+        show_compared(evaluations, tiers)
         say(f"written to {folder}")
 
 

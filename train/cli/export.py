@@ -19,6 +19,7 @@ from train.cli.options import (
     SpeedOption,
     TrainedSeedOption,
     environment_arguments,
+    moving,
     one_sentence,
     overwriting,
     print_json,
@@ -73,7 +74,7 @@ def export(
         path = output or Path(f"{called}.{format}")
         _check_free(path, overwrite)
         law = chosen(controller, task, scenario, trained_seed)
-        model = f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}" if plant is None else f"plant {plant}"
+        model = moving(preset, speed, blade, plant)
         more: dict[str, Any] = {"precision": precision, "name": called, "note": f"{controller}, {model}, scenario {scenario}"}
         found = exported(law, task.design_plant, **more)
         seconds = _measured(found) if measure else None

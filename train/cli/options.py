@@ -70,6 +70,13 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None, 
     return arguments
 
 
+def moving(preset: str, speed: float | None, blade: Path | None, plant: Path | None) -> str:
+    """What moves, in words."""
+    if plant is not None:
+        return f"plant {plant}"
+    return f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}"
+
+
 def working(jobs: int | None, cluster: str | None) -> Workers:
     """Who works, by the options; this process alone where joblib, which starts others, is not installed and nobody asks for any."""
     from train.workers.workers import Workers

@@ -16,7 +16,7 @@ from rich.text import Text
 from beamenv.configuration import Count, FileName, checked
 from beamenv.configuration.files import read_table
 from train.cli.bars import Bars
-from train.cli.names import GENERALIST, check_names, check_recipe, check_scenario
+from train.cli.names import check_names, check_recipe, check_scenario
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -33,6 +33,7 @@ from train.cli.options import (
     print_table,
     say,
 )
+from train.controllers.shipped import GENERALIST
 from train.learning.recipes import NAMES
 
 if TYPE_CHECKING:
