@@ -187,7 +187,7 @@ COMMANDS = {
         ("train.cli.reproduce.run_with_progress",),
     ),
     "schema": (("blade",), {"--output": None}, (), ()),
-    "speed": ((), {}, ("--json",), ("train.cli.speed.measured",)),
+    "speed": ((), {}, ("--json", "--check"), ("train.cli.speed.measured",)),
     "explore": (
         (),
         {"--port": "0", "--host": "127.0.0.1", "--preset": "thesis", "--blade": "blade.toml"},

@@ -128,8 +128,9 @@ def same_command(context: typer.Context, **changed: Any) -> str:
 
 
 def say(line: str) -> None:
-    """To standard output, as it stands and on as many lines of the terminal as it takes."""
-    Console().print(line, soft_wrap=True, markup=False, highlight=False)
+    """To standard output; a terminal breaks it between words, and whatever else reads gets one line."""
+    screen = Console()
+    screen.print(line, soft_wrap=not screen.is_terminal, markup=False, highlight=False)
 
 
 def complain(sentence: str) -> None:

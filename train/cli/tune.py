@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
-from rich.text import Text
 
 from beamenv.configuration import Count, FileName, checked
 from beamenv.configuration.files import read_table
@@ -30,9 +28,9 @@ from train.cli.options import (
     one_sentence,
     overwriting,
     print_json,
-    print_table,
     say,
 )
+from train.cli.tables import Column, show_table
 from train.controllers.shipped import GENERALIST
 from train.learning.recipes import NAMES
 
@@ -115,14 +113,14 @@ def _show(name: str, tuned: Tuned) -> None:
     from train.tuning.records import finished
 
     whole = finished(tuned.records)
-    table = Table(title=Text(f"Trials of {name}, on validation seeds"))
-    for heading in ("trial", "ended", "updates", "J / no control", *tuned.untuned.settings):
-        table.add_column(heading, justify="right")
+    settings = (Column(each) for each in tuned.untuned.settings)
+    columns = [Column("trial", words=True), Column("ended", words=True), Column("updates"), Column("J / J₀"), *settings]
+    rows = []
     for each in [*whole, *(other for other in tuned.records if other not in whole)]:
         cost = f"{each.looks[-1].cost:.3f}" if each.looks else "–"
         values = [f"{value:.3g}" if isinstance(value, float) else str(value) for value in each.settings.values()]
-        table.add_row(*map(Text, [str(each.trial), each.ended, str(each.updates), cost, *values]))
-    print_table(table)
+        rows.append([str(each.trial), each.ended, str(each.updates), cost, *values])
+    show_table(columns, rows, f"Trials of {name}, on validation seeds")
     say(_sentence(tuned, len(whole)))
     for each in tuned.records:
         if each.sentence:
