@@ -12,7 +12,7 @@ from beamenv.scenarios.named import GROUPS
 from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
 from train.cli.app import app
-from train.cli.benchmark_table import blocks, print_costs
+from train.cli.benchmark_table import print_costs
 from train.cli.quick import QUICK_LAWS, QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS
 from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
@@ -99,13 +99,14 @@ def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for(monk
     names = ("nominal", "two-dead-actuators", "off-speed-failure", "delay")
     rows = [Row(name, law, law, "fixed", 0, 1, 2) for name in names for law in ("none", "positive-position-feedback")]
     table = BenchmarkTable(tuple(rows), {}, {})
-    assert list(blocks(table, 200)) == [names]
-    assert list(blocks(table, 80)) == [names[:2], names[2:]]
-    assert list(blocks(table, 20)) == [(name,) for name in names]
-    for width in (80, 120):
+    for width, times in ((120, 1), (80, 1), (60, 2), (20, 5)):
         monkeypatch.setenv("COLUMNS", str(width))
         print_costs(table)
-        assert max(map(len, capsys.readouterr().out.splitlines())) <= width
+        text = capsys.readouterr().out
+        assert text.count("positive-position-feedback") == times
+        assert max(map(len, text.splitlines())) <= max(width, 40)
+        assert text.count("nominal") == text.count("actuators") == 1
+        assert text.splitlines()[-1] == "✕ not measured."
 
 
 def idle(folder, **about):

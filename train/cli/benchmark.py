@@ -28,7 +28,7 @@ from train.cli.benchmark_options import (
     TierOption,
     TrustOption,
 )
-from train.cli.benchmark_table import finite_row, show_entry, show_table
+from train.cli.benchmark_table import finite_row, show_benchmark, show_entry
 from train.cli.names import check_controller, check_names, check_scenarios
 from train.cli.options import (
     RESUMES,
@@ -225,7 +225,7 @@ def _show(table: BenchmarkTable, folder: Path | None, quick: bool) -> None:
     if folder is None:
         print_json(as_json(table))
     else:
-        show_table(table, folder)
+        show_benchmark(table, folder)
     for sentence in table.left_out:
         complain(sentence)
     for where, sentence in table.sentences.items():
