@@ -109,7 +109,7 @@ def check_all(
     for path in models:
         content_of(path, 1)
     if submit is not None and not submit.lower().endswith(".zip"):
-        check_controller(submit, "submit", ", or a model's .zip file")
+        check_controller(submit, "submit", "the folder of a trained agent, a model's .zip file")
     check_names(plant=plant)
 
 

@@ -64,12 +64,13 @@ def check_scenarios(names: Iterable[str]) -> None:
 
 
 def check_controller(name: str, argument: str = "controller", others: str = "") -> None:
-    """The same of the id of a controller or of an agent that ships, and of the folder or file of a trained one."""
+    """The same of the id of a controller or of an agent that ships, and of the folder of a trained one, or ``others``."""
     ids, agents, short = _ids()
     if name in ids or name in agents or name in short or name in FORMER or os.path.exists(name):
         return
-    known = f"one of {', '.join(ids)}, of the agents that ship, {', '.join(agents)}, or the folder of a trained agent{others}"
-    raise Refused(argument, name, known + near(name, [*ids, *agents, *short], short))
+    known = f"one of {', '.join(ids)}, of the agents that ship, {', '.join(agents)}"
+    allowed = f"{others}, or {known}" if others else f"{known}, or the folder of a trained agent"
+    raise Refused(argument, name, allowed + near(name, [*ids, *agents, *short], short))
 
 
 def check_recipe(name: str, argument: str) -> None:
