@@ -21,7 +21,7 @@ COMMANDS = {
             "--speed": "20",
             "--blade": "blade.toml",
             "--scenario": "white",
-            "--seeds": "2",
+            "--episodes": "2",
             "--trained-seed": None,
             "--plant": None,
         },
@@ -29,10 +29,11 @@ COMMANDS = {
         ("baselines.evaluate",),
     ),
     "compare": (
-        ("made",),
+        (),
         {
+            "--folder": "made",
             "--minutes": "0",
-            "--seeds": "2",
+            "--episodes": "2",
             "--preset": "thesis",
             "--speed": "20",
             "--blade": "blade.toml",
@@ -60,7 +61,7 @@ COMMANDS = {
             "--blade": "blade.toml",
             "--plant": None,
         },
-        ("--resume", "--overwrite"),
+        ("--resume", "--overwrite", "--json"),
         ("train.learning.job.follow",),
     ),
     "tune": (
@@ -104,7 +105,7 @@ COMMANDS = {
         {
             "--scenario": "nominal",
             "--controller": "lqg",
-            "--seeds": "2",
+            "--episodes": "2",
             "--runs": None,
             "--folder": "made",
             "--model": None,
@@ -182,8 +183,8 @@ COMMANDS = {
     ),
     "reproduce": (
         ("table-3.4",),
-        {"--output": "made", "--docs": None, "--jobs": "1", "--cluster": None},
-        ("--fresh",),
+        {"--folder": "made", "--docs": None, "--jobs": "1", "--cluster": None},
+        ("--overwrite", "--json"),
         ("train.cli.reproduce.run_with_progress",),
     ),
     "schema": (("blade",), {"--output": None}, (), ()),

@@ -18,7 +18,7 @@ from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 
-SMALL = ("benchmark", "--scenario", "deflection", "--controller", "lqg", "--seeds", "2", "--jobs", "1")
+SMALL = ("benchmark", "--scenario", "deflection", "--controller", "lqg", "--episodes", "2", "--jobs", "1")
 
 
 def run(*arguments):
@@ -35,6 +35,14 @@ def test_json_alone_is_printed_and_the_documentation_written(tmp_path):
     assert "![J over J without control](images/benchmark.png)" in text
     assert f"numpy {content['configuration']['versions']['numpy']}" in text
     assert (tmp_path / "docs" / "images" / "benchmark.png").is_file()
+    assert "resumed" not in result.stderr
+    again = run(*SMALL, "--folder", str(tmp_path / "results"), "--json")
+    assert again.stdout == result.stdout
+    assert "beamenv: resumed: all cells are kept from an earlier run." in again.stderr.splitlines()
+    (tmp_path / "results" / "cells" / "deflection" / "lqg.json").unlink()
+    again = run(*SMALL, "--folder", str(tmp_path / "results"), "--json")
+    assert again.stdout == result.stdout
+    assert "beamenv: resumed: 1 of 2 cells are kept from an earlier run." in again.stderr.splitlines()
 
 
 def test_what_could_not_be_served_is_told_and_the_rest_shown(tmp_path):
@@ -51,7 +59,7 @@ def test_what_could_not_be_served_is_told_and_the_rest_shown(tmp_path):
         (("--model", "mine.zip"), "can run any code when it is loaded"),
         (("--scenario", "storm"), "storm"),
         (("--controller", "pid"), "pid"),
-        (("--seeds", "1"), "seeds"),
+        (("--episodes", "1"), "episodes"),
     ],
 )
 def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, monkeypatch):
@@ -80,7 +88,7 @@ def test_what_is_quick_is_a_dozen_rows_of_every_tier_in_a_folder_of_its_own(tmp_
     assert {named(name).tier for name in QUICK_LAWS} == {0, 1, 2, 3} and set(QUICK_LAWS) <= set(asked["controllers"])
     assert set(QUICK_SCENARIOS) <= set(GROUPS["all"])
     assert re.search("2 episodes a cell: intervals are wide, ±[0-9]+ % of J / J₀", " ".join(result.stdout.split()))
-    run("benchmark", "--quick", "--scenario", "open", "--seeds", "5", "--runs", "3")
+    run("benchmark", "--quick", "--scenario", "open", "--episodes", "5", "--runs", "3")
     assert (asked["scenarios"], asked["seeds"], asked["runs"], asked["folder"].name) == (
         ["open"],
         5,

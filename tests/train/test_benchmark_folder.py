@@ -147,7 +147,7 @@ def test_a_cell_of_the_wrong_kind_is_named_with_its_file(change, words, plain, t
 def test_each_choice_of_the_command_has_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     small = ("benchmark", "--controller", "none", "--jobs", "1", "--json")
-    for arguments in (("--seeds", "2", "--scenario", "white"), ("--seeds", "3", "--scenario", "white")):
+    for arguments in (("--episodes", "2", "--scenario", "white"), ("--episodes", "3", "--scenario", "white")):
         result = CliRunner().invoke(app, [*small, *arguments])
         assert result.exit_code == 0, result.stderr
     homes = sorted(path.name for path in (tmp_path / "results").iterdir())
@@ -156,7 +156,7 @@ def test_each_choice_of_the_command_has_a_folder_of_its_own(tmp_path, monkeypatc
         2,
         3,
     ]
-    refused = CliRunner().invoke(app, [*small, "--seeds", "2", "--scenario", "nominal", "--folder", f"results/{homes[0]}"])
+    refused = CliRunner().invoke(app, [*small, "--episodes", "2", "--scenario", "nominal", "--folder", f"results/{homes[0]}"])
     assert refused.exit_code == 2
     assert refused.stderr.startswith("beamenv: folder = ") and len(refused.stderr.splitlines()) == 1
 

@@ -28,7 +28,10 @@ class Notes(Listener):
     """Remembers what it was told."""
 
     def __init__(self):
-        self.trained, self.evaluated_names = [], []
+        self.trained, self.evaluated_names, self.from_before = [], [], []
+
+    def resumed(self, name, finished):
+        self.from_before.append((name, finished))
 
     def training(self, name, budget, progress):
         self.trained.append((name, progress))
@@ -120,7 +123,9 @@ def test_a_second_run_takes_the_trained_agents(finished, monkeypatch):
         raise AssertionError("trained again")
 
     monkeypatch.setattr(train.comparison.compare, "run", refuse)
-    again = compare(SMALL, folder)
+    notes = Notes()
+    again = compare(SMALL, folder, notes)
+    assert notes.from_before == [("gradient", True), ("ppo", True)]
     assert [evaluation.relative_cost for evaluation in again] == [evaluation.relative_cost for evaluation in evaluations]
 
 
@@ -150,6 +155,7 @@ def test_a_training_that_was_cut_off_resumes_from_its_checkpoint(tmp_path, monke
             compare(comparison, tmp_path)
         compare(comparison, tmp_path, notes)
     assert notes.trained == []  # the checkpoint was that of its end
+    assert notes.from_before == [("gradient", False)]
     assert json.loads((tmp_path / "agents" / "gradient" / "agent.json").read_text())["seconds"] >= 10.0
 
 

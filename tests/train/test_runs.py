@@ -87,7 +87,7 @@ def test_a_screen_shows_the_runs_together_and_one_by_one(together, capsys):
 def test_the_command_evaluates_every_run_of_a_folder(folder, tmp_path):
     for name in ("0", "1"):
         shutil.copytree(folder / name, tmp_path / name)
-    result = run("evaluate", str(tmp_path), "--seeds", "2", "--json")
+    result = run("evaluate", str(tmp_path), "--episodes", "2", "--json")
     assert result.exit_code == 0, result.stderr
     content = json.loads(result.stdout)
     assert list(content["runs"]) == ["0", "1"]
@@ -125,7 +125,7 @@ def test_the_run_that_ended_at_the_least_cost_teaches(folder, tmp_path):
 def test_a_run_that_does_not_fit_is_named(folder, tmp_path):
     for name in ("0", "1"):
         save_policy(agent(0.0), tmp_path / name, {"plants": {"elsewhere": "0" * 64}})
-    refused = run("evaluate", str(tmp_path), "--seeds", "2")
+    refused = run("evaluate", str(tmp_path), "--episodes", "2")
     assert refused.exit_code == 2
     assert "is none of those the agent in" in refused.stderr and len(refused.stderr.splitlines()) == 1
 

@@ -27,6 +27,7 @@ from train.cli.options import (
     environment_arguments,
     moving,
     one_sentence,
+    overwriting,
     print_json,
     say,
     working,
@@ -46,6 +47,25 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from beamenv import __version__
+
+        say(f"beamenv {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def beamenv(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """The commands below; --help after one tells of its options."""
+
+
 app.command("list")(list_ids)
 app.command()(frequencies)
 app.command()(section)
@@ -74,7 +94,7 @@ def evaluate(
     blade: BladeOption = None,
     scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
-    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    episodes: Annotated[int, typer.Option(min=2, help="How many held-out ones.")] = 64,
     trained_seed: TrainedSeedOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -91,7 +111,7 @@ def evaluate(
         from train.controllers.choice import chosen_runs
         from train.shared.held_out import SEEDS, held_out
 
-        seeds = checked("seeds", seeds, SEEDS)
+        seeds = checked("episodes", episodes, SEEDS)
         arguments = {**environment_arguments(preset, speed, blade, plant), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
         found: dict[str, baselines.Evaluation] = {}
@@ -109,9 +129,9 @@ def evaluate(
 
 @app.command()
 def compare(
-    folder: Annotated[Path, typer.Argument(help="Where tables, figures and agents are written.")] = Path("results/compare"),
+    folder: Annotated[Path, typer.Option(help="Where tables, figures and agents are written.")] = Path("results/compare"),
     minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 1.5,
-    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    episodes: Annotated[int, typer.Option(min=2, help="How many held-out ones.")] = 64,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -130,7 +150,9 @@ def compare(
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison, tiers_of
         from train.comparison.compare import compare as run
+        from train.shared.held_out import SEEDS
 
+        seeds = checked("episodes", episodes, SEEDS)
         default = Comparison().budget
         share = 60.0 * checked("minutes", minutes, Number(ge=0.0)) / sum(default.values())
         budget = {name: share * length for name, length in default.items()} if minutes else {}
@@ -168,11 +190,12 @@ def explore(
 @app.command()
 def reproduce(
     names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
-    output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
-    fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
+    folder: Annotated[Path, typer.Option(help="Where CSV and PNG of each, and the page, are written.")] = Path("results/thesis"),
+    overwrite: Annotated[bool, overwriting("what is finished already")] = False,
     docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
+    as_json: JsonOption = False,
 ) -> None:
     """Regenerate the thesis' tables and figures and judge its statements twice. About a minute on two cores.
 
@@ -182,6 +205,6 @@ def reproduce(
         check_studies(names or ())
         from train.cli.reproduce import reproduce as run
 
-        status = run(names or [], output, fresh, docs, working(jobs, cluster))
+        status = run(names or [], folder, overwrite, docs, working(jobs, cluster), as_json)
     if status:
         raise typer.Exit(status)

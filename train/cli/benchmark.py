@@ -57,7 +57,7 @@ LONGEST = 60
 def benchmark(
     scenario: ScenariosOption = None,
     controller: ControllersOption = None,
-    seeds: EpisodesOption = None,
+    episodes: EpisodesOption = None,
     runs: RunsOption = None,
     folder: FolderOption = None,
     model: ModelsOption = None,
@@ -80,7 +80,7 @@ def benchmark(
     """
     with one_sentence(RESUMES):
         check_all(scenario or (), controller or (), (model or ()) if trust else (), submit, plant)
-        workers, asked = working(jobs, cluster), Asked(scenario, controller, seeds, runs, model, quick, plant)
+        workers, asked = working(jobs, cluster), Asked(scenario, controller, episodes, runs, model, quick, plant)
         how = {"trusted": trust, "jobs": workers.jobs, "cluster": cluster}
         if submit is not None:
             entered(submit, asked, folder, docs, as_json, tier=tier, overwrite=overwrite, **how)
@@ -119,7 +119,7 @@ class Asked:
 
     scenario: list[str] | None
     controller: list[str] | None
-    seeds: int | None
+    episodes: int | None
     runs: int | None
     model: list[Path] | None
     quick: bool
@@ -131,15 +131,15 @@ class Asked:
         return [name for name in self.__dataclass_fields__ if getattr(self, name)]
 
     @property
-    def episodes(self) -> int:
-        """How many."""
-        return self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
+    def seeds(self) -> int:
+        """How many they are."""
+        return self.episodes or (QUICK_SEEDS if self.quick else SEEDS)
 
     @property
     def usual_folder(self) -> Path:
         """Where it is written unless said otherwise."""
         models = self.model or ([] if self.plant is None else [self.plant])
-        chosen = self.scenario or (), self.controller or (), self.episodes, models
+        chosen = self.scenario or (), self.controller or (), self.seeds, models
         return default_folder(*chosen, quick=self.quick, runs=self.runs)
 
     @property
@@ -148,7 +148,7 @@ class Asked:
         return {
             "scenarios": self.scenario or (QUICK_SCENARIOS if self.quick else None),
             "controllers": self.controller or (quick_controllers(self.plant) if self.quick else None),
-            "seeds": self.episodes,
+            "seeds": self.seeds,
             "runs": self.runs or (QUICK_RUNS if self.quick else None),
             "models": self.model or (),
             "environment": {} if self.plant is None else {"plant": str(self.plant)},
@@ -172,6 +172,7 @@ def entered(submit: str, asked: Asked, folder: Path | None, docs: Path | None, a
     home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
     with _Bar() as bar:
         entry, table = run(submit, board, folder=home, progress=bar.show, **arguments)
+        bar.end()
     if as_json:
         print_json(finite_row(entry))
     else:
@@ -183,7 +184,9 @@ def _measured(**arguments: Any) -> BenchmarkTable:
     from train.benchmark.campaign import benchmark as run
 
     with _Bar() as bar:
-        return run(**arguments, progress=bar.show)
+        table = run(**arguments, progress=bar.show)
+        bar.end()
+    return table
 
 
 def default_folder(
@@ -212,10 +215,19 @@ class _Bar(Bars):
         name = TextColumn("{task.description:>44}", markup=False)
         super().__init__(name, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
         self._task = self._bars.add_task("building the blades", total=None)
+        self._begun = False
 
     def show(self, done: int, total: int, cell: object) -> None:
+        if not self._begun and done > 1:
+            self.say(f"resumed: {done - 1} of {total} cells are kept from an earlier run.")
+        self._begun = True
         name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))
         self.update(self._task, description=name.strip(), completed=done, total=total)
+
+    def end(self) -> None:
+        """Where no cell was left to be measured, say so."""
+        if not self._begun:
+            self.say("resumed: all cells are kept from an earlier run.")
 
 
 def _show(table: BenchmarkTable, folder: Path | None, quick: bool) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,6 +17,7 @@ from train.cli.options import (
     BladeOption,
     ClusterOption,
     JobsOption,
+    JsonOption,
     PlantOption,
     PresetOption,
     SpeedOption,
@@ -24,6 +25,7 @@ from train.cli.options import (
     environment_arguments,
     one_sentence,
     overwriting,
+    print_json,
     same_command,
     say,
     working,
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
     from train.learning.job import Job
     from train.learning.recipe import Recipe
     from train.learning.session import Budget
+    from train.learning.several import Trained
     from train.learning.training import Progress
     from train.workers.workers import Workers
 
@@ -69,6 +72,7 @@ def train(
     speed: SpeedOption = None,
     blade: BladeOption = None,
     plant: PlantOption = None,
+    as_json: JsonOption = False,
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
@@ -89,31 +93,60 @@ def train(
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
         trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
-        failed = _trained(trainings, names, workers, resume, overwrite)
-    if failed:
+        trained, already, whole = _trained(trainings, names, workers, resume, overwrite)
+        _tell(homes, names, trained, already, as_json)
+        if not whole:
+            raise KeyboardInterrupt
+    if trained.failed:
         raise typer.Exit(1)
 
 
-def _trained(trainings: Mapping[Path, Job], names: Mapping[Path, str], workers: Workers, resume: bool, overwrite: bool) -> bool:
-    """Train under a bar, and say what became of each; whether one has failed. ``KeyboardInterrupt`` if one was not finished."""
+def _tell(
+    homes: Mapping[Path, tuple[str, str, int]],
+    names: Mapping[Path, str],
+    trained: Trained,
+    already: Collection[Path],
+    as_json: bool,
+) -> None:
+    """What became of each training; ``already`` are those that an earlier run had finished."""
+    if as_json:
+        print_json([_content(home, each, trained, home in already) for home, each in homes.items()])
+    else:
+        for home, made in trained.places.items():
+            say(f"{names[home]} {'was finished already' if home in already else 'saved'} in {', '.join(map(str, made))}")
+    for home, clause in trained.failed.items():
+        complain(f"{names[home]} failed: {clause}.")
+
+
+def _trained(
+    trainings: Mapping[Path, Job], names: Mapping[Path, str], workers: Workers, resume: bool, overwrite: bool
+) -> tuple[Trained, set[Path], bool]:
+    """Train under a bar; what came of each, which were finished before, and whether all are now."""
     from train.cli.progress import Progressbar
+    from train.learning.checkpoint import NAME
     from train.learning.several import is_finished, train_all
 
     totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
     by_clock = any(math.isfinite(job.budget.seconds) for job in trainings.values())
+    begun = {home for home in trainings if resume and (home / NAME).is_file()}
+    already = {home for home in begun if is_finished(home)}
     with Progressbar(totals, "s" if by_clock else "updates") as bar:
 
         def told(home: Path, progress: Progress) -> None:
+            if home in begun:
+                begun.remove(home)
+                bar.say(f"resumed: {names[home]} goes on from its checkpoint.")
             bar.training(names[home], totals[names[home]], progress)
 
         trained = train_all(trainings, workers, told, resume, overwrite)
-    for home, made in trained.places.items():
-        say(f"{names[home]} saved in {', '.join(map(str, made))}")
-    for home, clause in trained.failed.items():
-        complain(f"{names[home]} failed: {clause}.")
-    if not all(is_finished(home) for home in trainings if home not in trained.failed):
-        raise KeyboardInterrupt
-    return bool(trained.failed)
+    return trained, already, all(is_finished(home) for home in trainings if home not in trained.failed)
+
+
+def _content(home: Path, training: tuple[str, str, int], trained: Trained, already: bool) -> dict[str, Any]:
+    """What became of a training, as JSON."""
+    agent, scenario, seed = training
+    about = {"agent": agent, "scenario": scenario, "seed": seed, "folder": str(home), "finished_before": already}
+    return {**about, "policies": [str(each) for each in trained.places.get(home, [])], "failed": trained.failed.get(home)}
 
 
 def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> dict[Path, tuple[str, str, int]]:

@@ -97,15 +97,20 @@ class _Bar(Bars):
         best = TextColumn("{task.fields[best]}")
         super().__init__(TextColumn("trials"), BarColumn(), MofNCompleteColumn(), best, TimeElapsedColumn())
         self._task = self._bars.add_task("trials", total=trials, best="")
+        self._begun = False
 
     def show(self, records: Sequence[Record]) -> None:
         """How far it is."""
         from train.tuning.records import FINISHED, finished
 
+        ended = sum(bool(each.ended) for each in records)
+        if not self._begun and ended:
+            self.say(f"resumed: {ended} of {len(records)} trials are kept from an earlier run.")
+        self._begun = True
         best = "".join(f"J / no control {each.looks[-1].cost:.3f} at best" for each in finished(records)[:1])
         if records[0].ended == FINISHED:
             best += f", {records[0].looks[-1].cost:.3f} as it is"
-        self._bars.update(self._task, completed=sum(bool(each.ended) for each in records), best=best)
+        self._bars.update(self._task, completed=ended, best=best)
 
 
 def _show(name: str, tuned: Tuned) -> None:
