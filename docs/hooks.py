@@ -98,20 +98,23 @@ def recipe_table() -> str:
 def shipped_table() -> str:
     """The policies in ``train/controllers/trained``."""
     from train.controllers.policy_files import read_about
-    from train.controllers.shipped import Shipped, shipped
+    from train.controllers.shipped import GENERALIST, shipped_agents
     from train.shared.markdown import markup_table
 
-    runs: dict[tuple[str, str], list[Shipped]] = {}
-    for each in shipped():
-        runs.setdefault((each.agent, each.scenario), []).append(each)
-    if not runs:
-        return "This copy holds no trained agent."
+    homes = [
+        (agent, *home) for agent in shipped_agents().values() for home in {GENERALIST: agent.everywhere, **agent.only_in}.items()
+    ]
     rows = []
-    for (agent, scenario), those in runs.items():
-        abouts = [read_about(each.folder) for each in those]
+    for agent, scenario, runs in homes:
+        if not runs:
+            continue
+        abouts = [read_about(each.folder) for each in runs.values()]
         longest = max(float(about["seconds"]) for about in abouts)
         updates = " to ".join(dict.fromkeys(str(choose(int(about["updates"]) for about in abouts)) for choose in (min, max)))
-        rows.append([f"`{agent}`", scenario, ", ".join(str(each.seed) for each in those), updates, f"{longest:.0f}"])
+        where = "several scenarios at once" if scenario == GENERALIST else f"`{scenario}`"
+        rows.append([f"`{agent.id}`", where, ", ".join(map(str, runs)), updates, f"{longest:.0f}"])
+    if not rows:
+        return "This copy holds no trained agent."
     return markup_table(["agent", "trained on", "runs", "updates", "s on the clock"], rows)
 
 

@@ -16,7 +16,7 @@ HOOKS = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks.py"))
     [
         ("scenario table", "| `delay` | "),
         ("recipes", "| `gradient` | "),
-        ("shipped agents", "| `residual` | generalist | 0, 1, 2, 3, 4 | 1552 | 3302 |"),
+        ("shipped agents", "| `residual-generalist` | several scenarios at once | 0, 1, 2, 3, 4 | 1552 | 3302 |"),
         ("command line", "## beamenv frequencies"),
         ("gallery", "## Two cell box"),
     ],

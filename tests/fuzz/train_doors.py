@@ -5,9 +5,12 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import gymnasium
 import numpy as np
+from gymnasium import Env
 from hypothesis import strategies as st
 
+import beamenv
 from beamenv.plant.plant import Plant
 from tests.fuzz import small
 from tests.fuzz.env_doors import NAMED_SCENARIO, SINGLE, SINGLE_WORDS
@@ -30,6 +33,8 @@ from tests.fuzz.meaning import (
 )
 from tests.fuzz.oracle import Door
 from train.benchmark import benchmark
+from train.controllers import controller
+from train.controllers.ids import found
 from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import load_policy
@@ -59,6 +64,11 @@ def history():
         "bias1": np.zeros(2),
     }
     return HistoryPolicy("mine", weights, {"input_gain": 1.0, "held": 1}, -np.ones(2, np.float32), np.ones(2, np.float32))
+
+
+@cache
+def environment():
+    return gymnasium.make(beamenv.ENV_ID, duration=0.02)
 
 
 def settings_door(name, cls):
@@ -141,6 +151,20 @@ DOORS = [
     Door("named_recipe", named_recipe, {"name": TEXT}, lambda: {"name": "gradient"}, told=("agent", "recipe")),
     Door("load_recipe", load_recipe, {"path": PATH}, lambda: {"path": "mine.toml"}, told=("file",)),
     Door("named", named, {"name": TEXT}, lambda: {"name": "lqg"}, told=("controller",)),
+    Door(
+        "controller",
+        lambda **given: controller(**given),
+        {"name": TEXT, "env": instance(Env), "trained_seed": maybe(COUNT)},
+        lambda: {"name": "lqg", "env": environment(), "trained_seed": None},
+        told=("controller",),
+    ),
+    Door(
+        "found",
+        lambda **given: found(**given),
+        {"name": TEXT, "scenario": TEXT, "seed": maybe(COUNT)},
+        lambda: {"name": "residual-generalist", "scenario": "nominal", "seed": 1},
+        told=("controller", "trained_seed"),
+    ),
     Door(
         "find_shipped",
         lambda **given: find_shipped(**given),

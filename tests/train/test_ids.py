@@ -1,15 +1,18 @@
 """One id for each controller, agent, scenario and preset: listed, found in Python, and the name of what is made."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import gymnasium
 import pytest
+import typer.main
 from typer.testing import CliRunner
 
 import beamenv
+from baselines.placement import METHODS
 from beamenv.task import resolve_task
 from beamenv.titles import BLADES, LEARNT
 from train.benchmark.listed import agents as listed_agents
@@ -17,10 +20,13 @@ from train.benchmark.listed import listed_controllers
 from train.cli.app import app
 from train.cli.listing import Kind
 from train.controllers import controller
-from train.controllers.choice import chosen, chosen_runs, folder_id
+from train.controllers.choice import chosen, chosen_runs
+from train.controllers.ids import folder_id
 from train.controllers.known import FORMER, known_agents, known_controllers
 from train.controllers.named import discover, named
 from train.controllers.shipped import FOLDER, shipped_agents
+from train.export import FORMATS, PRECISIONS
+from train.learning.recipes import NAMES as RECIPES
 
 KINDS = [kind.value for kind in Kind]
 LONG_TO_BUILD = {"multiple-model-general", "informed-lqg", "informed-mpc"}
@@ -106,7 +112,10 @@ def test_an_agent_is_called_by_its_id_and_has_all_of_its_runs(env):
         runs = chosen_runs(name, task, "nominal")
         assert list(runs) == [str(run) for run in known_agents()[name].runs]
         assert {law.name for law in runs.values()} == {name}
-    assert controller("residual-generalist", env, run=3).weights.keys() == controller("residual-generalist", env).weights.keys()
+    assert (
+        controller("residual-generalist", env, trained_seed=3).weights.keys()
+        == controller("residual-generalist", env).weights.keys()
+    )
     (alone,) = chosen_runs("residual-generalist", task, "nominal", 2)
     assert alone == ""
 
@@ -169,3 +178,22 @@ def test_names_are_listed_without_what_controllers_are_made_of():
     root = str(Path(__file__).parents[2])
     result = subprocess.run([sys.executable, "-c", script], cwd=root, capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "[]"
+
+
+def help_of(command, parameter):
+    """Of an option or an argument."""
+    found = {each.name: each.help for each in typer.main.get_command(app).commands[command].params}
+    return found[parameter]
+
+
+def test_help_names_just_what_there_is():
+    """Where a list stands in a help text, it is that of the registry."""
+    words = {"method": ("place", METHODS), "format": ("export", FORMATS), "precision": ("export", PRECISIONS)}
+    for parameter, (command, registry) in words.items():
+        text = help_of(command, parameter)
+        assert all(re.search(rf"(?<![\w+-]){re.escape(name)}(?![\w+-])", text) for name in registry), text
+    for command in ("evaluate", "record", "export", "compare"):
+        listed_there = help_of(command, "scenario").partition(": ")[2].partition(", or a TOML")[0]
+        assert listed_there.split(", ") == ids("scenarios")
+        assert help_of(command, "preset").partition(": ")[2].rstrip(".").split(", ") == ids("presets")
+    assert help_of("train", "agent").partition(": ")[2].partition(";")[0].split(", ") == list(RECIPES)

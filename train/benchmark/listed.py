@@ -12,7 +12,7 @@ from typing import Any
 from baselines.design.controller import as_controller
 from beamenv.configuration import FileName, Refused, checked
 from beamenv.scenarios.scenario import Scenario
-from train.controllers.choice import folder_id
+from train.controllers.ids import folder_id
 from train.controllers.known import FORMER
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, any_scenario, discover

@@ -12,7 +12,7 @@ from train.cli.export import export
 from train.cli.frequencies import frequencies
 from train.cli.identify import identify
 from train.cli.listing import list_ids
-from train.cli.names import check_controller, check_names, check_studies
+from train.cli.names import check_names, check_studies
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -40,6 +40,7 @@ from train.cli.speed import speed
 from train.cli.train import train
 from train.cli.tune import tune
 from train.cli.usage import OneSentence
+from train.controllers.ids import found
 
 app = typer.Typer(
     cls=OneSentence,
@@ -100,8 +101,8 @@ def evaluate(
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
     with one_sentence():
-        check_controller(controller)
         check_names(preset, scenario, blade, plant)
+        found(controller, scenario, trained_seed)
         import gymnasium as gym
 
         import baselines
@@ -114,13 +115,13 @@ def evaluate(
         seeds = checked("episodes", episodes, SEEDS)
         arguments = {**environment_arguments(preset, speed, blade, plant), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
-        found: dict[str, baselines.Evaluation] = {}
+        each: dict[str, baselines.Evaluation] = {}
         for run, law in chosen_runs(controller, envs.unwrapped.task, scenario, trained_seed).items():
-            reference = next((each.reference for each in found.values()), None)
-            found[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
-        runs = Runs(next(iter(found.values())).name, found)
+            reference = next((one.reference for one in each.values()), None)
+            each[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
+        runs = Runs(next(iter(each.values())).name, each)
     if as_json:
-        print_json(runs.to_dict() if len(found) > 1 else runs.one_to_dict())
+        print_json(runs.to_dict() if len(each) > 1 else runs.one_to_dict())
     else:
         from train.cli.evaluations import show_one
 

@@ -14,7 +14,10 @@ SEEDS = 128
 
 ScenariosOption = Annotated[
     list[str] | None,
-    typer.Option(help=f"Name or TOML file of a scenario, or {', '.join(GROUPS)} of them; repeat for more. All if left out."),
+    typer.Option(
+        help=f"Name (see beamenv list scenarios) or TOML file of a scenario, or {', '.join(GROUPS)} of them; repeat for more. "
+        "All if left out."
+    ),
 ]
 ControllersOption = Annotated[
     list[str] | None,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from train.cli.names import FORMATS, PRECISIONS, check_controller, check_name, check_names
+from train.cli.names import FORMATS, PRECISIONS, check_name, check_names
 from train.cli.options import (
     BladeOption,
     ControllerArgument,
@@ -25,6 +25,7 @@ from train.cli.options import (
     print_json,
     say,
 )
+from train.controllers.ids import found
 
 if TYPE_CHECKING:
     from train.export import Exported
@@ -55,8 +56,8 @@ def export(
 ) -> None:
     """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
     with one_sentence():
-        check_controller(controller)
         check_names(preset, scenario, blade, plant)
+        whose = found(controller, scenario, trained_seed)
         check_name("precision", precision, PRECISIONS)
         if format is not None:
             check_name("format", format, FORMATS)
@@ -70,19 +71,19 @@ def export(
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
         task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
-        called = identifier(Path(controller).name) if name is None else name
+        called = identifier(whose.id) if name is None else name
         path = output or Path(f"{called}.{format}")
         _check_free(path, overwrite)
         law = chosen(controller, task, scenario, trained_seed)
         model = moving(preset, speed, blade, plant)
         more: dict[str, Any] = {"precision": precision, "name": called, "note": f"{controller}, {model}, scenario {scenario}"}
-        found = exported(law, task.design_plant, **more)
-        seconds = _measured(found) if measure else None
+        written = exported(law, task.design_plant, **more)
+        seconds = _measured(written) if measure else None
         export(law, task.design_plant, path, format=format, **more)
     if as_json:
-        print_json({"file": str(path), "format": format, "name": found.name, **found.facts, "seconds_a_step": seconds})
+        print_json({"file": str(path), "format": format, "name": written.name, **written.facts, "seconds_a_step": seconds})
     else:
-        _show(found, path, seconds)
+        _show(written, path, seconds)
 
 
 def _format(format: str | None, output: Path | None) -> str:

@@ -80,9 +80,9 @@ def agents() -> Listed:
         for each in known_agents().values()
     ]
     note = (
-        "Generalists are trained on all scenarios but those kept for judging, specialists on each that is named. All are of tier 1."
+        "Generalists are trained on several scenarios at once and run in all, specialists on each that is named. All are of tier 1."
     )
-    return Listed(rows, ("runs",), note, f'{CONTROLLER}; controller("residual-generalist", env, run=0)')
+    return Listed(rows, ("runs",), note, f'{CONTROLLER}; controller("residual-generalist", env, trained_seed=0)')
 
 
 def scenarios() -> Listed:

@@ -11,7 +11,7 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from train.cli.bars import fleeting
-from train.cli.names import check_controller, check_names
+from train.cli.names import check_names
 from train.cli.options import (
     BladeOption,
     ControllerArgument,
@@ -27,6 +27,7 @@ from train.cli.options import (
     print_json,
     say,
 )
+from train.controllers.ids import found
 
 if TYPE_CHECKING:
     from minari import MinariDataset
@@ -63,8 +64,8 @@ def record(
     set.
     """
     with one_sentence("nothing is kept"):
-        check_controller(controller)
         check_names(preset, scenario, blade, plant)
+        found(controller, scenario, trained_seed)
         from train.datasets import record as run
         from train.shared.held_out import RECORDED
 

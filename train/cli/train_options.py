@@ -14,7 +14,10 @@ AgentsArgument = Annotated[
 ]
 ScenariosOption = Annotated[
     list[str] | None,
-    typer.Option(help="A name, a .toml file, or generalist: all but those kept for judging; repeat for more. nominal if left out."),
+    typer.Option(
+        help="A name (see beamenv list scenarios), a .toml file, or generalist: all but those kept for judging; repeat for more. "
+        "nominal if left out."
+    ),
 ]
 MinutesOption = Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")]
 UpdatesOption = Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")]

@@ -41,7 +41,9 @@ if TYPE_CHECKING:
 
 def tune(
     recipe: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or one of your own, a TOML file.")],
-    scenario: Annotated[str, typer.Option(help="A name, a .toml file, or generalist: all but those kept for judging.")] = "nominal",
+    scenario: Annotated[
+        str, typer.Option(help="A name, a .toml file, or generalist: all scenarios but those kept for judging.")
+    ] = "nominal",
     trials: Annotated[int, typer.Option(min=2, help="How many: the recipe as it is, and others drawn.")] = 16,
     updates: Annotated[int | None, typer.Option(help="That each trial may have; the recipe's if left out.")] = None,
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of every training, and of what is drawn.")] = 0,

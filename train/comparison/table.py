@@ -54,7 +54,7 @@ def told_of_references(evaluations: Sequence[Evaluation]) -> str:
     """Empty where nobody is told what no sensor offers."""
     known = known_controllers()
     found = [each.name for each in evaluations if each.name in known and known[each.name].tier == TRUTH]
-    return " ".join(f"{name} is told what no sensor offers: a reference, no rival." for name in found)
+    return " ".join(f"{name}: {known[name].title} A reference, no rival." for name in found)
 
 
 def markdown_table(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:

@@ -36,7 +36,7 @@ class Known:
     scenarios: tuple[str, ...] = ()
     """That an agent was trained on alone; none of a generalist and of what is no agent."""
     runs: tuple[int, ...] = ()
-    """Seeds of an agent's training runs."""
+    """Seeds of an agent's training runs; in some scenarios a specialist may have fewer."""
 
     @property
     def told(self) -> str:
@@ -76,5 +76,5 @@ def _constants(node: ast.stmt) -> list[tuple[str, Any]]:
 
 
 def _of_agent(agent: Agent) -> Known:
-    runs = agent.everywhere or next(iter(agent.only_in.values()))
+    runs = sorted({seed for runs in (agent.everywhere, *agent.only_in.values()) for seed in runs})
     return Known(agent.id, agent.title, "learned", LEARNT, tuple(agent.only_in), tuple(runs))

@@ -23,7 +23,8 @@ from beamenv.scenarios.named import UNSEEN
 from beamenv.scenarios.scenario import SCENARIOS
 from beamenv.scenarios.scenario import scenario as as_scenario
 from beamenv.task import Task, checked_dtype, resolve_task
-from train.controllers.choice import chosen, id_of
+from train.controllers.choice import chosen
+from train.controllers.ids import found
 from train.datasets.about import metadata, tier_of
 from train.datasets.storage import DATA, add, begun, checked_place, put_in_place, root_of
 from train.datasets.taped import Episode, episodes_of
@@ -74,7 +75,9 @@ def record(
     count, overwrite = checked("episodes", episodes, EPISODES), checked("overwrite", overwrite, Flag())
     seeds, progress = recorded(seed, count), checked_progress(progress)
     root = root_of(None if folder is None else as_path("folder", folder))
-    called = id_of(controller, _word(scenario), trained_seed) if isinstance(controller, str) else name_of(as_controller(controller))
+    called = (
+        found(controller, _word(scenario), trained_seed).id if isinstance(controller, str) else name_of(as_controller(controller))
+    )
     place = checked_place(root, _default_name(called, scenario) if name is None else name, overwrite)
     stage = Stage.of(controller, scenario, {} if environment is None else environment, trained_seed)
     with put_in_place(place) as hidden:

@@ -20,6 +20,10 @@ from beamenv.blade.model_blade import ModelBlade
 Array = NDArray[np.float64]
 
 
+IDLE = ("none", "no control")
+"""What no control is called: its id, and the name of its law."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
     """What one blade did at K instants, the reset and the end of every control interval; shorter where it failed."""
@@ -85,14 +89,14 @@ def record(
 def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controller, Controller]) -> RecordedEpisode:
     """The episode of ``seed`` in the environment with these keyword arguments, three times over.
 
-    A controller called as ``baselines.laws.no_control`` is counts as the episode without control, and is not run twice.
+    A controller of an id or a name in ``IDLE`` counts as the episode without control, and is not run twice.
     """
     env = gym.make(beamenv.ENV_ID, **{"dtype": "float64", **arguments})
     try:
         inner: Any = env.unwrapped
         idle = no_control(inner.plant)
         without = record(idle, env, seed)
-        left, right = (without if getattr(law, "name", None) == idle.name else record(law, env, seed) for law in pair)
+        left, right = (without if getattr(law, "name", None) in IDLE else record(law, env, seed) for law in pair)
         return RecordedEpisode(inner.task.blade, without, (left, right))
     finally:
         env.close()

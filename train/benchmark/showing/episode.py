@@ -8,10 +8,10 @@ from typing import Any
 from beamenv.knowledge import TRUTH
 from beamenv.scenarios.scenario import scenario
 from beamenv.task import resolve_task
-from train.benchmark.table import BenchmarkTable, Row
+from train.benchmark.table import BenchmarkTable
+from train.controllers.choice import chosen
 from train.controllers.named import KINDS, named
-from train.controllers.shipped import find_shipped, shipped
-from train.controllers.sources import Trained
+from train.controllers.shipped import shipped_agents
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
 
@@ -22,8 +22,7 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
     Scenarios whose plant is drawn or changes are passed over: their blades have other shapes than the configured one. None without
     a shipped agent. Of a model of one's own, LQG and the best other law in the first scenario.
     """
-    ships = {f"{each.agent}-{'generalist' if each.scenario == 'generalist' else 'specialist'}": each.agent for each in shipped()}
-    environment = table.configuration.get("environment", {})
+    ships, environment = shipped_agents(), table.configuration.get("environment", {})
     if environment.get("plant") is not None:
         return _of_model(table, environment)
     candidates = [row for row in table.rows if row.controller in ships and row.measured and _one_plant(row.scenario)]
@@ -33,7 +32,7 @@ def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
     arguments = {**environment, "scenario": best.scenario}
     task = resolve_task(**arguments)
     try:
-        agent = Trained(find_shipped(ships[best.controller], _home(best)).folder).build(task)
+        agent = chosen(best.controller, task, best.scenario)
     except ValueError:  # the table's blade is another one than that which agents ship for
         return None, ""
     note = f"Scenario {best.scenario}, held-out episode of seed {HELD_OUT}: LQG, and the agent that gains most on it."
@@ -52,10 +51,6 @@ def _of_model(table: BenchmarkTable, environment: Mapping[str, Any]) -> tuple[Re
     pair = (named("none" if best is None else best.controller).build_for(task), lqg)
     told = "LQG, and no control" if best is None else f"LQG, and {best.controller}, the law that costs least beside it"
     return record_episode(arguments, HELD_OUT, pair), f"Scenario {name}, held-out episode of seed {HELD_OUT}: {told}."
-
-
-def _home(row: Row) -> str:
-    return "generalist" if row.controller.endswith("-generalist") else row.scenario
 
 
 def _one_plant(name: str) -> bool:

@@ -11,7 +11,7 @@ from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
 from train.benchmark.showing.section import Section
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import findings
-from train.controllers.shipped import shipped
+from train.controllers.shipped import shipped_agents
 from train.page import Cell, LearningCurves, PageContent, Table, write_page
 from train.shared.curve import read_curve
 
@@ -37,14 +37,12 @@ def write_report(path: Path, table: BenchmarkTable) -> None:
 def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
     """How the agents that ship for the nominal blade learned, the first run of each, beside LQG on it; None without any."""
     level = next((row for row in table.rows if (row.scenario, row.controller) == ("nominal", "lqg") and row.measured), None)
-    own = {row.controller.removesuffix("-specialist") for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
-    curves = {}
-    for each in shipped():
-        if each.agent in own and each.scenario == "nominal" and each.agent not in curves:
-            curves[each.agent] = read_curve(each.folder)
+    own = {row.controller for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
+    runs = {name: each.only_in["nominal"] for name, each in shipped_agents().items() if name in own and "nominal" in each.only_in}
+    curves = {name: read_curve(next(iter(each.values())).folder) for name, each in runs.items()}
     if level is None or not curves:
         return None
-    return LearningCurves(curves, {level.title: level.estimates["relative_cost"].value})
+    return LearningCurves(curves, {level.controller: level.estimates["relative_cost"].value})
 
 
 def page_table(table: BenchmarkTable) -> Table:

@@ -1,4 +1,4 @@
-"""LQR on the full state, which no sensor offers."""
+"""LQR on the full state (no sensor offers it)."""
 
 from baselines import Controller, lqr
 from beamenv.knowledge import Truth
