@@ -36,8 +36,8 @@ from beamenv.structure import BoxSection, Lamina, Layup, RotatingBeam
 from beamenv.structure.beam import TERMS
 from beamenv.structure.discretisation import DISCRETISATION, ELEMENT_ORDER, ELEMENTS, MESH, check_discretisation
 from beamenv.structure.held_and_heated import (
+    BLADE_KELVIN,
     DIFFERENCE,
-    KELVIN,
     SPRINGS,
     check_data,
     check_expansion,
@@ -154,14 +154,14 @@ class BeamConfig:
     """Pretwist along the span in place of ``pretwist_deg``: pairs of the share of the span, from 0 to 1, and degrees."""
     chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
-    temperature: Annotated[float | None, KELVIN] = None
+    temperature: Annotated[float | None, BLADE_KELVIN] = None
     """K, of the blade and its patches. None: that at which all data hold, and nothing is strained; beside a difference that of
     reference."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of ``temperature``: pairs of the share of the span, from 0 to 1, and K."""
     temperature_difference: Annotated[float, DIFFERENCE] = 0.0
     """K: at the greatest y of each section (the top wall) less that at its least, straight in between."""
-    reference_temperature: Annotated[float, KELVIN] = ROOM
+    reference_temperature: Annotated[float, BLADE_KELVIN] = ROOM
     """K: at which the blade is free of thermal strain."""
     tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
     """What holds the tip: N/m along lag, flap and span, N m/rad about them. None: nothing does."""

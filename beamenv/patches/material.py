@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, Refused, checked, configuration
-from beamenv.structure.walls.curves import KELVIN, ROOM
+from beamenv.structure.walls.curves import DATA_KELVIN, ROOM
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
 from beamenv.structure.walls.materials import Lamina, strain_rotation
@@ -66,7 +66,7 @@ class PatchMaterial:
 
     def at(self, temperature_K: float) -> PatchMaterial:
         """The sheet at a temperature; ``ValueError`` beyond its data, or where it would lose its polarisation."""
-        temperature_K = checked("temperature", temperature_K, KELVIN)
+        temperature_K = checked("temperature", temperature_K, DATA_KELVIN)
         highest = np.inf if self.warmest is None else self.warmest
         if not COLDEST <= temperature_K <= highest:
             raise Refused(

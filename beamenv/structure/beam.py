@@ -23,8 +23,8 @@ from beamenv.structure.geometrically_exact.operating_point import OperatingPoint
 from beamenv.structure.geometrically_exact.sections_along import SectionsAlong
 from beamenv.structure.geometrically_exact.tip_springs import TipSprings
 from beamenv.structure.held_and_heated import (
+    BLADE_KELVIN,
     DIFFERENCE,
-    KELVIN,
     SPRINGS,
     check_data,
     check_held_and_heated,
@@ -108,14 +108,14 @@ class RotatingBeam:
     """Ends of finite elements, shares of the span from 0 to 1; edges of inlays are ends as well. None: by ``elements``."""
     inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
-    temperature: Annotated[float | None, KELVIN] = None
+    temperature: Annotated[float | None, BLADE_KELVIN] = None
     """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained; beside a difference that of
     reference."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of one: pairs of the share of the span, from 0 to 1, and K."""
     temperature_difference: Annotated[float, DIFFERENCE] = 0.0
     """K: at the greatest y of each section less that at its least, straight in between."""
-    reference_temperature: Annotated[float, KELVIN] = ROOM
+    reference_temperature: Annotated[float, BLADE_KELVIN] = ROOM
     """K: at which the blade is free of thermal strain."""
     tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
     """What holds the tip: N/m along lag, flap and span, N m/rad about them. None: nothing does."""
@@ -209,24 +209,9 @@ class RotatingBeam:
         with in_scale("beam"):
             matrices = self.exact.matrices if self.model == "blade" else self._wall_matrices()
         if not matrices.regular:
-            self._check_terms()
             self._check_springs()
             raise ValueError(f"beam cannot be computed: {OUT_OF_SCALE}")
         return matrices
-
-    def _check_terms(self) -> None:
-        """``ValueError`` names the trial functions where they are why there are no matrices: with as many as usual there are."""
-        space, usual = self.space, terms_of(self.model, None)
-        if not isinstance(space, TrialSpace) or space.terms <= usual:
-            return
-        try:
-            _ = replace(self, terms=usual).matrices
-        except ValueError:
-            return
-        beside = f" beside two for each of {count} breaks along the span" if (count := len(space.breaks)) else ""
-        raise Refused(
-            "beam.terms", space.terms, f"fewer{beside}: so many functions are told apart by rounding alone, {usual} are not"
-        )
 
     def _check_springs(self) -> None:
         """``ValueError`` names the springs where they are why there are no matrices."""

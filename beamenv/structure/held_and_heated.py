@@ -9,7 +9,7 @@ from beamenv.configuration import Number, Numbers, Refused, checked
 from beamenv.structure.planform import Steps, check_table
 from beamenv.structure.walls.materials import Lamina
 
-KELVIN = Number(ge=100.0, le=5000.0, unit="K")
+BLADE_KELVIN = Number(ge=100.0, le=5000.0, unit="K")
 """Lower ones, in which no blade turns, are degrees Celsius or Fahrenheit."""
 
 DIFFERENCE = Number(ge=-5000.0, le=5000.0, unit="K")
@@ -70,7 +70,7 @@ def check_held_and_heated(model: str, beam: Any, path: str = "beam") -> None:
     if beam.temperature_table is not None:
         check_table(f"{path}.temperature_table", beam.temperature_table)
         for _, temperature in beam.temperature_table:
-            checked(f"{path}.temperature_table", temperature, KELVIN)
+            checked(f"{path}.temperature_table", temperature, BLADE_KELVIN)
     if model != "thesis":
         return
     for name in ("temperature", "temperature_table", "temperature_difference"):

@@ -101,7 +101,7 @@ def test_a_picture_that_cannot_be_written_is_told_before_the_search(more, tmp_pa
     def searched(*_, **__):
         raise AssertionError("searched in vain")
 
-    monkeypatch.setattr("train.cli.place.place_sides", searched)
+    monkeypatch.setattr("train.cli.place_in_turn.place_sides", searched)
     (tmp_path / "note").write_text("kept")
     (tmp_path / "folder.png").mkdir()
     for picture in (tmp_path / "note" / "picture.png", tmp_path / "folder.png"):
@@ -118,7 +118,7 @@ def test_positions_are_told_even_if_the_picture_fails(error, sides, monkeypatch,
     def fail(*_):
         raise error
 
-    monkeypatch.setattr("train.cli.place.place_sides", lambda *_: sides)
+    monkeypatch.setattr("train.cli.place_in_turn.place_sides", lambda *_: sides)
     monkeypatch.setattr("train.placement.picture.draw_placement", fail)
     result = run("--json", "--picture", str(tmp_path / "picture.png"))
     assert result.exit_code == (2 if isinstance(error, OSError) else 130)

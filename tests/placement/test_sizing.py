@@ -11,6 +11,7 @@ from baselines.placement import Budget, Sizes, SizingProblem, SizingSearch, size
 from baselines.placement.sizing.blades import cost_on_plant
 from baselines.placement.sizing.designs import Designs, random_designs, repaired, without_overlap
 from baselines.placement.sizing.front import Archive, feasible, point, unbeaten
+from baselines.placement.sizing.limits import Limits
 from baselines.placement.sizing.sheets import SizeGrid
 from baselines.placement.sizing.sized_contributions import drive_of
 from beamenv.blade.build import Blade, build_plant
@@ -177,6 +178,14 @@ def test_polynomials_between_sizes_are_exact_for_what_is_quadratic():
     assert grid.weights(sizes) @ values == pytest.approx((sizes[:, 0] * sizes[:, 1]) ** 2, rel=1e-12)
     by_width = grid.weight_slopes(sizes)[:, 0] @ values
     assert by_width == pytest.approx(2.0 * sizes[:, 0] * sizes[:, 1] ** 2, rel=1e-10)
+
+
+def test_sheets_grow_and_shrink_until_an_edge_comes_to_a_web():
+    """A NACA 0012 with a web at 0.4 of its chord: sheets of 18 mm in the middle of a wall would end on it."""
+    above, below = Limits.of(blade_config("airfoil-blade"), Sizes(), None).widths
+    assert above == pytest.approx((0.0189, 0.056), abs=1e-4)
+    assert below == pytest.approx(above)
+    assert Limits.of(blade_config("thesis"), Sizes(), None).widths[0] == (0.5 * 0.057, 2.0 * 0.057)
 
 
 def test_every_point_of_the_front_can_be_made_and_paid_and_none_betters_another():

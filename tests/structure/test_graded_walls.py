@@ -24,9 +24,6 @@ from beamenv.structure import (
     Web,
     ZSection,
 )
-from beamenv.structure.section.section import mesh_of
-from beamenv.structure.section.solid_sections import SolidSections
-from beamenv.structure.walls.depth_rules import gauss_rule_of_weight, interpolating_rule, power_rule
 from beamenv.structure.walls.graded import SCHEMES
 from beamenv.structure.walls.laminate import wall_law
 from beamenv.structure.walls.named import SILICON_NITRIDE, SUS304
@@ -199,46 +196,6 @@ def test_a_wall_of_it_is_graded_once_and_a_ply_among_others_by_itself():
     assert in_two == pytest.approx(0.03 * H * (2700.0 + 1260.0 / 4.0))
 
 
-@pytest.mark.parametrize("exponent", [1e-6, 0.01, 0.3, 1.0, 7.3, 1e3, 1e4])
-def test_points_through_a_wall_integrate_any_power_to_round_off(exponent):
-    """∫ ξ^(jp + k) dξ = 1/(jp + k + 1), at 137 points, to 1e-15; to 1e-12 at the exponent 10⁴."""
-    rule = power_rule(exponent)
-    assert len(rule.place) == 137
-    share = 0.5 * (1.0 + rule.place)
-    for j in range(4):
-        for k in range(9):
-            found = 0.5 * rule.weight @ (rule.volume**j * share**k)
-            assert found == pytest.approx(1.0 / (j * exponent + k + 1.0), rel=0.0, abs=1e-12 if exponent > 1e3 else 2e-15)
-
-
-def test_halving_the_step_changes_no_stiffness_of_a_strong_contrast():
-    """Bulk moduli 1 : 30 by Mori and Tanaka, of which the mixture has a pole close to the wall."""
-    for inner, outer in ((1e9, 30e9), (30e9, 1e9)):
-        material = graded(0.6, Lamina.isotropic(inner, 0.3, 1.0), Lamina.isotropic(outer, 0.3, 1.0), "mori-tanaka")
-        usual, fine = (power_rule(0.6, step=step) for step in (1.0 / 20.0, 1.0 / 40.0))
-        sums = [rule.weight @ material.mixture(rule.volume).bulk for rule in (usual, fine)]
-        assert sums[0] == pytest.approx(sums[1], rel=1e-14)
-
-
-def test_gauss_rule_of_a_weight_is_gauss_own_where_nothing_changes():
-    rule = power_rule(0.5)
-    np.testing.assert_allclose(
-        gauss_rule_of_weight(rule.place, rule.weight, 4), np.polynomial.legendre.leggauss(4), rtol=1e-13, atol=1e-14
-    )
-    places, weights = gauss_rule_of_weight(rule.place, rule.weight * (1.0 + 5.0 * rule.volume), 4)
-    for k in range(8):
-        expected = rule.weight @ ((1.0 + 5.0 * rule.volume) * rule.place**k)
-        assert weights @ places**k == pytest.approx(expected, rel=1e-13, abs=1e-14)
-
-
-def test_rule_of_a_weight_that_changes_its_sign_is_exact_for_polynomials():
-    rule = power_rule(0.3)
-    weight = rule.weight * (0.7 - rule.volume)
-    places, weights = interpolating_rule(rule.place, weight, 8)
-    for k in range(8):
-        assert weights @ places**k == pytest.approx(weight @ rule.place**k, rel=1e-12, abs=1e-14)
-
-
 @pytest.mark.parametrize("exponent", [0.5, 1.0, 10.0])
 def test_rotating_graded_beam_spins_up_as_the_uniform_one_of_its_bending_stiffness(exponent, table):
     """Wright et al. 1982 and others: ω √(m L⁴/EI) at Ω √(m L⁴/EI), here with EI = D − B²/A about the neutral axis.
@@ -308,16 +265,6 @@ def test_one_wall_may_be_graded_and_the_others_laid_up():
     assert np.array_equal(found.stiffness, half.stiffness)
 
 
-def test_temperature_acts_on_both_materials():
-    hot = FunctionallyGraded("sus304", "silicon-nitride", 1.0).at(600.0)
-    assert hot.constituents == (SUS304.at(600.0), SILICON_NITRIDE.at(600.0))
-    assert graded(1.0).at(600.0) == graded(1.0)
-    plain = graded(2.0)
-    assert plain.at(500.0) is plain
-    with pytest.raises(ValueError, match=r"^temperature is 200.0, but must be a number from 300 to 1000 \(K\)"):
-        Layup.uniform(FunctionallyGraded("sus304", STIFF, 1.0), [0.0]).at(200.0)
-
-
 REFUSED = {
     "exponent below 0": ({"exponent": -0.1}, "graded.exponent is -0.1, but must be zero or a positive number"),
     "no number": ({"exponent": np.nan}, "graded.exponent is nan, but must be zero or a positive number"),
@@ -334,72 +281,6 @@ REFUSED = {
 def test_what_cannot_be_graded_is_refused(changes, message):
     with pytest.raises(ValueError, match=f"^{message}"):
         FunctionallyGraded(**{"inner": SOFT, "outer": STIFF, "exponent": 1.0, **changes})
-
-
-def test_heat_bends_a_graded_strip_as_its_moments_say():
-    """E and α linear through the thickness, one ν: σ = E (ε + κ n − α) alone, without resultants; exact whatever the width."""
-    n = np.polynomial.legendre.leggauss(8)
-    depth, weight = 0.5 * H * n[0], 0.5 * H * n[1]
-    share = depth / H + 0.5
-    E = SOFT.E1 + (STIFF.E1 - SOFT.E1) * share
-    alpha = SOFT.alpha1 + (STIFF.alpha1 - SOFT.alpha1) * share
-    A, B, D = (weight @ (E * depth**k) for k in range(3))
-    strain, curvature = np.linalg.solve([[A, B], [B, D]], [weight @ (E * alpha), weight @ (E * alpha * depth)])
-    strip = StripSection(0.03, H)
-    mesh = mesh_of(strip, (1.0,), (), (True,))
-    laminate = Laminate.equal_plies((Ply(graded(1.0), 0.0),), H)
-    built = SolidSections.build(mesh, [laminate], np.zeros((1, len(mesh.edges)), dtype=int), 0.0, heated=True)
-    found = built.expansion.strain[0, :, 0]
-    assert found[2] == pytest.approx(strain, rel=1e-9)
-    assert abs(found[3]) == pytest.approx(abs(curvature), rel=1e-9)
-
-
-def test_heated_blade_of_a_pair_strains_by_what_its_materials_are_there():
-    """At the infinite exponent as the inner material alone, to the last bit; graded, in between."""
-
-    def stretch(layup):
-        beam = RotatingBeam(BOX, layup, 2.0, temperature=500.0, reference_temperature=300.0)
-        return float((beam.displacements(beam.length)["s"] @ beam.at(0.0).steady.coefficients)[0])
-
-    steel, ceramic = (stretch(Layup.uniform(each, [0.0])) for each in (SUS304, SILICON_NITRIDE))
-    assert stretch(layup_of(1e6, inner="sus304", outer="silicon-nitride")) == steel
-    assert ceramic < stretch(layup_of(1.0, inner="sus304", outer="silicon-nitride")) < steel
-    with pytest.raises(ValueError, match=r"alpha1 is None, but must be a number \(1/K\) where temperature strains the blade"):
-        stretch(layup_of(1.0, inner=Lamina.isotropic(7e10, 0.3, 2700.0)))
-
-
-def in_layers(material, count):
-    """The wall as uniform plies, each of the mixture at its middle."""
-    mixture = material.mixture(((np.arange(count) + 0.5) / count) ** material.exponent)
-    columns = (mixture.E, mixture.nu, mixture.density, mixture.alpha)
-    return Layup(tuple(Ply(Lamina.isotropic(*map(float, row)), 0.0) for row in zip(*columns, strict=True)))
-
-
-@pytest.mark.parametrize("scheme", SCHEMES)
-def test_uniform_layers_approach_the_graded_wall_with_the_square_of_their_number(scheme):
-    """All of a strip's 6 × 6 stiffness, with moduli and Poisson's ratio that change: 10⁻⁴ from 48 layers to the graded wall."""
-    material, strip = graded(2.0, SUS304, SILICON_NITRIDE, scheme), StripSection(0.05, H)
-    exact = strip.properties(Layup.uniform(material, [0.0])).stiffness
-    scale = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
-    off = [np.abs((strip.properties(in_layers(material, n)).stiffness - exact) / scale).max() for n in (24, 48)]
-    assert off[1] < 1.1e-4
-    assert off[0] / off[1] == pytest.approx(4.0, rel=0.01)
-
-
-def test_uniform_layers_expand_as_the_graded_wall():
-    material = graded(2.0, SUS304, SILICON_NITRIDE, "mori-tanaka")
-
-    def curvature_and_strain(layup):
-        strip = StripSection(0.05, H)
-        mesh, plies = mesh_of(strip, (1.0,), (), (True,)), layup.plies("strip")
-        which = np.zeros((1, len(mesh.edges)), dtype=int)
-        built = SolidSections.build(mesh, [Laminate.equal_plies(plies, H)], which, 0.0, heated=True)
-        return built.expansion.strain[0, [2, 3], 0]
-
-    exact = curvature_and_strain(Layup.uniform(material, [0.0]))
-    off = [np.abs(curvature_and_strain(in_layers(material, n)) / exact - 1.0).max() for n in (24, 48)]
-    assert off[1] < 1e-3
-    assert off[0] / off[1] == pytest.approx(4.0, rel=0.02)
 
 
 @pytest.mark.parametrize("scheme", ["voigt", "mori-tanaka"])

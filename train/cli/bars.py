@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
 from typing import Any
 
 from rich.console import Console
-from rich.progress import Progress, ProgressColumn
+from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
 from typing_extensions import Self
 
 
@@ -43,3 +43,12 @@ def fleeting(*columns: ProgressColumn) -> Iterator[Progress]:
     screen = Console(stderr=True)
     with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as progress:
         yield progress
+
+
+@contextmanager
+def one_cost_bar(name: str) -> Iterator[Callable[[float, float], None]]:
+    """A bar of the share that is done, with the least cost so far."""
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[cost]}"), TimeElapsedColumn()
+    with fleeting(*columns) as progress:
+        task = progress.add_task(name, total=1.0, cost="")
+        yield lambda done, cost: progress.update(task, completed=done, cost=f"least cost {cost:.4g} J")

@@ -1,19 +1,16 @@
-"""``beamenv place --size`` and ``--together``: patches sized with their places, and both sides placed at once."""
+"""``beamenv place --size``: patches sized with their places."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from beamenv.configuration.files import checked_path
-from train.cli.bars import fleeting
+from train.cli.bars import one_cost_bar
 from train.cli.options import print_json, print_table, say
 from train.placement.sized import SizedFront, size_patches
 from train.shared.files import check_file, write_json
@@ -36,7 +33,7 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
 
     if to.save is not None:
         check_file(checked_path("save", to.save, (".json",)), "save")
-    with one_bar("sizes") as report:
+    with one_cost_bar("sizes") as report:
         sized = size_patches(
             config, Sizes(actuators=counts["actuators"], sensors=counts["sensors"]), Budget(**budget), seed, report
         )
@@ -53,37 +50,6 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
         Console(stderr=to.as_json).print(f"picture in {to.drawn}", soft_wrap=True, markup=False)
     if not sized.front.complete:
         raise KeyboardInterrupt
-
-
-def place_together(config: Any, counts: dict[str, int | None], seed: int, leave_unreached: bool, as_json: bool) -> None:
-    """Place both sides by the closed loop's cost, and tell what that gains over one after the other."""
-    from baselines.placement import JointProblem, place_jointly
-
-    problem = JointProblem.of(config, **counts)
-    with one_bar("both sides") as report:
-        found = place_jointly(problem, seed, report, leave_unreached)
-    if as_json:
-        print_json({**asdict(found), "unit": "J", "gain": found.gain})
-        return
-    table = Table(title=f"both sides, {problem.config.speed:g} rad/s: root-side edges, m")
-    for column in ("placed", "actuators", "sensors", "cost of the loop, J"):
-        table.add_column(column, justify="left" if column == "placed" else "right")
-    for label, above, below, cost in (
-        ("one after the other", found.in_turn["actuators"], found.in_turn["sensors"], found.in_turn_cost),
-        ("together", found.actuators, found.sensors, found.cost),
-    ):
-        table.add_row(label, *(" ".join(f"{z:.4f}" for z in side) for side in (above, below)), f"{cost:.4g}")
-    print_table(table)
-    say(f"together they cost {100.0 * found.gain:.2f} % less")
-
-
-@contextmanager
-def one_bar(name: str) -> Iterator[Callable[[float, float], None]]:
-    """A bar of the share that is done, with the least cost so far."""
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[cost]}"), TimeElapsedColumn()
-    with fleeting(*columns) as progress:
-        task = progress.add_task(name, total=1.0, cost="")
-        yield lambda done, cost: progress.update(task, completed=done, cost=f"least cost {cost:.4g} J")
 
 
 def show_front(sized: SizedFront) -> None:

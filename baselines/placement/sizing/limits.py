@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from baselines.placement.sizing.sheets import SizeGrid, Span, cut_to
 from beamenv.blade.config import BladeConfig
 from beamenv.configuration import Count, Number, Numbers, Refused, configuration
+from beamenv.patches.group import PatchGroup
 from beamenv.patches.layout import SIDES
 from beamenv.structure import RotatingBeam
+from beamenv.structure.section.mesh import mesh
+from beamenv.structure.walls.inlay import Strip
 
 Array = NDArray[np.float64]
 
@@ -27,6 +30,9 @@ NODES = (3, 3)
 
 WIDEST = 4.0
 """Times the blade's own width or thickness, up and down: as far as that holds."""
+
+TRIED = 61
+"""Widths of a sheet from half to twice the blade's own that are tried beside webs and corners: 2.5 % of it apart."""
 
 MOST = Count(1, 8)
 
@@ -87,8 +93,7 @@ class Limits:
         bare = config.beam.build(model=config.model)
         widths, thicknesses = [], []
         for group in groups:
-            room = room_of(bare, group.wall, group.offset)
-            widths.append(sizes.width or spread(group.width, room))
+            widths.append(sizes.width or free_widths(bare, group))
             thick = np.inf if group.bonded else 0.5 * bare.section.thickness_of(group.wall)
             thicknesses.append(sizes.thickness or spread(group.patch.thickness, thick))
             near("width", widths[-1], group.width)
@@ -145,6 +150,22 @@ def around(span: Sequence[float], own: float) -> Span:
     return min(span[0], own), max(span[1], own)
 
 
-def room_of(bare: RotatingBeam, wall: str, offset: float) -> float:
-    """M along a wall's contour, where it is narrowest."""
-    return float(bare.room.narrowest * max(bare.section.wall_width(wall) - 2.0 * abs(offset), 0.0))
+def free_widths(bare: RotatingBeam, group: PatchGroup) -> Span:
+    """Half to twice the blade's own width, m, as far as its wall is wide and no edge comes to a web or a corner."""
+    wall = float(bare.room.narrowest * max(bare.section.wall_width(group.wall) - 2.0 * abs(group.offset), 0.0))
+    least, most = spread(group.width, wall)
+    tried = np.linspace(least, most, TRIED).tolist()
+    met = [number for number, width in enumerate(tried) if not _lies_free(bare, group, width)]
+    below = [number for number in met if tried[number] < group.width]
+    above = [number for number in met if tried[number] > group.width]
+    return tried[below[-1] + 1 if below else 0], tried[above[0] - 1 if above else -1]
+
+
+def _lies_free(bare: RotatingBeam, group: PatchGroup, width: float) -> bool:
+    """Whether the edges of a sheet so wide keep away from webs and corners, at both ends of the blade."""
+    sizes = np.unique([bare.narrowest, 1.0])
+    try:
+        mesh(bare.section.placed_chains, sizes, (Strip(group.wall, width, group.offset),), np.ones(len(sizes), dtype=bool))
+    except Refused:
+        return False
+    return True

@@ -41,7 +41,7 @@ class Meaning:
         if not opened:
             return cls(resultants, loads, None)
         torsion = central.warping[:1, :, :, RIGID - 1 :]
-        loads = np.concatenate([loads_of_bimoment(first, torsion), loads[..., : DISTORTIONS - 1]], axis=-1)
+        loads = np.concatenate([loads_of_bimoment(first, torsion), loads], axis=-1)[..., :DISTORTIONS]
         return cls(resultants, loads, (central.strain[0] * resultants)[np.ix_(SHEAR_AND_TWIST, SHEAR_AND_TWIST)])
 
     def shapes(self, central: CentralSolution) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.structure.section.central_solution import Factorised, mean_motion, without
-from beamenv.structure.section.elements import coefficients_through_wall
+from beamenv.structure.section.elements import RIGID, coefficients_through_wall
 
 Array = NDArray[np.float64]
 
@@ -52,15 +52,19 @@ def loads_of_vibrations(system: Factorised) -> Array:
 
 
 def loads_of_bimoment(system: Factorised, torsion: Array) -> Array:
-    """Loads on the elements (1, K, size, 1) that contract one section as the stresses of warping held back do, of unit energy.
+    """Loads on the elements (1, K, size, 1) that contract one section as the stresses of warping held back do, of unit energy; of
+    none, (1, K, size, 0), where ν = 0 leaves nothing to contract.
 
     ``torsion`` (1, lines, 12, 1) is its warping in torsion. An open section bears torsion by these stresses; were it not free to
     contract across them, it would be stiffer by (1 − ν)/(1 + ν)(1 − 2ν), a third for ν = 0.3.
     """
     sums = system.sums
-    loads = -sums.cross @ sums.gather(torsion)
+    held = sums.gather(torsion)
+    loads = -sums.cross @ held
     shape = sums.gather(_under(system, loads))
     energy = (shape.swapaxes(-1, -2) @ loads).sum(axis=1)
+    if not np.all(energy > TOLD_APART * sums.energy(np.zeros_like(held), held, np.zeros((1, RIGID, 1)))):
+        return loads[..., :0]
     return np.asarray(loads / np.sqrt(energy)[:, None])
 
 

@@ -16,7 +16,7 @@ from beamenv.configuration.reading import made
 ROOM = 300.0
 """K: where Touloukian's polynomials give a material's constants (Reddy and Chin's reference)."""
 
-KELVIN = Number(gt=0.0, le=1e4, unit="K")
+DATA_KELVIN = Number(gt=0.0, le=1e4, unit="K")
 
 PROPERTIES = ("E1", "E2", "G12", "G13", "G23", "nu12", "alpha1", "alpha2")
 """What may have a curve; mass does not depend on temperature."""
@@ -30,8 +30,8 @@ class Touloukian:
     Thermal Stresses 21, 1998. Raises ``ValueError`` where the range is empty or the polynomial is zero at 300 K.
     """
 
-    least_K: Annotated[float, KELVIN]
-    most_K: Annotated[float, KELVIN]
+    least_K: Annotated[float, DATA_KELVIN]
+    most_K: Annotated[float, DATA_KELVIN]
     """Where it holds, K."""
     P_minus1: Real = 0.0
     """K."""
@@ -91,7 +91,7 @@ class Curves(Kind):
 
     def core(self) -> CoreSchema:
         """Pairs of a property and its curve."""
-        point = core_schema.tuple_schema([KELVIN.inner(), Number().inner()], strict=True)
+        point = core_schema.tuple_schema([DATA_KELVIN.inner(), Number().inner()], strict=True)
         points = core_schema.tuple_variable_schema(point, min_length=2, max_length=100, strict=True)
         rising = core_schema.no_info_after_validator_function(_rising, points)
         curve = core_schema.union_schema([core_schema.is_instance_schema(Touloukian), rising])
@@ -102,8 +102,8 @@ class Curves(Kind):
 
     def json(self) -> JsonSchema:
         """An object of the properties, or an array of pairs."""
-        point = {"type": "array", "prefixItems": [KELVIN.json(), Number().json()], "minItems": 2, "maxItems": 2}
-        numbers = {"least_K": KELVIN.json(), "most_K": KELVIN.json()}
+        point = {"type": "array", "prefixItems": [DATA_KELVIN.json(), Number().json()], "minItems": 2, "maxItems": 2}
+        numbers = {"least_K": DATA_KELVIN.json(), "most_K": DATA_KELVIN.json()}
         numbers |= {name: Number().json() for name in ("P_minus1", "P1", "P2", "P3")}
         polynomial = {"type": "object", "properties": numbers, "additionalProperties": False}
         curve = {"anyOf": [{"type": "array", "items": point, "minItems": 2, "maxItems": 100}, polynomial]}

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, Real, Refused, checked, configuration
-from beamenv.structure.walls.curves import KELVIN, Curve, Curves, range_of, share
+from beamenv.structure.walls.curves import DATA_KELVIN, Curve, Curves, range_of, share
 
 Modulus = Annotated[float, Number(gt=0.0, unit="Pa")]
 Density = Annotated[float, Number(gt=0.0, unit="kg/m³")]
@@ -96,7 +96,7 @@ class Lamina:
 
         Raises ``ValueError`` beyond the range of the curves.
         """
-        temperature_K = checked("temperature", temperature_K, KELVIN)
+        temperature_K = checked("temperature", temperature_K, DATA_KELVIN)
         if self.range_K is None:
             return self
         low, high = self.range_K

@@ -1,0 +1,95 @@
+"""``beamenv place``: actuators and sensors placed in turn, each by its own trace, with the proof."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from train.cli.bars import fleeting
+from train.cli.options import print_json, print_table, say
+from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
+
+METHOD = "multistart"
+"""Of the search, unless told otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How each side is searched for."""
+
+    method: str
+    seed: int
+    leave_unreached: bool
+    """Whether modes that no patch moves keep their own damping."""
+
+
+def place_in_turn(config: Any, counts: dict[str, int | None], search: Search, drawn: Path | None, as_json: bool) -> None:
+    """Place the sides that are counted, or both with as many patches as the blade has, tell how, and draw them."""
+    from beamenv.blade.layouts import SIDES, positions_of
+
+    wanted = {side: count for side in SIDES if (count := counts[side]) is not None}
+    wanted = wanted or {side: count for side in SIDES if (count := len(positions_of(config, side)))}
+    with bars(wanted) as report:
+        sides = place_sides(config, wanted, search.method, search.seed, report, search.leave_unreached)
+    if as_json:
+        print_json([side.to_dict() for side in sides])
+    else:
+        show(sides)
+    if drawn is not None:  # last: whatever becomes of it, the positions have been told
+        from train.placement.picture import draw_placement
+
+        draw_placement(sides, drawn)
+        Console(stderr=as_json).print(f"picture in {drawn}", soft_wrap=True, markup=False)
+
+
+@contextmanager
+def bars(sides: Any) -> Iterator[Callable[[str, float, float], None]]:
+    """A bar for each side."""
+    columns = TextColumn("{task.description:>9}"), BarColumn(), TextColumn("{task.fields[cost]}"), TimeElapsedColumn()
+    with fleeting(*columns) as progress:
+        tasks = {side: progress.add_task(side, total=1.0, cost="") for side in sides}
+
+        def report(side: str, done: float, cost: float) -> None:
+            name, unit = UNITS[side]
+            progress.update(tasks[side], completed=done, cost=f"{name} {cost:.4g} {unit}")
+
+        yield report
+
+
+def show(sides: list[PlacedSide]) -> None:
+    """Positions, traces and damping ratios on the screen."""
+    for side in sides:
+        placement, (name, unit) = side.placement, UNITS[side.placement.side]
+        positions = Table(title=f"{placement.side}, {side.problem.config.speed:g} rad/s: root-side edges, m")
+        for column in ("layout", *map(str, range(1, len(placement.positions) + 1)), f"{name}, {unit}", "of uniform"):
+            positions.add_column(column, justify="left" if column == "layout" else "right")
+        for label, layout, cost in (
+            ("uniform", side.problem.bounds.uniform(), side.uniform_cost),
+            (placement.method, placement.positions, placement.cost),
+        ):
+            positions.add_row(label, *(f"{z:.4f}" for z in layout), f"{cost:.5g}", f"{100.0 * cost / side.uniform_cost:.2f} %")
+        print_table(positions)
+        say(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
+        print_table(damping_table(side))
+        if side.note:
+            say(side.note)
+
+
+def damping_table(side: PlacedSide) -> Table:
+    """Damping ratios, mode by mode."""
+    law = LAWS[side.placement.side]
+    table = Table(title=f"damping ratios of the {law}, %")
+    for column in ("mode", "left alone", "uniform", side.placement.method):
+        table.add_column(column, justify="right")
+    longest = max(len(side.left_alone), len(side.uniform), len(side.placed))
+    for mode in range(longest):
+        cells = [f"{100.0 * each[mode]:.2f}" if mode < len(each) else "" for each in (side.left_alone, side.uniform, side.placed)]
+        table.add_row(str(mode + 1), *cells)
+    return table
