@@ -158,10 +158,10 @@ COMMANDS = {
             "--channels": None,
             "--power": None,
             "--frequency": None,
-            "--save": None,
+            "--output": None,
             "--picture": None,
         },
-        ("--json", "--no-passive", "--leave-unreached", "--together", "--size"),
+        ("--json", "--no-patches", "--leave-unreached", "--together", "--size"),
         ("baselines.placement.place", "baselines.placement.place_jointly", "baselines.placement.size"),
     ),
     "export": (

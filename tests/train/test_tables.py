@@ -6,6 +6,7 @@ import re
 import gymnasium
 import numpy as np
 import pytest
+import typer.main
 from typer.testing import CliRunner
 
 import beamenv
@@ -127,3 +128,20 @@ def test_tables_of_blades_are_no_wider_than_80_columns(words, monkeypatch):
 def test_the_version_is_told(words):
     result = CliRunner().invoke(app, words)
     assert (result.exit_code, result.stdout) == (0, f"beamenv {beamenv.__version__}\n")
+
+
+FORMER = {"--seeds": "--episodes", "--save": "--output", "--passive": "--patches", "--fresh": "--overwrite"}
+
+
+def test_one_thing_has_one_option_in_every_command():
+    commands = typer.main.get_command(app).commands
+    options = {name: {word for each in command.params for word in each.opts} for name, command in commands.items()}
+    for name, words in options.items():
+        assert not words & set(FORMER), name
+        assert "--json" in words or name in ("schema", "explore"), name  # whose output is JSON, and whose results are a page
+    written = {name for name, words in options.items() if "--folder" in words}
+    assert written == {"compare", "reproduce", "benchmark", "train", "tune", "record", "identify"}
+    assert {name for name, words in options.items() if "--output" in words} == {"export", "schema", "place"}
+    asked = {name for name, words in options.items() if "--episodes" in words}
+    assert asked == {"evaluate", "compare", "benchmark", "record"}
+    assert all({"--preset", "--speed"} <= options[name] for name in ("train", "tune", "evaluate", "compare", "record", "export"))

@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from baselines.placement import METHODS
 from beamenv.blade.presets import PRESETS
 from beamenv.scenarios.scenario import SCENARIOS
 from train.cli import names
@@ -35,6 +36,9 @@ TYPOS = {
     "benchmark --submit robust_lqg": "near it are robust-lqg",
     "benchmark --model no.zip --trust": "no.zip",
     "reproduce table-3.44": "near it are table-3.4",
+    "place --preset thesiss": "near it are thesis",
+    "place --method qp": "near it is sqp",
+    "list controler": "'controllers'",
     "schema bladee": "'blade'",
     "explore --preset thesiss": "near it are thesis",
     "identify no.csv": "no.csv",
@@ -76,6 +80,7 @@ def test_typos_are_told_in_one_line_each_and_nothing_heavy_is_imported(tmp_path)
         (names.PRESETS, tuple(PRESETS)),
         (sorted(names.SCENARIOS), sorted(SCENARIOS)),
         (names.STUDIES, NAMES),
+        (names.METHODS, tuple(METHODS)),
         (names.FORMATS, tuple(FORMATS)),
         (names.PRECISIONS, PRECISIONS),
     ],

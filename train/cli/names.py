@@ -26,6 +26,9 @@ SCENARIOS = tuple(dict.fromkeys((NOMINAL, *LOADS, *IN_FILES)))
 DEVICES = ("cpu", "cuda", "mps", "xpu")
 """Kinds of them that torch has."""
 
+METHODS = ("multistart", "ga+sqp", "ga", "sqp", "cma-es", "grid")
+"""Of placing patches."""
+
 FORMATS = ("c", "onnx", "mat")
 """Of a controller that is exported."""
 

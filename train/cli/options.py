@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from beamenv.configuration import shown
 from train.cli.names import PRESETS, SCENARIOS, check_names
@@ -136,13 +135,6 @@ def say(line: str) -> None:
 def complain(sentence: str) -> None:
     """To standard error, in the name of the command."""
     print(f"beamenv: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
-
-
-def print_table(table: Table) -> None:
-    """To standard output, never cut off however narrow the terminal is."""
-    console = Console()
-    needed = console.measure(table, options=console.options.update(width=1000)).maximum
-    Console(width=max(console.width, needed)).print(table)
 
 
 def print_json(content: Any) -> None:

@@ -40,12 +40,13 @@ def show_table(columns: Sequence[Column], rows: Sequence[Sequence[str]], title: 
     screen = Console()
     sizes = [max(map(_size, (each.heading, *(row[k] for row in rows)))) for k, each in enumerate(columns)]
     kept = shown(columns, sizes, screen.width)
-    for number, block in enumerate(blocks([sizes[k] for k in kept], screen.width)):
+    if title:
+        say(title)
+    for block in blocks([sizes[k] for k in kept], screen.width):
         chosen = [kept[k] for k in block]
-        table = _table([columns[k] for k in chosen], [[row[k] for k in chosen] for row in rows], "" if number else title)
-        needed = sum(sizes[k] + GAP for k in chosen)
-        Console(width=max(screen.width, needed, cell_len(title))).print(table)
-        print()  # noqa: T201 - between what follows and the table
+        table = _table([columns[k] for k in chosen], [[row[k] for k in chosen] for row in rows])
+        Console(width=max(screen.width, sum(sizes[k] + GAP for k in chosen))).print(table)
+        say("")
     if left_out := [each.heading.replace("\n", " ") for k, each in enumerate(columns) if k not in kept]:
         say(f"A wider terminal shows besides: {'; '.join(left_out)}.")
 
@@ -77,9 +78,9 @@ def _size(cell: str) -> int:
     return max(map(cell_len, cell.split("\n")))
 
 
-def _table(columns: Sequence[Column], rows: Sequence[Sequence[str]], title: str) -> Table:
+def _table(columns: Sequence[Column], rows: Sequence[Sequence[str]]) -> Table:
     look = {"box": SIMPLE_HEAD, "show_edge": False, "padding": (0, GAP - 1, 0, 0), "pad_edge": False}
-    made = Table(title=Text(title) if title else None, title_justify="left", **look)  # type: ignore[arg-type]
+    made = Table(**look)  # type: ignore[arg-type]
     for column in columns:
         made.add_column(Text(column.heading), justify="left" if column.words else "right", vertical="bottom", no_wrap=True)
     for row in rows:
