@@ -64,8 +64,8 @@ def frequencies(
         print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
         return
     columns = [Column("mode", words=True), *(Column(f"at {each:g} rad/s", words=True) for each in speeds)]
-    rows = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
-    show_table(columns, rows, "Natural frequencies, rad/s (Hz)")
+    by_mode = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
+    show_table(columns, by_mode, "Natural frequencies, rad/s (Hz)")
     if beam.critical_speed < FASTEST:
         say(f"critical speed {beam.critical_speed:.1f} rad/s")
     for each, state in zip(speeds, steady, strict=True):

@@ -77,7 +77,9 @@ def _print(found: Any, walls: list[dict[str, Any]]) -> None:
     scale = np.sqrt(np.outer(diagonal, diagonal))
     for one, other in zip(*np.triu_indices(len(ROWS), 1), strict=True):
         if abs(found.stiffness[one, other]) > SEEN * scale[one, other]:
-            rows.append([f"{ROWS[one]} {ROWS[other]}", "coupling", f"{found.stiffness[one, other]:.5g}", _unit(one, other)])
+            rows.append(
+                [f"{ROWS[one]} {ROWS[other]}", "coupling", f"{found.stiffness[one, other]:.5g}", _unit(int(one), int(other))]
+            )
     columns = (Column("", words=True), Column("meaning", words=True), Column("value"), Column("unit", words=True))
     show_table(columns, rows, "Stiffness, transverse shear with it")
     classical = np.diag(found.classical_stiffness)

@@ -12,7 +12,7 @@ import typer
 
 from beamenv.configuration import FileName, Number, Refused, checked
 from beamenv.configuration.files import read_table
-from train.cli.names import RECIPES, check_device, check_name, check_names, check_scenario
+from train.cli.names import check_device, check_name, check_names, check_scenario
 from train.cli.options import (
     BladeOption,
     ClusterOption,
@@ -43,6 +43,7 @@ from train.cli.train_options import (
     UpdatesOption,
 )
 from train.controllers.shipped import GENERALIST
+from train.learning.recipes import NAMES as RECIPES
 
 if TYPE_CHECKING:
     from train.learning.job import Job
