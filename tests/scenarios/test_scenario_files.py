@@ -44,6 +44,7 @@ def test_the_nominal_scenario_is_that_of_every_default_and_has_its_former_name_t
     former = scenario("default"), scenario({"preset": "default"})
     assert {scenario(None), scenario({}), scenario("nominal"), *former} == {Scenario()}
     assert "default" not in SCENARIOS
+    assert expanded(["default", "nominal", "delay"]) == ("nominal", "delay")
 
 
 def test_every_scenario_has_a_line_that_says_what_it_is():

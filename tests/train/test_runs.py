@@ -106,6 +106,38 @@ def test_one_run_is_still_one_controller(folder):
         chosen_runs(str(folder), task, "nominal", 1)
 
 
+def trainings(home, *kinds):
+    """Trainings by agent, scenario and seed, each with so many runs, as `beamenv train --folder` leaves several of them."""
+    plants = {"nominal": fingerprint(build_plant(blade_config()))}
+    for agent_name, scenario, seed, runs in kinds:
+        own = home / f"{agent_name}-{scenario}-{seed}"
+        for place in [own] if runs == 1 else [own / str(run) for run in range(runs)]:
+            save_policy(agent(0.01 * seed), place, {"plants": plants, "agent": agent_name, "scenario": scenario})
+    return home
+
+
+def test_trainings_that_differ_in_their_seeds_alone_are_runs_of_one_agent(tmp_path):
+    home = trainings(tmp_path / "mine", ("ppo", "nominal", 0, 1), ("ppo", "nominal", 7, 2))
+    assert list(runs_in(home)) == ["ppo-nominal-0", "ppo-nominal-7-0", "ppo-nominal-7-1"]
+    result = run("evaluate", str(home), "--seeds", "2", "--json")
+    assert result.exit_code == 0, result.stderr
+    content = json.loads(result.stdout)
+    assert content["controller"] == "mine" and list(content["runs"]) == list(runs_in(home))
+    assert content["spread"]["relative_cost"]["deviation"] > 0.0
+
+
+def test_trainings_of_several_kinds_are_no_runs_of_one_agent(tmp_path):
+    home = trainings(tmp_path / "mixed", ("ppo", "nominal", 0, 1), ("ppo", "delay", 0, 1), ("sac", "nominal", 0, 2))
+    with pytest.raises(
+        ValueError, match="holds trainings of several kinds, ppo-delay-0 of ppo on delay and .*: name one of them[.]"
+    ):
+        runs_in(home)
+    result = run("evaluate", str(home))
+    assert result.exit_code == 2 and len(result.stderr.splitlines()) == 1
+    alone = trainings(tmp_path / "alone", ("ppo", "nominal", 0, 1))
+    assert dict(runs_in(alone)) == {"": alone}
+
+
 def test_the_run_that_ended_at_the_least_cost_teaches(folder, tmp_path):
     assert best_run(folder) == folder / "2"  # 1 − 0.04
     assert teacher_for(folder, {"nominal": resolve_task()}).name == "biased by -0.02"

@@ -45,7 +45,10 @@ ClusterOption = Annotated[
 ControllerArgument = Annotated[
     str, typer.Argument(help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one.")
 ]
-TrainedSeedOption = Annotated[int | None, typer.Option(help="Run of an agent that ships, by its training seed.")]
+TrainedSeedOption = Annotated[
+    int | None,
+    typer.Option(help="Run of an agent that ships, by its training seed; if left out all, or the first where one alone is wanted."),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 
 

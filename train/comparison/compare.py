@@ -152,7 +152,7 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
     tiers = tiers_of(evaluations)
     write_tables(folder, evaluations, tiers, left_out)
     by_name = {evaluation.name: evaluation.relative_cost.value for evaluation in evaluations}
-    levels = {name: by_name[name] for name in ("lqg", "lqg-load") if name in laws}
+    levels: dict[str, float] = {name: by_name[name] for name in ("lqg", "lqg-load") if name in laws}
     drawn: list[LinearController] = [laws[name] for name in DRAWN if name in laws]
     write_figures(folder, plant, evaluations, drawn, curves, levels)
     episodes = comparison.environment

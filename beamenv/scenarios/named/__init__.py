@@ -50,8 +50,8 @@ GROUPS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 
 
 def expanded(names: Iterable[str]) -> tuple[str, ...]:
-    """Names and files, and of groups their scenarios, each once."""
-    return tuple(dict.fromkeys(name for each in names for name in GROUPS.get(each, (each,))))
+    """Names and files, and of groups their scenarios, each once and by its own name."""
+    return tuple(dict.fromkeys(name for each in names for name in GROUPS.get(each, (FORMER.get(each, each),))))
 
 
 def titles() -> dict[str, str]:
