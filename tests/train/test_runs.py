@@ -119,7 +119,7 @@ def trainings(home, *kinds):
 def test_trainings_that_differ_in_their_seeds_alone_are_runs_of_one_agent(tmp_path):
     home = trainings(tmp_path / "mine", ("ppo", "nominal", 0, 1), ("ppo", "nominal", 7, 2))
     assert list(runs_in(home)) == ["ppo-nominal-0", "ppo-nominal-7-0", "ppo-nominal-7-1"]
-    result = run("evaluate", str(home), "--seeds", "2", "--json")
+    result = run("evaluate", str(home), "--episodes", "2", "--json")
     assert result.exit_code == 0, result.stderr
     content = json.loads(result.stdout)
     assert content["controller"] == "mine" and list(content["runs"]) == list(runs_in(home))

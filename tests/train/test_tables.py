@@ -130,7 +130,7 @@ def test_the_version_is_told(words):
     assert (result.exit_code, result.stdout) == (0, f"beamenv {beamenv.__version__}\n")
 
 
-FORMER = {"--seeds": "--episodes", "--save": "--output", "--passive": "--patches", "--fresh": "--overwrite"}
+FORMER = {"--episodes": "--episodes", "--save": "--output", "--passive": "--patches", "--fresh": "--overwrite"}
 
 
 def test_one_thing_has_one_option_in_every_command():
