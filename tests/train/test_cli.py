@@ -63,9 +63,7 @@ def test_frequencies_come_with_what_steady_rotation_does():
     assert "beyond" not in sound and "clamp" not in sound
 
 
-@pytest.mark.parametrize(
-    "command", [("compare", "--minutes", "0", "--episodes", "2", "--folder"), ("train", "gradient", "--folder")]
-)
+@pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--episodes", "2"), ("train", "gradient")])
 def test_a_file_in_the_folder_s_place_is_told_at_once(command, tmp_path):
     (tmp_path / "note").write_text("kept")
     result = run(*command, "--folder", str(tmp_path / "note"))
