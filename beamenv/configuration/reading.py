@@ -109,16 +109,15 @@ def _read_field(cls: Any, name: str, before: Any, value: Any, path: str) -> Any:
 
 
 def _told_by(choice: Choice, stood: Any, table: Mapping[str, Any]) -> type[Any] | None:
-    """The class that a table of fields is of, where nothing of it stood there: the first that has them all."""
-    if isinstance(stood, choice.classes) and set(table) <= _names(type(stood)):
-        return None
+    """The class that a table of fields is of, where that is not the one of what stood there: of most of its fields."""
+    of_it = len(_fields_of(type(stood), table)) if isinstance(stood, choice.classes) else -1
     others = [each for each in choice.classes if not isinstance(stood, each)]
-    found = next((each for each in others if set(table) <= _names(each)), None)
-    return others[0] if found is None and not isinstance(stood, choice.classes) and others else found
+    likest = max(others, key=lambda each: len(_fields_of(each, table)), default=None)
+    return likest if likest is not None and len(_fields_of(likest, table)) > of_it else None
 
 
-def _names(cls: type[Any]) -> set[str]:
-    return {each.name for each in fields(cls)}
+def _fields_of(cls: type[Any], table: Mapping[str, Any]) -> set[str]:
+    return {each.name for each in fields(cls)} & set(table)
 
 
 def _items(kind: Items | Variants, value: Any, path: str) -> Any:

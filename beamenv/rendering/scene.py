@@ -69,15 +69,14 @@ class Scene:
         self._rest = self.solid.pose(np.zeros((3, len(self.solid.stations))))
         section = blade.beam.section
         self._edges = edges(section)
-        root = np.concatenate([each[0] for each in self._rest.bodies])
-        hub = _hub(_around(root) if len(self._rest.bodies) > 1 else root, min(2.5 * float(np.ptp(root[:, 1])), HUB_LENGTH * length))
+        held = hub(self._rest.bodies, length)
         self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
         middle = np.radians(beam.presetting_deg + 0.5 * beam.pretwist_deg)
         side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])  # look at the side that the top wall is turned to
         self._light = side * LIGHT / np.linalg.norm(LIGHT)
         ends = np.concatenate([each[-1] for each in self._rest.bodies])
         tip = [ends + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]
-        points = [*self._rest.bodies, self._rest.sensors + self._drop, *hub, *tip]
+        points = [*self._rest.bodies, self._rest.sensors + self._drop, *held, *tip]
         self._camera = Camera.facing(
             np.concatenate([each.reshape(-1, 3) for each in points]),
             towards=side * TOWARDS,
@@ -85,7 +84,7 @@ class Scene:
             frame=Frame(PLACE.left + MARGIN, PLACE.top + MARGIN, PLACE.width - 2.0 * MARGIN, PLACE.height - 2.0 * MARGIN),
         )
         self._above = faces_camera(self._camera.project(self._rest.sensors)[0])  # in an upper face, where most lie in a lower one
-        self._hub = self._seen(hub, HUB)
+        self._hub = self._seen(held, HUB)
         self._voltage_colours, self._output_colours = colour_table(VOLTAGE_SCALE), colour_table(OUTPUT_SCALE)
 
     def draw_rest(self, canvas: Canvas) -> None:
@@ -183,9 +182,14 @@ def _around(points: Array) -> Array:
     return np.stack([x, y, np.full(4, points[0, 2])], axis=-1)
 
 
-def _hub(root: Array, length: float) -> list[Array]:
-    """Sides, outer and inner end of the block, ``length`` (m) long, that holds the root (K, 3)."""
+def hub(walls: Sequence[Array], length: float) -> list[Array]:
+    """Faces (k, c, 3), m, of the block that holds the root of a blade ``length`` (m) long with outer walls (stations, K, 3): its
+    sides, its outer and its inner end.
+    """
+    root = np.concatenate([each[0] for each in walls])
+    deep = min(2.5 * float(np.ptp(root[:, 1])), HUB_LENGTH * length)
+    root = _around(root) if len(walls) > 1 else root
     middle = root.mean(axis=0)
     block = np.stack([middle + 1.25 * (root - middle)] * 2)
-    block[0, :, 2] = -length
+    block[0, :, 2] = -deep
     return [sides(block), block[-1:], block[:1, ::-1]]

@@ -189,6 +189,7 @@ DOORS = [
         lambda: {"memory": np.zeros((2, adaptive().order))},
         told=("memory",),
     ),
+    Door("AdaptiveNeural.switched", lambda on: adaptive().switched(on), {"on": FLAG}, lambda: {"on": False}),
     Door(
         "PersistentLoad",
         lambda **given: baselines.PersistentLoad(**given),

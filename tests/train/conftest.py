@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import beamenv
-from baselines import closed_loop_poles, lqg, no_control
+from baselines import closed_loop_poles, lqg, lqr, no_control
 
 
 @pytest.fixture(scope="session")
@@ -32,7 +32,7 @@ def page_content():
     """Every part of a page: true poles and motion of a short episode, made-up numbers in tables and curves."""
     page = pytest.importorskip("train.page", reason="plotly is not installed")
     env = gym.make(beamenv.ENV_ID, duration=0.1)
-    plant = env.unwrapped.plant
+    plant, design = env.unwrapped.plant, env.unwrapped.task.design_plant
     env.close()
     idle, optimal = no_control(plant), lqg(plant)
     numbers = (("LQG", 9.5), ("no control", 100.0), ("PPO", 10.25), ("lost", np.inf))
@@ -40,10 +40,11 @@ def page_content():
     cost, failed = np.array([[0.4, 1.0, 0.6], [np.inf, 1.0, 0.7]]), np.array([[0.0, 0.0, 0.1], [0.5, 0.0, 0.0]])
     return page.PageContent(
         title="A page with every part",
+        lead=page.Lead("J falls.", "A blade moves.", "1 May 2026", "beamenv compare 'a b'"),
         note="Made for tests.",
         table=page.Table(("controller", "peak tip, µm"), rows, "Made-up numbers."),
         heat_map=page.HeatMap(("step", "pulse"), ("LQG", "no control", "PPO"), cost, failed),
-        episode=page.record_episode({"duration": 0.1}, 3, (idle, optimal)),
+        episode=page.record_episode({"duration": 0.1}, 3, {"LQG": optimal, "LQR": lqr(design)}),
         episode_note="Seed 3.",
         poles={law.name: closed_loop_poles(plant, law) for law in (idle, optimal)},
         learning=page.LearningCurves({"PPO": np.array([[1.0, 1e5, 1.2], [2.0, 2e5, 0.9], [3.0, 3e5, 0.6]])}, {"LQG": 0.4}),

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import gymnasium
 import numpy as np
@@ -48,6 +49,19 @@ def test_what_fails_leaves_its_sentence_and_the_rest_goes_on(finished):
     assert not table.row("nominal", "broken").measured
     assert table.row("spillover", "lqg-load").measured
     assert set(table.sentences) == {f"{name} in {where}" for name in ("broken", "narrow") for where in ("nominal", "spillover")}
+
+
+def test_the_page_leads_with_the_least_j_and_shows_who_can_be_made_again(finished):
+    folder, table = finished
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    (lead,) = re.findall(r'<p class="lead">(.*?)</p>', page)
+    best = min((row for row in table.within("nominal") if row.measured), key=lambda row: row.mean_cost)
+    assert lead.startswith(f"In nominal, {best.controller} has the least J ")
+    assert f"{best.estimates['relative_cost'].value:.3f}" in lead
+    options = re.findall(r'<option value="\d+"(?: selected)?>(.*?):', page)
+    assert options == ["no control", *sorted({"lqg", "lqg-load"}, key=lambda name: table.row("nominal", name).mean_cost)] * 2
+    named = [row.controller for row in table.within("nominal") if row.measured and row.kind == "own"]
+    assert all(name in page.split("cannot be made again from their names: ")[1].split(".")[0] for name in named) and named
 
 
 def test_every_piece_is_written(finished):

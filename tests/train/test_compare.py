@@ -13,7 +13,7 @@ import train.learning.job
 from beamenv.task import resolve_task
 from train.cli.evaluations import show_compared
 from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, tiers_of, trained
-from train.comparison.page import shown_pair
+from train.comparison.page import best_rival
 from train.controllers.named import named
 from train.controllers.policy_files import load_policy
 from train.learning.checkpoint import NAME as CHECKPOINT
@@ -85,25 +85,27 @@ def test_every_table_shows_the_tiers_of_laws_and_agents(finished, capsys):
     assert told in capsys.readouterr().out
 
 
-def test_the_page_shows_the_best_law_with_sensors_beside_the_best_agent(finished):
-    folder, evaluations, notes = finished
+def test_the_page_opens_beside_no_control_with_the_best_that_a_real_blade_offers_and_has_them_all(finished):
+    folder, evaluations, _ = finished
     page = (folder / "report.html").read_text(encoding="utf-8")
-    figures = dict(re.findall(r'data-figure="(.*?)">(.*?)</script>', page))
-    shown = [json.loads(figures[name])["layout"]["title"]["text"] for name in ("blade-left", "blade-right")]
+    options = re.findall(r'<option value="(\d+)"( selected)?>(.*?): .*?</option>', page)
     best = sorted(evaluations, key=lambda evaluation: evaluation.relative_cost.value)
-    agents = notes.evaluated_names[len(CLASSICAL) :]
-    laws = [each.name for each in best if each.name not in agents and "lqr" not in each.name]
-    assert shown == [laws[0], next(each.name for each in best if each.name in agents)]
-    assert all(evaluation.name in page for evaluation in evaluations)
+    tiers = tiers_of(evaluations)
+    first = next(each.name for each in best if tiers[each.name] < 3)
+    assert [name for _, selected, name in options if selected] == ["no control", first]
+    assert {name for *_, name in options} == {evaluation.name for evaluation in evaluations} - {"none"} | {"no control"}
+    (lead,) = re.findall(r'<p class="lead">(.*?)</p>', page)
+    assert lead.startswith(f"Under {first}, J ") and f"{evaluations[0].relative_cost.value:.3f}" not in lead
+    assert f"{next(each for each in best if each.name == first).relative_cost.value:.3f}" in lead
 
 
-def test_without_agents_the_page_shows_no_control_beside_the_best_law(finished):
+def test_without_tiers_the_best_is_one_that_sees_readings(finished):
     _, evaluations, _ = finished
     task = gymnasium.make(beamenv.ENV_ID).unwrapped.task
     laws = {name: named(name).build_for(task) for name in CLASSICAL}
-    left, right = shown_pair(evaluations[: len(laws)], laws)
-    assert left is laws["none"]
-    assert right.observes == "observation" and right is not left
+    best = best_rival(evaluations[: len(laws)], laws)
+    law = next(each for each in laws.values() if each.name == best.name)
+    assert law.observes == "observation" and best.name != "no control"
 
 
 def test_training_reports_its_cost_and_steps(finished):

@@ -54,6 +54,7 @@ def test_a_benchmark_runs_what_can_be_had_of_a_model(uneven, tmp_path):
     assert all(row["estimates"] for row in told["rows"])
     page = (tmp_path / "quick" / "report.html").read_text(encoding="utf-8")
     assert "<h2>Readings and voltages</h2>" in page and 'id="blade"' not in page
+    assert "What moves is a model with 3 states, 2 actuators and 3 sensors" in page
 
 
 def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_reason(uneven, tmp_path):

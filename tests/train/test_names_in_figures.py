@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -97,3 +98,14 @@ def test_matplotlib_takes_no_name_for_a_formula_and_lists_each(tmp_path):
     assert listed == [screen.on_one_line(name).strip() for name in EVIL]
     plt.close(figure)
     paper.save(paper_heat_map(heat_of(EVIL[7:10])), tmp_path / "map.png")
+
+
+def test_controllers_of_an_episode_are_shown_by_their_names_whatever_these_are(page_content, small):
+    idle, law, *_ = page_content.episode.recordings
+    odd, plain = ([replace(law, name=name) for name in names] for names in (EVIL, [f"law {k}" for k in range(len(EVIL))]))
+    pages = [
+        render(PageContent("", episode=replace(page_content.episode, recordings=(idle, *recordings))))
+        for recordings in (odd, plain)
+    ]
+    assert elements(pages[0]) == elements(pages[1])
+    assert [page.count("</script>") for page in pages] == [pages[1].count("</script>")] * 2

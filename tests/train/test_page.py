@@ -1,9 +1,11 @@
 """What the page holds, and that it shows what was computed."""
 
+import base64
 import json
 import platform
 import re
 from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
 from types import SimpleNamespace
 
@@ -14,18 +16,20 @@ import pytest
 
 import beamenv
 from baselines import evaluate, lqg, no_control
-from beamenv.blade.shape import magnification
+from beamenv.blade.shape import bodies
+from beamenv.scenarios.scenario import scenario
 from train.comparison.page import page_table
 from train.figures.palette import NEUTRAL, PALETTE, contrast
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
-from train.page import Cell, HeatMap, LearningCurves, PageContent, Recording, Table, record_episode, write_page
-from train.page.blade import ROUND, SHOWN_DEFLECTION, blade_figures, frame_times, motions
+from train.page import Cell, HeatMap, Lead, LearningCurves, PageContent, Table, record_episode, write_page
+from train.page.blade import drawn_blade, frame_times, shapes_and_amplitudes
+from train.page.lead import blade_in_words, load_in_words
 from train.page.page import plots, render
 from train.page.plots import amplitude_density
 from train.shared.versions import versions
 
-SECTIONS = ("table", "blade", "heat-map", "time-series", "spectra", "poles", "learning", "provenance")
+SECTIONS = ("table", "blade", "episode", "heat-map", "time-series", "spectra", "poles", "learning", "provenance")
 
 
 class Elements(HTMLParser):
@@ -50,6 +54,40 @@ def test_every_part_is_on_the_page(page):
     assert set(SECTIONS) <= identities
 
 
+def test_who_cannot_see_the_page_is_told_what_it_shows(page):
+    found = Elements(page).found
+    identities = [attributes["id"] for _, attributes in found if "id" in attributes]
+    assert len(identities) == len(set(identities))
+    referred = " ".join(attributes.get("aria-describedby", "") for _, attributes in found).split()
+    assert len(referred) == 9 and set(referred) <= set(identities)
+    pictures = [attributes for tag, attributes in found if attributes.get("class") == "figure" or tag == "canvas"]
+    assert len(pictures) == 7
+    assert all(
+        attributes["role"] == "img" and attributes["aria-label"] and attributes["aria-describedby"] for attributes in pictures
+    )
+    assert {attributes["aria-sort"] for tag, attributes in found if tag == "th" and attributes.get("scope") == "col"} == {"none"}
+    assert sum(tag == "th" and attributes.get("scope") == "row" for tag, attributes in found) == 4 + len(versions()) + 1
+
+
+def test_figures_are_told_in_numbers(page_content):
+    episode = page_content.episode
+    told = {plot.name: plot.instead for plot in plots(page_content)}
+    lag, flap = 1e6 * np.abs(episode.without_control.tip).max(axis=0)
+    assert (
+        f"no control: tip displacement, lag {lag:.3g} µm, tip displacement, flap {flap:.3g} µm, voltage 0 V; LQG: "
+        in told["time-series"]
+    )
+    largest = {name: values.real.max() for name, values in page_content.poles.items()}
+    assert told["poles"].count("rad/s") == 2 and max(largest.values()) < 0.0 and "no control −" in told["poles"]
+    assert told["learning"] == "J over J without control in the end: PPO 0.600 after 3 s; LQG 0.400."
+
+
+def test_every_section_is_linked_to_in_its_order(page):
+    found = Elements(page).found
+    links = [attributes["href"] for tag, attributes in found if tag == "a"]
+    assert links == [f"#{attributes['id']}" for tag, attributes in found if tag == "section"] and len(links) == 8
+
+
 def test_parts_that_are_none_are_left_out():
     identities = {attributes.get("id") for _, attributes in Elements(render(PageContent("Nothing yet"))).found}
     assert identities.intersection(SECTIONS) == {"provenance"}
@@ -58,7 +96,7 @@ def test_parts_that_are_none_are_left_out():
 def test_nothing_is_loaded_from_the_network(page):
     elements = Elements(page).found
     assert [attributes for _, attributes in elements if "src" in attributes or "srcset" in attributes] == []
-    assert [attributes["href"] for _, attributes in elements if not attributes.get("href", "data:,").startswith("data:")] == []
+    assert [attributes["href"] for _, attributes in elements if not attributes.get("href", "#").startswith(("data:", "#"))] == []
     (policy,) = [attributes["content"] for tag, attributes in elements if attributes.get("http-equiv") == "Content-Security-Policy"]
     assert policy.startswith("default-src 'none';")
     assert not re.search(r"\bhttps?:", policy)
@@ -105,49 +143,140 @@ def test_axes_have_units_and_plots_have_headings(page_content):
 # The blade.
 
 
-def test_the_drawn_tip_moves_by_the_magnified_tip_displacement_and_the_root_stays(page_content):
+def unpacked(text, *shape):
+    return np.frombuffer(base64.b64decode(text), dtype="<f4").reshape(*shape)
+
+
+def moved(blade):
+    """(F, 3, S) of each recording: shapes times amplitudes."""
+    stations = len(unpacked(blade["stations"], -1))
+    shapes = unpacked(blade["shapes"], -1, 3, stations).astype(float)
+    return [np.einsum("fr,rds->fds", unpacked(each["amplitudes"], -1, len(shapes)), shapes) for each in blade["recordings"]]
+
+
+@pytest.fixture(scope="module")
+def drawn(page_content):
+    return drawn_blade(page_content.episode)
+
+
+def test_the_drawn_tip_moves_by_the_tip_displacement_and_the_root_stays(page_content, drawn):
     episode = page_content.episode
-    moved, factor = motions(episode)
-    times = frame_times(episode)
-    for motion, figure in zip(moved, blade_figures(episode), strict=True):
-        recording = motion.recording
-        at = np.rint(times / episode.blade.config.control_interval).astype(int)
-        np.testing.assert_allclose(motion.displacement[:, :2, -1], factor * recording.tip[at], atol=1e-9)
-        assert len(figure.frames) == len(times)
-        lag = np.stack([frame.data[0].x for frame in figure.frames])
-        np.testing.assert_allclose(lag[:, :4], np.broadcast_to(lag[0, :4], (len(times), 4)), atol=1e-6)
-        middle = lag[:, -4:].mean(axis=1)  # of the tip's corners, about which it twists
-        np.testing.assert_allclose(middle - middle[0], factor * (recording.tip[at, 0] - recording.tip[0, 0]), atol=1e-6)
+    at = np.rint(frame_times(episode) / episode.blade.config.control_interval).astype(int)
+    for recording, displacement in zip(episode.recordings, moved(drawn), strict=True):
+        largest = np.abs(recording.tip).max()
+        np.testing.assert_allclose(displacement[:, :2, -1], recording.tip[at], atol=1e-5 * largest)
+        assert np.abs(displacement[:, :, 0]).max() < 1e-5 * largest
+
+
+def test_the_plant_of_the_episode_is_drawn_and_not_the_design():
+    """In "off-speed" each episode has another plant, whose states mean something else."""
+    idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
+    episode = record_episode({"duration": 0.02, "scenario": {"preset": "off-speed", "plants": {"bank": 4}}}, 3, {"idle": idle})
+    (displacement,) = moved(drawn_blade(episode))
+    at = np.rint(frame_times(episode) / episode.blade.config.control_interval).astype(int)
+    tip = episode.without_control.tip[at]
+    np.testing.assert_allclose(displacement[:, :2, -1], tip, atol=1e-4 * np.abs(tip).max())
 
 
 def test_a_blade_that_failed_stays_as_it_was_last(page_content):
-    whole, short = page_content.episode.pair
-    short = Recording(short.name, *(series[:60] for series in (short.time, short.states, short.tip, short.volts)))
-    episode = replace(page_content.episode, pair=(whole, short))
-    (_, lost), _ = motions(episode)
-    assert len(lost.displacement) == len(frame_times(episode)) == 26
-    np.testing.assert_array_equal(lost.rows[-10:], 59)
+    short = page_content.episode.recordings[1]
+    short = replace(short, **{name: getattr(short, name)[:60] for name in ("time", "states", "tip", "volts", "readings", "truth")})
+    episode = replace(page_content.episode, recordings=(page_content.episode.without_control, short))
+    whole, lost = drawn_blade(episode)["recordings"]
+    assert whole["failed"] is None and lost["failed"] == pytest.approx(29.5)
+    volts = unpacked(lost["volts"], -1, 4)
+    assert len(volts) == len(frame_times(episode)) == 26
+    np.testing.assert_allclose(volts[-10:], np.broadcast_to(short.volts[-1], (10, 4)), rtol=1e-6)
 
 
-def test_both_blades_are_drawn_to_one_scale_and_coloured_on_one(page_content):
-    left, right = (figure.to_plotly_json()["layout"] for figure in blade_figures(page_content.episode))
-    assert left["scene"] == right["scene"]
-    assert left["coloraxis"] == right["coloraxis"]
-    assert (left["coloraxis"]["cmin"], left["coloraxis"]["cmax"]) == (-1500.0, 1500.0)
+def test_a_blade_that_moves_out_of_all_bounds_takes_no_shape_from_the_others():
+    small, shapes = np.random.default_rng(0).normal(size=(40, 3)), np.random.default_rng(1).normal(size=(3, 3, 9))
+    displacements = [np.einsum("fr,rds->fds", 10.0**power * small, shapes) for power in (-4, 6)]
+    found, amplitudes = shapes_and_amplitudes(displacements)
+    assert len(found) == 3
+    for expected, amplitude in zip(displacements, amplitudes, strict=True):
+        np.testing.assert_allclose(np.einsum("fr,rds->fds", amplitude, found), expected, atol=1e-12 * np.abs(expected).max())
 
 
-def test_actuators_are_coloured_by_the_voltage_of_the_frame(page_content):
+def test_the_blade_at_rest_is_the_beams_contour_and_has_its_patches_and_its_hub(page_content, drawn):
+    blade = page_content.episode.blade
+    at = {name: unpacked(values, -1) for name, values in drawn["vertices"].items()}
+    turned = np.exp(1j * at["angle"]) * (at["along"] + 1j * at["across"])
+    stations = unpacked(drawn["stations"], -1)
+    (body,) = drawn["bodies"]
+    here = slice(body["first"], body["first"] + body["stations"] * body["corners"])
+    skin = bodies(blade.beam, stations.astype(float))[0].at_rest().reshape(-1, 3)
+    np.testing.assert_allclose(np.stack([turned.real[here], turned.imag[here]], axis=-1), skin[:, :2], atol=1e-7)
+    patches = blade.config.patches
+    assert (len(drawn["actuators"]), len(drawn["sensors"]), drawn["points"]) == (4, 4, [])
+    starts = [inlay.start for group in patches.groups("actuators") for inlay in group.inlays("actuators", blade.config.beam.length)]
+    np.testing.assert_allclose(stations[at["station"][drawn["actuators"]].astype(int)], starts, atol=1e-6)
+    assert max(corner[2] for face in drawn["hub"] for corner in face) == 0.0
+    assert drawn["readBy"]["sensors"] == [0, 1, 2, 3]
+
+
+def test_actuators_have_the_voltage_and_sensors_the_output_of_the_frame(page_content, drawn):
     episode = page_content.episode
-    _, figure = blade_figures(episode)
     at = np.rint(frame_times(episode) / episode.blade.config.control_interval).astype(int)
-    shades = np.stack([frame.data[1].intensity for frame in figure.frames]).reshape(len(at), 4, -1)
-    np.testing.assert_allclose(shades[:, :, 0], episode.pair[1].volts[at], rtol=1e-6)
-    assert np.all(shades == shades[:, :, :1])
+    for recording, told in zip(episode.recordings, drawn["recordings"], strict=True):
+        np.testing.assert_allclose(unpacked(told["volts"], -1, 4), recording.volts[at], rtol=1e-6)
+        outputs = unpacked(told["outputs"], -1, 4)
+        np.testing.assert_allclose(outputs, (recording.readings / episode.blade.truth.sensor_full_scale)[at], rtol=1e-6)
+        assert 0.0 < np.abs(outputs).max() <= 1.0
 
 
-@pytest.mark.parametrize(("largest", "factor"), [(4e-4, 1000.0), (3e-4, 1000.0), (1.9e-4, 2000.0), (4e-1, 1.0), (0.0, 1.0)])
-def test_deflections_are_magnified_to_at_most_a_fifth_of_the_span(largest, factor):
-    assert magnification(largest, SHOWN_DEFLECTION * 2.023, ROUND) == factor
+def test_what_is_dead_is_told_frame_by_frame():
+    idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
+    dead = drawn_blade(record_episode({"duration": 0.02, "scenario": "two-dead-actuators"}, 3, {"idle": idle}))["recordings"][0][
+        "dead"
+    ]
+    assert len(dead) == 6 and all(each == dead[0] for each in dead)
+    assert len(dead[0]) == 2 and max(dead[0]) < 4
+    later = record_episode({"duration": 0.4, "scenario": "mid-failure"}, 3, {"idle": idle})
+    first, *_, last = drawn_blade(later)["recordings"][0]["dead"]
+    assert first == [] and len(last) == 1
+
+
+def test_each_controller_is_recorded_once_and_no_control_first(page_content):
+    episode = page_content.episode
+    assert [each.name for each in episode.recordings] == ["no control", "LQG", "LQR"]
+    assert episode.opens == 1 and episode.without_control.volts.any() == np.False_
+    assert max(each.cost for each in episode.recordings[1:]) < episode.without_control.cost
+    idle = no_control(episode.task.plant)
+    alone = record_episode({"duration": 0.01}, 3, {"none": idle})
+    assert [each.name for each in alone.recordings] == ["no control"] and alone.opens == 0
+    with pytest.raises(ValueError, match="opens is 'PPO', but must be one of LQG"):
+        record_episode({"duration": 0.01}, 3, {"LQG": lqg(episode.task.plant)}, "PPO")
+
+
+def test_readers_choose_among_all_recordings(page):
+    found = Elements(page).found
+    assert [attributes["value"] for tag, attributes in found if tag == "option"] == ["0", "1", "2"] * 2
+    assert [attributes["value"] for tag, attributes in found if tag == "option" and "selected" in attributes] == ["0", "1"]
+
+
+def test_the_lead_tells_result_subject_date_and_command(page):
+    (lead,) = re.findall(r'<p class="lead">(.*?)</p>', page)
+    version = beamenv.__version__
+    assert unescape(lead) == (
+        f"J falls. A blade moves. Made on 1 May 2026 with beamenv {version} by <code>beamenv compare 'a b'</code>."
+    )
+
+
+def test_the_command_is_the_one_that_was_typed(monkeypatch):
+    monkeypatch.setattr("sys.argv", ["/usr/bin/beamenv", "compare", "a folder", "--seeds", "4"])
+    assert Lead("", "").command == "beamenv compare 'a folder' --seeds 4"
+    monkeypatch.setattr("sys.argv", ["/tmp/mine.py", "compare"])
+    assert Lead("", "").command == ""
+
+
+def test_loads_and_blades_are_told_in_words():
+    assert load_in_words(scenario("quiet")) == "nothing"
+    assert load_in_words(scenario("white")) == "white noise"
+    assert load_in_words(scenario("step")) == "steps and white noise"
+    assert "the rotor's own loads" in load_in_words(scenario("rotor"))
+    blade = gym.make(beamenv.ENV_ID, speed=100.0).unwrapped.task.blade
+    assert blade_in_words(blade) == "a blade of 2.023 m that turns at 100 rad/s, with 4 actuators and 4 sensors"
 
 
 # Plots.
@@ -195,6 +324,11 @@ def test_the_comparison_is_a_table_with_the_best_first():
     assert [row[0].text for row in table.rows] == ["LQG", "no control"]
     assert table.rows[1][1].value == 1.0
     assert table.rows[0][1].value == evaluations[1].relative_cost.value
+
+
+def test_columns_without_numbers_are_text():
+    rows = ((Cell("LQG"), Cell("0.4", 0.4), Cell("fixed")), (Cell("none"), Cell("–"), Cell("fixed")))
+    assert Table(("controller", "J", "kind"), rows).text_columns == (0, 2)
 
 
 def test_a_row_of_another_length_is_refused():
@@ -251,9 +385,9 @@ def test_natural_frequencies_are_marked_in_the_spectra(page_content):
 
 def test_the_solid_is_shown_as_far_as_the_beam_has_its_modes():
     idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
-    episode = record_episode({"duration": 0.05, "scenario": "solid-20"}, 3, (idle, idle))
+    episode = record_episode({"duration": 0.05, "scenario": "solid-20"}, 3, {"idle": idle})
     assert episode.without_control.states.shape[1] == len(episode.blade.truth.A)
-    pair, factor = motions(episode)
-    shown = pair[0].displacement[:, :2, -1] / factor
-    true = episode.without_control.tip[pair[0].rows]
-    assert np.abs(shown - true).max() < 0.05 * np.abs(true).max()
+    (displacement,) = moved(drawn_blade(episode))
+    at = np.rint(frame_times(episode) / episode.blade.config.control_interval).astype(int)
+    true = episode.without_control.tip[at]
+    assert np.abs(displacement[:, :2, -1] - true).max() < 0.05 * np.abs(true).max()

@@ -1,5 +1,6 @@
 """The page in a real browser: it draws without an error, moves, sorts, and can be read in both themes and on a telephone."""
 
+import json
 import time
 
 import numpy as np
@@ -21,10 +22,10 @@ def report(page_content, tmp_path_factory):
 
 @pytest.fixture
 def show(browser, report):
-    """Load the page on a screen of this width under the system's colour scheme, and wait until all is drawn."""
+    """Load the page on a screen of this size under the system's colour scheme, and wait until its figures are drawn."""
 
-    def load(width=1200, scheme="light"):
-        screen = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    def load(width=1200, scheme="light", height=1400):
+        screen = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
         features = [{"name": "prefers-color-scheme", "value": scheme}]
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
@@ -42,8 +43,16 @@ def wait(browser, condition, seconds=60.0):
         time.sleep(0.05)
 
 
-def lag_of_the_left_blade(browser):
-    return np.array(browser.execute_script("return Array.from(document.getElementById('blade-left')._fullData[1].x)"))
+def pictures(browser):
+    """Of both blades, as they are."""
+    return browser.execute_script("return [...document.querySelectorAll('.pair canvas')].map((each) => each.toDataURL())")
+
+
+def view(browser):
+    """Frame, magnification and camera of the last picture."""
+    wait(browser, "return document.getElementById('blade').dataset.built === 'yes'")
+    browser.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
+    return json.loads(browser.execute_script("return document.querySelector('.pair canvas').dataset.view"))
 
 
 def press(browser, key, times):
@@ -58,23 +67,45 @@ def test_the_page_draws_without_an_error_and_loads_nothing(show):
     assert severe == []
     assert browser.execute_script("return performance.getEntriesByType('resource').map((entry) => entry.name)") == []
     assert browser.execute_script("return document.querySelectorAll('.figure .main-svg').length > 0")
-    assert browser.execute_script("return document.querySelectorAll('.pair canvas').length") == 2
 
 
-def test_the_slider_moves_blade_clock_and_cursor(show, page_content):
+def test_the_blade_is_built_when_it_is_scrolled_to(show):
+    browser = show(height=200)
+    built = "return document.getElementById('blade').dataset.built ?? 'no'"
+    assert browser.execute_script(built) == "no"
+    browser.execute_script("document.getElementById('blade').scrollIntoView()")
+    wait(browser, built.replace(" ?? 'no'", " === 'yes'"))
+    assert len(set(pictures(browser))) == 2
+
+
+def test_it_opens_at_the_largest_deflection_without_control(show, page_content):
+    from train.page.blade import frame_times
+
     browser = show()
-    before, picture = lag_of_the_left_blade(browser), browser.find_element("id", "blade-left").screenshot_as_png
+    tip = page_content.episode.without_control.tip[
+        np.searchsorted(page_content.episode.time, frame_times(page_content.episode) - 1e-9)
+    ]
+    assert view(browser)["frame"] == np.linalg.norm(tip, axis=1).argmax()
+    captions = [each.text for each in browser.find_elements("css selector", "figcaption strong")]
+    assert captions == ["no control", "LQG"]
+
+
+def test_the_slider_moves_blades_clock_cursor_and_what_is_read_aloud(show, page_content):
+    browser = show()
+    press(browser, webdriver.Keys.HOME, 1)
+    view(browser)
+    before = pictures(browser)
     press(browser, webdriver.Keys.ARROW_RIGHT, 15)
     wait(browser, "return document.getElementById('time-series').layout.shapes[0].x0 === 60")
-    after = lag_of_the_left_blade(browser)
-    tip = page_content.episode.pair[0].tip
-    assert np.ptp(tip[:, 0]) > 1e-6
-    assert np.abs(after[:4] - before[:4]).max() < 1e-6
-    moved = after[-1] - before[-1]
-    assert np.sign(moved) == np.sign(tip[120, 0] - tip[0, 0])
-    assert abs(moved) > 1e-3
+    assert view(browser)["frame"] == 15
+    assert all(one != other for one, other in zip(before, pictures(browser), strict=True))
     assert browser.find_element("id", "clock").text == "t = 60.0 ms"
-    assert browser.find_element("id", "blade-left").screenshot_as_png != picture
+    lag, flap = 1e6 * page_content.episode.without_control.tip[120]
+    told = f"no control: Tip: lag {lag:.0f} µm, flap {flap:.0f} µm.".replace("-", "−")
+    assert told in browser.find_element("id", "instant").get_attribute("aria-valuetext")
+    assert browser.execute_script("return document.querySelector('canvas').ariaLabel").startswith(
+        "The blade under no control at 60.0 ms"
+    )
 
 
 def test_play_goes_on_to_the_end_of_the_episode(show):
@@ -88,20 +119,51 @@ def test_play_goes_on_to_the_end_of_the_episode(show):
     assert browser.find_element("id", "clock").text == "t = 100.0 ms"
 
 
-def test_the_mouse_turns_both_blades(show):
+def test_mouse_keys_and_buttons_turn_and_zoom_both_blades(show):
     browser = show()
-    camera = "return document.getElementById('blade-{}').layout.scene.camera.eye"
-    before = browser.execute_script(camera.format("right"))
-    left = browser.find_element("id", "blade-left")
+    home, left = view(browser), browser.find_elements("css selector", ".pair canvas")[0]
+    seen = pictures(browser)
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", left)
     drag = webdriver.ActionChains(browser).move_to_element(left).click_and_hold()
     drag.move_by_offset(60, 15).move_by_offset(40, 10).release().perform()
-    wait(browser, f"return document.getElementById('blade-right').layout.scene.camera.eye.x !== {before['x']}")
-    wait(
-        browser,
-        "const eye = (side) => JSON.stringify(document.getElementById(`blade-${side}`).layout.scene.camera.eye);"
-        "return eye('left') === eye('right')",
-    )
+    turned = view(browser)
+    assert turned["azimuth"] == pytest.approx(home["azimuth"] - 1.0) and turned["elevation"] > home["elevation"]
+    left.send_keys("+")
+    browser.find_element("css selector", "[data-move=nearer]").click()
+    assert view(browser)["zoom"] == pytest.approx(1.44)
+    assert all(one != other for one, other in zip(seen, pictures(browser), strict=True))
+    left.send_keys("0")
+    assert view(browser) == home
+    assert pictures(browser) == seen
+
+
+def test_any_two_controllers_are_chosen_and_their_curves_follow(show):
+    browser = show()
+    view(browser)
+    before = pictures(browser)
+    choose = "document.getElementById('{0}').value = '{1}'; document.getElementById('{0}').dispatchEvent(new Event('change'));"
+    browser.execute_script(choose.format("left", 2))
+    wait(browser, "return document.querySelector('figcaption strong').textContent === 'LQR'")
+    titles = "return document.getElementById('time-series').layout.annotations.map((each) => each.text)"
+    expected = ["tip displacement, lag", "tip displacement, flap", "voltages, LQG", "voltages, LQR"]
+    assert browser.execute_script(titles) == expected
+    names = "return [...new Set(document.getElementById('{}').data.map((each) => each.name))]"
+    assert browser.execute_script(names.format("spectra")) == ["no control", "LQG", "LQR"]
+    view(browser)
+    after = pictures(browser)
+    assert after[0] != before[0]
+    browser.execute_script(choose.format("right", 0) + choose.format("left", 0))
+    wait(browser, "return document.getElementById('time-series').layout.annotations.length === 2")
+
+
+def test_on_paper_figures_are_light_and_as_wide_as_it(show):
+    browser = show(scheme="dark", height=200)
+    browser.execute_script("window.dispatchEvent(new Event('beforeprint'))")
+    widths = "return [...new Set(figures.map((each) => each.layout.width))]"
+    assert browser.execute_script(widths) == [690]
+    assert browser.execute_script("return document.getElementById('blade').dataset.built") == "yes"
+    browser.execute_script("window.dispatchEvent(new Event('afterprint'))")
+    wait(browser, "return figures.every((each) => each.layout.width !== 690)")
 
 
 def test_numbers_are_sorted_as_numbers_and_infinity_last(show):

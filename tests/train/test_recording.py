@@ -23,6 +23,7 @@ def test_a_recorded_episode_is_the_one_that_was_evaluated():
     np.testing.assert_allclose(recording.tip[1:], episodes.tip_displacement[:, 1], rtol=1e-6, atol=1e-12)
     np.testing.assert_allclose(recording.volts[1:], episodes.voltages[:, 1], rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(recording.time[1:], episodes.time)
+    assert recording.cost == pytest.approx(episodes.cost[:, 1].sum(), rel=1e-6)
     np.testing.assert_allclose(recording.states @ env.unwrapped.plant.tip_displacement.T, recording.tip, atol=1e-12)
     env.close()
     envs.close()
@@ -71,4 +72,5 @@ def test_a_recording_ends_where_the_blade_fails():
     load = {"case": "step", "magnitude": 1e5, "onset": 0.01, "direction_deg": 90.0}
     recording = record(no_control(env.unwrapped.plant), env, 0, {"load": load})
     assert 0.01 < recording.time[-1] < 0.05
+    assert recording.cost == np.inf
     env.close()

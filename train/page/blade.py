@@ -1,181 +1,181 @@
-"""The blade in three dimensions, frame by frame, its actuators coloured by their voltage."""
+"""The blade as the page's script draws it: its surface once, and its motion as a few shapes and their amplitudes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import base64
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from beamenv.blade.build import build_beam
-from beamenv.blade.config import BladeConfig
-from beamenv.blade.shape import Skin, bodies, edges, end_triangles, magnification, patch, side_triangles
-from train.figures.palette import NEUTRAL
-from train.figures.screen import plain
+from beamenv.blade.build import Blade
+from beamenv.blade.shape import Skin, bodies, edges, patch
+from beamenv.patches.layout import SIDES
+from beamenv.plant.plant import drive_limit
+from beamenv.rendering import scene
+from beamenv.rendering.deformation import Deformation
+from beamenv.rendering.palette import INK, OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
+from beamenv.rendering.solid import BladeSolid
+from train.figures.themes import THEMES, Theme
 from train.page.recording import RecordedEpisode, Recording
 
 Array = NDArray[np.float64]
 
-STATIONS, PATCH_STATIONS = 33, 3
 FRAME_INTERVAL = 4e-3
 """s between frames: some nine a period of the slowest mode."""
 MOST_FRAMES = 500
-SHOWN_DEFLECTION = 0.2
+SHOWN_DEFLECTION = 0.15
 """Share of the span that the largest deflection is drawn as, at most."""
-ROUND = (1, 2, 5)
-"""Digits of the magnification."""
-RAISED = 0.06
-"""Depths of the section that patches are drawn above the wall they lie in, so that they are seen."""
-BODY = "#a9b4c0"
-SPAN_SHOWN = 1.45
-"""Length of the span axis in the units of plotly's cameras."""
-EYE = np.array([1.25, 0.9, -0.5])
-"""Where the camera stands, in (lag, flap, span), on the side that the top wall is turned to when that is +lag."""
-
-
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """A recording as it is drawn: F frames."""
-
-    recording: Recording
-    rows: NDArray[np.int64]
-    """(F,): instants of the recording; a blade that failed stays as it was last."""
-    displacement: Array
-    """(F, 3, STATIONS), as drawn: lag and flap in m, twist in rad."""
+COLOURS = 17
+"""Of a scale, evenly spaced; between them the script interpolates."""
+NEGLIGIBLE = 1e-7
+"""Share of a displacement that shapes may leave out: single precision tells no more."""
 
 
 def frame_times(episode: RecordedEpisode) -> Array:
     """(F,), s."""
-    time = max((recording.time for recording in episode.pair), key=len)
+    time = episode.time
     stride = max(round(FRAME_INTERVAL / (time[1] - time[0])), -(-len(time) // MOST_FRAMES))
     return np.asarray(time[::stride])
 
 
-def motions(episode: RecordedEpisode) -> tuple[list[Motion], float]:
-    """The pair with the displacements that are drawn, and their common magnification."""
-    blade, times = episode.blade.config, frame_times(episode)
-    operator = episode.blade.displacement_operator(_stations(blade))
-    rows = [np.searchsorted(recording.time, times).clip(max=len(recording.time) - 1) for recording in episode.pair]
-    true = [np.einsum("dkn,fn->fdk", operator, each.states[row]) for each, row in zip(episode.pair, rows, strict=True)]
-    factor = magnification(
-        max(float(np.linalg.norm(each[:, :2], axis=1).max()) for each in true), SHOWN_DEFLECTION * blade.beam.length, ROUND
-    )
-    return [Motion(*parts) for parts in zip(episode.pair, rows, [factor * each for each in true], strict=True)], factor
+def frame_rows(episode: RecordedEpisode, recording: Recording) -> NDArray[np.int64]:
+    """(F,): instants of a recording; a blade that failed stays as it was last."""
+    return np.searchsorted(recording.time, frame_times(episode)).clip(max=len(recording.time) - 1)
 
 
-def blade_figures(episode: RecordedEpisode) -> tuple[go.Figure, go.Figure]:
-    """The pair, each with one frame for each of ``frame_times``, named "0", "1", …; same axes, same magnification."""
-    pair, _ = motions(episode)
-    reach = max(float(np.abs(motion.displacement[:, :2]).max()) for motion in pair)
-    limit = float(np.abs(episode.blade.config.voltage_limits).max())
-    left, right = (_figure(episode.blade.config, motion, reach, limit) for motion in pair)
-    return left, right
+def displacements(episode: RecordedEpisode, stations: Array) -> list[Array]:
+    """(F, 3, S) of each recording: lag and flap in m, twist in rad, at stations (S,), m from the root."""
+    deformation, found = Deformation(episode.task, stations), []
+    for recording in episode.recordings:
+        rows = frame_rows(episode, recording)
+        plants = recording.truth[:, 0] if recording.truth.size else np.zeros(len(recording.time))
+        found.append(np.stack([deformation.displacement(recording.states[row], int(plants[row])) for row in rows]))
+    return found
 
 
-def _figure(blade: BladeConfig, motion: Motion, reach: float, limit: float) -> go.Figure:
-    skins, patches = bodies(build_beam(blade), _stations(blade)), _patches(blade)
-    walls, raised = _moved(skins, motion.displacement), _raised(blade, patches, motion.displacement)
-    volts = motion.recording.volts[motion.rows]
-    shades = np.broadcast_to(volts, (len(volts), len(patches)))  # ganged actuators share one voltage
-    triangles = side_triangles(PATCH_STATIONS, 2, closed=False)
-    shades = np.repeat(shades, len(triangles), axis=1).astype(np.float32)
-    drawn = [[_mesh(wall), {**_mesh(patch), "intensity": shade}] for wall, patch, shade in zip(walls, raised, shades, strict=True)]
-    frames = [{"name": str(index), "data": data, "traces": [1, 2]} for index, data in enumerate(drawn)]
-    several = np.concatenate([triangles + 2 * PATCH_STATIONS * k for k in range(len(patches))])
-    data = [_outline(blade, skins), _body(skins, drawn[0][0]), _actuators(several, drawn[0][1])]
-    extent = max(float(np.linalg.norm(skin.points, axis=-1).max()) for skin in skins)
-    return go.Figure(data=data, layout=_layout(blade, reach + 1.1 * extent, limit, motion.recording.name), frames=frames)
+def shapes_and_amplitudes(moved: Sequence[Array]) -> tuple[Array, list[Array]]:
+    """(r, 3, S) orthonormal shapes and (F, r) amplitudes of each of the displacements (F, 3, S), which are their products.
+
+    As many shapes as it takes; a blade that moves out of all bounds has no more weight than any other.
+    """
+    flat = [each.reshape(len(each), -1) for each in moved]
+    every = np.concatenate(flat)
+    size = np.linalg.norm(every, axis=1, keepdims=True)
+    _, weights, basis = np.linalg.svd(every / np.where(size > 0.0, size, 1.0), full_matrices=False)
+    basis = basis[: max(1, int(np.sum(weights > NEGLIGIBLE * weights[0])))]
+    return basis.reshape(-1, *moved[0].shape[1:]), [each @ basis.T for each in flat]
 
 
-def _stations(blade: BladeConfig) -> Array:
-    return np.linspace(0.0, blade.beam.length, STATIONS)
-
-
-def _patches(blade: BladeConfig) -> list[Skin]:
-    beam, patches = build_beam(blade), blade.patches
-    raised = RAISED * beam.section.least_extent
-    inlays = [inlay for group in patches.groups("actuators") for inlay in group.inlays("actuators", beam.length)]
-    return [patch(beam, inlay, inlay.start + inlay.length * np.linspace(0.0, 1.0, PATCH_STATIONS), raised) for inlay in inlays]
-
-
-def _moved(skins: Sequence[Skin], displacement: Array) -> Array:
-    """(F, V, 3), m: vertices of all outlines, one after the other."""
-    return np.concatenate([skin.displaced(displacement).reshape(len(displacement), -1, 3) for skin in skins], axis=1)
-
-
-def _raised(blade: BladeConfig, patches: list[Skin], displacement: Array) -> Array:
-    """(F, V, 3), m: vertices of all patches, which follow the body between its stations."""
-    moved = [skin.displaced(displacement @ _between(_stations(blade), skin.span)) for skin in patches]
-    return np.concatenate([each.reshape(len(each), -1, 3) for each in moved], axis=1)
-
-
-def _between(stations: Array, span: Array) -> Array:
-    """(stations, S): weights of linear interpolation."""
-    return np.stack([np.interp(span, stations, each) for each in np.eye(len(stations))])
-
-
-def _mesh(points: Array) -> dict[str, Any]:
-    return {"type": "mesh3d", **dict(zip("xyz", points.reshape(-1, 3).T.astype(np.float32), strict=True))}
-
-
-def _body(skins: Sequence[Skin], first: dict[str, Any]) -> dict[str, Any]:
-    parts, before = [], 0
-    for skin in skins:
-        stations, corners = skin.points.shape[:2]
-        end = end_triangles(skin.points[0])
-        own = np.concatenate([side_triangles(stations, corners, closed=True), end, end + corners * (stations - 1)])
-        parts.append(own + before)
-        before += stations * corners
-    triangles = np.concatenate(parts)
-    light = {"ambient": 0.55, "diffuse": 0.6, "specular": 0.05, "roughness": 0.9, "fresnel": 0.0}
-    look = {"color": BODY, "flatshading": True, "hoverinfo": "skip", "lighting": light}
-    return {**first, **dict(zip("ijk", triangles.T, strict=True)), **look, "lightposition": {"x": 1e4, "y": 3e4, "z": -2e4}}
-
-
-def _actuators(triangles: NDArray[np.intp], first: dict[str, Any]) -> dict[str, Any]:
-    look = {"intensitymode": "cell", "coloraxis": "coloraxis", "flatshading": True, "lighting": {"ambient": 1.0, "diffuse": 0.0}}
-    return {**first, **dict(zip("ijk", triangles.T, strict=True)), **look, "hovertemplate": "%{intensity:.0f} V<extra></extra>"}
-
-
-def _outline(blade: BladeConfig, skins: Sequence[Skin]) -> dict[str, Any]:
-    """Edges of the blade at rest, one line."""
-    gap, pieces = np.full((1, 3), np.nan), list[Array]()
-    for skin, sharp in zip(skins, edges(build_beam(blade).section), strict=True):
-        walls = skin.at_rest()
-        pieces += [gap] if pieces else []
-        pieces += [np.concatenate([walls[:, edge], gap]) for edge in sharp]
-        pieces.append(np.concatenate([walls[-1], walls[-1, :1]]))
-    points = dict(zip("xyz", np.concatenate(pieces).T.astype(np.float32), strict=True))
-    look = {"mode": "lines", "line": {"color": NEUTRAL, "width": 2}, "hoverinfo": "skip", "showlegend": False}
-    return {"type": "scatter3d", **points, **look}
-
-
-def _layout(blade: BladeConfig, half: float, limit: float, name: str) -> dict[str, Any]:
-    """Of axes from −``half`` to ``half`` (m) across the span."""
-    across = {"range": [-half, half], "showticklabels": False, "ticks": ""}
-    share = 2.0 * half / blade.beam.length  # one scale for all directions
-    below = {"orientation": "h", "thickness": 10, "len": 0.8, "y": -0.02, "yanchor": "top"}
-    bar = {"title": {"text": "voltage, V", "side": "top"}, **below}
+def drawn_blade(episode: RecordedEpisode) -> dict[str, Any]:
+    """All that the script needs, as JSON holds it; arrays are in base64, of single precision."""
+    solid, blade = BladeSolid(episode.blade), episode.blade
+    moved = displacements(episode, solid.stations)
+    shapes, amplitudes = shapes_and_amplitudes(moved)
+    pairs = zip(episode.recordings, moved, amplitudes, strict=True)
     return {
-        "title": {"text": plain(name), "x": 0.0, "xanchor": "left", "font": {"size": 15}},
-        "margin": {"l": 0, "r": 0, "t": 40, "b": 0},
-        "scene": {
-            "xaxis": {"title": {"text": "lag"}, **across},
-            "yaxis": {"title": {"text": "flap"}, **across},
-            "zaxis": {"title": {"text": "span, m"}, "range": [0.0, blade.beam.length], "nticks": 5},
-            "aspectmode": "manual",
-            "aspectratio": {"x": SPAN_SHOWN * share, "y": SPAN_SHOWN * share, "z": SPAN_SHOWN},
-            "camera": _camera(blade),
-        },
-        "coloraxis": {"colorscale": "RdBu", "reversescale": True, "cmin": -limit, "cmax": limit, "colorbar": bar},
+        **_surface(blade, solid),
+        **_view(blade),
+        "shapes": packed(shapes),
+        "shownDeflection": SHOWN_DEFLECTION * blade.config.beam.length,
+        "limit": float(drive_limit(blade.truth).max()),
+        "scales": {"voltage": _scale(VOLTAGE_SCALE), "output": _scale(OUTPUT_SCALE)},
+        "recordings": [_motion(episode, recording, *each) for recording, *each in pairs],
     }
 
 
-def _camera(blade: BladeConfig) -> dict[str, Any]:
-    middle = np.radians(blade.beam.presetting_deg + 0.5 * blade.beam.pretwist_deg)
-    side = -1.0 if np.sin(middle) > 0.0 else 1.0
-    points: dict[str, Any] = {"eye": EYE * [side, 1.0, 1.0], "up": (0.0, 1.0, 0.0), "center": (0.0, -0.12, -0.07)}
-    return {name: dict(zip("xyz", map(float, point), strict=True)) for name, point in points.items()}
+def packed(values: ArrayLike) -> str:
+    """Little-endian, of single precision, in base64."""
+    return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
+
+
+def _motion(episode: RecordedEpisode, recording: Recording, moved: Array, amplitudes: Array) -> dict[str, Any]:
+    rows = frame_rows(episode, recording)
+    actuators = sum(group.count for group in episode.blade.config.patches.groups("actuators"))
+    volts = recording.volts[rows]
+    seen = len(recording.readings) == len(recording.time)
+    outputs = recording.readings[rows] / episode.blade.truth.sensor_full_scale if seen else np.zeros((len(rows), 0))
+    return {
+        "name": recording.name,
+        "amplitudes": packed(amplitudes),
+        "largest": float(np.linalg.norm(moved[:, :2], axis=1).max()),
+        "tip": packed(1e6 * recording.tip[rows]),
+        "volts": packed(np.broadcast_to(volts, (len(rows), actuators))),  # ganged actuators share one voltage
+        "outputs": packed(outputs),
+        "dead": _dead(episode, recording)[rows].tolist() if recording.truth.size else [],
+        "failed": None if len(recording.time) == len(episode.time) else float(1e3 * recording.time[-1]),
+    }
+
+
+def _dead(episode: RecordedEpisode, recording: Recording) -> NDArray[np.object_]:
+    """(K,): which actuators and which readings are dead, each by its place; readings come after all actuators."""
+    m, p = recording.volts.shape[1], len(episode.blade.truth.C)
+    actuators = sum(group.count for group in episode.blade.config.patches.groups("actuators"))
+    gains = recording.truth[:, 2 : 2 + m + p]
+    dead = np.concatenate([np.broadcast_to(gains[:, :m], (len(gains), actuators)), gains[:, m:]], axis=1) == 0.0
+    found = np.empty(len(dead), dtype=object)
+    found[:] = [np.flatnonzero(row).tolist() for row in dead]
+    return found
+
+
+def _surface(blade: Blade, solid: BladeSolid) -> dict[str, Any]:
+    """Vertices one after the other, and which are whose."""
+    beam, length, places = blade.beam, blade.config.beam.length, solid.places
+    skins = bodies(beam, solid.stations)
+    inlays = [[each for group in blade.config.patches.groups(side) for each in group.inlays(side, length)] for side in SIDES]
+    strips = [[patch(beam, each, np.array([each.start, each.start + each.length])) for each in side] for side in inlays]
+    actuators, sensors = strips
+    every = [*skins, *actuators, *sensors, *places.points]
+    first = np.concatenate([[0], np.cumsum([skin.points.shape[0] * skin.points.shape[1] for skin in every])]).tolist()
+    sharp = [each.tolist() for each in edges(beam.section)]
+    starts = iter(first)
+    return {
+        "stations": packed(solid.stations),
+        "even": solid.even.tolist(),
+        "vertices": {name: packed(values) for name, values in _vertices(every, solid.stations).items()},
+        "bodies": [
+            {"first": next(starts), "stations": skin.points.shape[0], "corners": skin.points.shape[1], "edges": edge}
+            for skin, edge in zip(skins, sharp, strict=True)
+        ],
+        "actuators": [next(starts) for _ in actuators],
+        "sensors": [next(starts) for _ in sensors],
+        "points": [next(starts) for _ in places.points],
+        "readBy": {"sensors": places.of_patches.tolist(), "points": places.of_points.tolist()},
+        "hub": [face.tolist() for faces in scene.hub([skin.at_rest() for skin in skins], length) for face in faces],
+    }
+
+
+def _vertices(skins: Iterable[Skin], stations: Array) -> dict[str, Array]:
+    """(V,) each: place of the station, along the chord and across it (m), angle of the chord (rad)."""
+    found: list[Array] = []
+    for skin in skins:
+        count = skin.points.shape[1]
+        places = np.repeat(np.searchsorted(stations, skin.span), count)
+        found.append(np.stack([places, *skin.points.reshape(-1, 2).T, np.repeat(skin.angle, count)]))
+    return dict(zip(("station", "along", "across", "angle"), np.concatenate(found, axis=1), strict=True))
+
+
+def _view(blade: Blade) -> dict[str, Any]:
+    """Where the eye and the light are at first, and the colours: those of the environment's own pictures."""
+    beam = blade.config.beam
+    middle = np.radians(beam.presetting_deg + 0.5 * beam.pretwist_deg)
+    side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])
+    return {
+        "towards": (side * scene.TOWARDS).tolist(),
+        "light": (side * scene.LIGHT / np.linalg.norm(scene.LIGHT)).tolist(),
+        "distance": scene.DISTANCE * beam.length,
+        "drop": scene.SENSOR_DROP * beam.length,
+        "ribs": scene.RIBS,
+        "themes": {name: _colours(theme) for name, theme in THEMES.items()},
+    }
+
+
+def _colours(theme: Theme) -> dict[str, Any]:
+    """Of what stands for no value."""
+    body, hub = ([shade.tolist() for shade in shades] for shades in (scene.BODY, scene.HUB))
+    return {"ink": theme.ink, "rest": theme.faint, "outline": INK, "body": body, "hub": hub}
+
+
+def _scale(name: str) -> list[list[int]]:
+    return np.rint(colour_table(name)[np.linspace(0, 255, COLOURS).round().astype(int)]).astype(int).tolist()

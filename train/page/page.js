@@ -1,5 +1,3 @@
-"use strict";
-
 const templates = JSON.parse(document.getElementById("templates").textContent);
 const figures = [...document.querySelectorAll(".figure")];
 
@@ -10,12 +8,15 @@ const toggle = document.getElementById("theme");
 const theme = () => document.documentElement.dataset.theme ?? (system.matches ? "dark" : "light");
 
 function nameToggle() {
-  toggle.textContent = theme() === "dark" ? "Light" : "Dark";
+  const other = theme() === "dark" ? "light" : "dark";
+  toggle.textContent = other === "light" ? "Light" : "Dark";
+  toggle.setAttribute("aria-label", `Show the page in ${other} colours`);
 }
 
 function applyTheme() {
   nameToggle();
   for (const figure of figures) Plotly.relayout(figure, { template: templates[theme()] });
+  document.dispatchEvent(new Event("themed"));
 }
 
 toggle.addEventListener("click", () => {
@@ -33,13 +34,39 @@ const config = {
   showSendToCloud: false,
   modeBarButtonsToRemove: [
     ...["toImage", "select2d", "lasso2d", "zoomIn2d", "zoomOut2d", "autoScale2d"],
-    ...["zoom3d", "pan3d", "orbitRotation", "tableRotation", "resetCameraLastSave3d"],
   ],
 };
 
+const contents = new Map();
+const narrow = 600;
+const entry = 22;
+
+function asShown(figure) {
+  const { data, layout } = contents.get(figure);
+  const found = layout.meta?.whose ? arranged({ data, layout }, picked()) : { data, layout, panels: 0 };
+  const slim = figure.parentElement.clientWidth < narrow;
+  const entries = found.data.filter((trace) => trace.showlegend).length;
+  const height = Number(figure.dataset.height) + found.panels * Number(figure.dataset.panel ?? 0);
+  figure.style.height = `${height + (slim ? entry * entries : 0)}px`;
+  return { data: found.data, layout: { ...(slim ? slimmed(found.layout) : found.layout), template: templates[theme()] }, config };
+}
+
+// On a telephone: one entry of the legend a line, and every other tick where ticks are given one by one.
+
+function slimmed(layout) {
+  const { ticktext } = layout.xaxis ?? {};
+  const zero = ticktext?.indexOf("0");
+  const xaxis = ticktext ? { ...layout.xaxis, tickangle: 0, ticktext: ticktext.map((text, k) => ((k - zero) % 2 ? "" : text)) } : layout.xaxis;
+  return { ...layout, xaxis, legend: { ...layout.legend, orientation: "v" } };
+}
+
 function draw(figure) {
-  const { data, layout, frames } = JSON.parse(document.querySelector(`[data-figure="${figure.id}"]`).textContent);
-  return Plotly.newPlot(figure, { data, layout: { ...layout, template: templates[theme()] }, frames, config });
+  contents.set(figure, JSON.parse(document.querySelector(`[data-figure="${figure.id}"]`).textContent));
+  return Plotly.newPlot(figure, asShown(figure));
+}
+
+function redraw(figure) {
+  return Plotly.react(figure, asShown(figure));
 }
 
 // The table: numbers by their value, what has none last.
@@ -55,7 +82,7 @@ function sortBy(table, column) {
     const byText = one.cells[column].textContent.localeCompare(other.cells[column].textContent);
     return descending ? -byText : byText;
   };
-  for (const each of table.tHead.rows[0].cells) each.ariaSort = null;
+  for (const each of table.tHead.rows[0].cells) each.ariaSort = "none";
   heading.ariaSort = descending ? "descending" : "ascending";
   table.tBodies[0].append(...[...table.tBodies[0].rows].sort(order));
 }
@@ -64,76 +91,26 @@ for (const table of document.querySelectorAll(".sortable")) {
   [...table.tHead.rows[0].cells].forEach((heading, column) => heading.addEventListener("click", () => sortBy(table, column)));
 }
 
-// The blade: one slider and one camera for both, and the instant marked in the time series.
-
-function linkBlades(pair) {
-  const slider = document.getElementById("instant");
-  const clock = document.getElementById("clock");
-  const play = document.getElementById("play");
-  const series = document.getElementById("time-series");
-  const times = JSON.parse(slider.dataset.times);
-  const still = { mode: "immediate", transition: { duration: 0 }, frame: { duration: 0, redraw: true } };
-  const perFrame = 50;
-  let shown = null;
-  let busy = false;
-  let timer = null;
-
-  async function show() {
-    clock.textContent = `t = ${times[slider.valueAsNumber].toFixed(1)} ms`;
-    if (busy) return;
-    busy = true;
-    while (shown !== slider.valueAsNumber) {
-      shown = slider.valueAsNumber;
-      const instant = times[shown];
-      await Promise.all(pair.map((blade) => Plotly.animate(blade, [String(shown)], still)));
-      await Plotly.relayout(series, { "shapes[0].x0": instant, "shapes[0].x1": instant });
-    }
-    busy = false;
-  }
-
-  function stop() {
-    clearInterval(timer);
-    timer = null;
-    play.textContent = "Play";
-  }
-
-  function advance() {
-    if (busy) return;
-    if (slider.valueAsNumber >= times.length - 1) return stop();
-    slider.valueAsNumber += 1;
-    show();
-  }
-
-  slider.addEventListener("input", () => { stop(); show(); });
-  play.addEventListener("click", () => {
-    if (timer !== null) return stop();
-    if (slider.valueAsNumber >= times.length - 1) slider.valueAsNumber = 0;
-    play.textContent = "Pause";
-    timer = setInterval(advance, perFrame);
+for (const select of document.querySelectorAll(".chooser select")) {
+  select.addEventListener("change", async () => {
+    await Promise.all(figures.filter((figure) => contents.get(figure)?.layout.meta?.whose).map(redraw));
+    document.dispatchEvent(new Event("picked"));
   });
-  series.on("plotly_click", ({ points }) => {
-    const distance = times.map((time) => Math.abs(time - points[0].x));
-    slider.valueAsNumber = distance.indexOf(Math.min(...distance));
-    stop();
-    show();
-  });
-
-  pair.forEach((blade, index) => {
-    const other = pair[1 - index];
-    const follow = (change) => {
-      const camera = change["scene.camera"];
-      if (camera && JSON.stringify(other.layout.scene.camera) !== JSON.stringify(camera)) {
-        Plotly.relayout(other, { "scene.camera": structuredClone(camera) });
-      }
-    };
-    blade.on("plotly_relayouting", follow);
-    blade.on("plotly_relayout", follow);
-  });
-  return show();
 }
 
-Promise.all(figures.map(draw)).then(async () => {
-  const pair = [...document.querySelectorAll(".pair .figure")];
-  if (pair.length === 2) await linkBlades(pair);
+// On paper: light, and as wide as it.
+
+const paper = 690;
+
+function fit(figure, printed) {
+  const size = printed ? { width: paper, autosize: false } : { width: null, autosize: true };
+  Plotly.relayout(figure, { ...size, template: templates[printed ? "light" : theme()] });
+}
+
+addEventListener("beforeprint", () => figures.forEach((figure) => fit(figure, true)));
+addEventListener("afterprint", () => figures.forEach((figure) => fit(figure, false)));
+
+Promise.all(figures.map(draw)).then(() => {
+  buildWhenSeen();
   document.documentElement.dataset.drawn = "yes";
 });

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -20,12 +20,17 @@ from train.figures.heat_map import HeatMap
 from train.figures.panels import LearningCurves, learning_panel, pole_panel
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
-from train.page.blade import blade_figures, frame_times, motions
+from train.page import instead
+from train.page.lead import Lead
 from train.page.plots import spectra, time_series
 from train.page.recording import RecordedEpisode
+from train.page.shown import shown
 from train.page.signals import drawn_signals, words
 from train.page.table import Table
 from train.shared.versions import versions
+
+PANEL, REST = 160, 130
+"""Pixels of each panel of an episode's course, and of what is about them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +39,7 @@ class PageContent:
 
     title: str
     note: str = ""
-    """What the reader must know first."""
+    """What must be known besides, a sentence a line."""
     table: Table | None = None
     heat_map: HeatMap | None = None
     episode: RecordedEpisode | None = None
@@ -48,6 +53,8 @@ class PageContent:
     """As JSON can hold it."""
     further: Mapping[str, Table] = field(default_factory=dict)
     """More tables, by their headings."""
+    lead: Lead | None = None
+    """What the reader is told first."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,21 +70,17 @@ class Plot:
     """Pixels."""
     width: int = 0
     """Least width in pixels; narrower screens scroll it sideways."""
+    instead: str = ""
+    """What it shows in words, for those who cannot see it."""
+    panel: int = 0
+    """Pixels that each panel adds, where readers choose how many there are."""
+    rest: int = 0
+    """Pixels besides the panels."""
 
     @property
     def json(self) -> str:
         """For a script element: plotly escapes what could end one."""
         return str(self.figure.to_json())
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Animation:
-    """The blade under two controllers."""
-
-    plots: tuple[Plot, Plot]
-    times: list[float]
-    """ms, of the frames."""
-    note: str
 
 
 def write_page(path: Path, content: PageContent) -> None:
@@ -93,6 +96,7 @@ def write_page(path: Path, content: PageContent) -> None:
 
 def render(content: PageContent) -> str:
     """The page as HTML, plotly.js (4.8 MB) once inside."""
+    drawn = plots(content)
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("beamenv.train.page", ""),
         autoescape=True,
@@ -102,13 +106,25 @@ def render(content: PageContent) -> str:
     )
     return environment.get_template("page.html").render(
         content=content,
-        animation=animation(content),
-        plots=plots(content),
+        shown=None if content.episode is None else shown(content.episode),
+        plots=drawn,
+        parts=parts(content, drawn),
         themes=THEMES,
         templates=templates(),
         versions={**versions(), "plotly.js": get_plotlyjs_version()},
         plotly_js=get_plotlyjs(),
     )
+
+
+def parts(content: PageContent, drawn: Sequence[Plot]) -> list[tuple[str, str]]:
+    """Id and heading of every section, in the order of the page."""
+    maps = [plot for plot in drawn if plot.name == "heat-map"]
+    found = [(f"part-{place}", heading) for place, heading in enumerate(content.further, start=1)]
+    found += [("table", "Controllers")] if content.table else []
+    found += [(f"about-{plot.name}", plot.heading) for plot in maps]
+    found += [("episode", "One episode")] if content.episode else []
+    found += [(f"about-{plot.name}", plot.heading) for plot in drawn if plot not in maps]
+    return [*found, ("provenance", "Configuration and versions")]
 
 
 @lru_cache(maxsize=1)
@@ -117,32 +133,28 @@ def templates() -> dict[str, Any]:
     return {name: theme.template() for name, theme in THEMES.items()}
 
 
-def animation(content: PageContent) -> Animation | None:
-    """The blade's pair of figures, when there is an episode."""
-    if content.episode is None or not content.episode.has_shape:
-        return None
-    pair = blade_figures(content.episode)
-    left, right = (Plot(f"blade-{side}", "", "", figure, 440) for side, figure in zip(("left", "right"), pair, strict=True))
-    note = (
-        f"Deflections are drawn {motions(content.episode)[1]:,.0f} times larger than life; thin lines: the blade at rest. "
-        "Actuators are coloured by their voltage. Drag to turn both blades, scroll to zoom."
-    )
-    return Animation((left, right), [round(1e3 * float(time), 3) for time in frame_times(content.episode)], note)
-
-
 def plots(content: PageContent) -> list[Plot]:
     """Every figure but the blade, in the order of the page."""
     found = []
     if content.heat_map is not None:
         found.append(_heat_map(content.heat_map))
     if content.episode is not None:
-        found += _of_episode(content.episode, content.episode_note)
+        found += _of_episode(content.episode)
     if content.poles:
         note = (
             "Continuous equivalents log(z)/Δt of the sampled loops' poles, upper half plane. "
             "The real axis is logarithmic beyond 10 rad/s."
         )
-        found.append(Plot("poles", "Closed-loop poles", note, _plotted(pole_panel(content.poles)), 480))
+        found.append(
+            Plot(
+                "poles",
+                "Closed-loop poles",
+                note,
+                _plotted(pole_panel(content.poles)),
+                480,
+                instead=instead.of_poles(content.poles),
+            )
+        )
     if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
         note = (
             "Agents: running cost in training, or, of those that explore, the policy without exploration where validation looked. "
@@ -155,21 +167,26 @@ def plots(content: PageContent) -> list[Plot]:
                 note,
                 _plotted(learning_panel(content.learning), hovermode="x"),
                 420,
+                instead=instead.of_learning(content.learning),
             )
         )
     return found
 
 
-def _of_episode(episode: RecordedEpisode, which: str) -> list[Plot]:
+def _of_episode(episode: RecordedEpisode) -> list[Plot]:
     """Its course and its spectra."""
     signals, what = len(drawn_signals(episode)), words(episode)
-    instant = "The upright line is the instant of the blade above." if episode.has_shape else which
-    note = f"Panels share their time axis: zoom into one and all follow. {instant}".rstrip()
-    height = 130 + 160 * (signals + len(episode.controlled))
-    course = Plot("time-series", f"{what.capitalize()} and voltages", note, time_series(episode), height)
+    instant = " The upright line is the instant of the blade above." if episode.has_shape else ""
+    note = f"Panels share their time axis: zoom into one and all follow.{instant}"
+    controlled = len({0, episode.opens}) - 1
+    height = REST + PANEL * (signals + controlled)
+    title = f"{what.capitalize()} and voltages"
+    seen = instead.of_course(episode)
+    course = Plot("time-series", title, note, time_series(episode), height, instead=seen, panel=PANEL, rest=REST)
     of = "the tip" if episode.has_shape else f"the {what}"
-    note = f"Spectra of {of} before and after: Hann window over the whole record, mean removed; dotted: natural frequencies."
-    return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals)]
+    note = f"Spectra of {of}: Hann window over the whole record, mean removed; dotted: natural frequencies."
+    seen = instead.of_spectra(episode)
+    return [course, Plot("spectra", "Spectra", note, spectra(episode), 120 + 220 * signals, instead=seen)]
 
 
 def _plotted(panel: Panel, **layout: Any) -> go.Figure:
@@ -178,5 +195,5 @@ def _plotted(panel: Panel, **layout: Any) -> go.Figure:
 
 def _heat_map(content: HeatMap) -> Plot:
     note = "Blue: better than no control. ✕: share of episodes in which the blade failed or the loop was unstable. Empty: not run."
-    height, width = 180 + 44 * len(content.scenarios), 260 + 62 * len(content.controllers)
-    return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width)
+    height, width = max(320, 180 + 44 * len(content.scenarios)), 260 + 62 * len(content.controllers)
+    return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width, instead.HEAT_MAP)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import gymnasium as gym
@@ -16,6 +16,8 @@ from baselines.design.controller import ControllerArgument, as_controller, name_
 from baselines.evaluation.loop import instants
 from beamenv.blade.build import Blade
 from beamenv.blade.model_blade import ModelBlade
+from beamenv.configuration import Choice, checked
+from beamenv.task import Task
 
 Array = NDArray[np.float64]
 
@@ -40,17 +42,31 @@ class Recording:
     """(K, m), V: held over the interval that ends at each instant."""
     readings: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """(K, p), in the sensors' units, noise and all; none behind a wrapper that shows something else."""
+    truth: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(K, 2 + m + 2 p), as ``Blades.truth``: which plant moves and what is wrong; empty where it is the first and all is well."""
+    cost: float = float("nan")
+    """J s: the cost J of the episode, infinite where the blade failed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordedEpisode:
-    """One blade under the same loads and noise: without control, and under the two controllers that are shown side by side."""
+    """One blade under the same loads and noise, without control and under each of some controllers."""
 
-    blade: Blade
-    """The one that moves."""
-    without_control: Recording
-    pair: tuple[Recording, Recording]
-    """Either may be ``without_control`` itself."""
+    task: Task
+    recordings: tuple[Recording, ...]
+    """Without control first."""
+    opens: int
+    """Place of the recording that is shown first beside no control."""
+
+    @property
+    def blade(self) -> Blade:
+        """The one that moves, or that those which move depart from."""
+        return self.task.blade
+
+    @property
+    def without_control(self) -> Recording:
+        """The first."""
+        return self.recordings[0]
 
     @property
     def has_shape(self) -> bool:
@@ -58,14 +74,9 @@ class RecordedEpisode:
         return not isinstance(self.blade, ModelBlade)
 
     @property
-    def controlled(self) -> tuple[Recording, ...]:
-        """Those of the pair that are not the episode without control."""
-        return tuple(recording for recording in self.pair if recording is not self.without_control)
-
-    @property
-    def recordings(self) -> tuple[Recording, ...]:
-        """Without control first, each once."""
-        return (self.without_control, *self.controlled)
+    def time(self) -> Array:
+        """(K,), s: of the longest recording."""
+        return max((recording.time for recording in self.recordings), key=len)
 
 
 def record(
@@ -74,29 +85,40 @@ def record(
     """One episode of one environment, to its end or the last finite state; ``options`` go to its ``reset``."""
     inner: Any = env.unwrapped
     rows: list[tuple[Array, ...]] = []
+    cost = 0.0
     for instant in instants(controller, env, [seed], options):
         state = np.array(inner.state, dtype=np.float64)
         if not np.isfinite(state).all():
+            cost = float("inf")
             break
-        rows.append((state, instant.info["tip_displacement"][0], instant.info["volts"][0], np.asarray(instant.observation[0])))
-    states, tip, volts, observed = (np.stack(series) for series in zip(*rows, strict=True))
+        cost += float(instant.info["cost_increment"][0]) if rows else 0.0
+        cost = float("inf") if instant.failed[0] else cost
+        told = instant.info["tip_displacement"][0], instant.info["volts"][0], np.asarray(instant.observation[0])
+        rows.append((state, *told, inner.episode_truth))
+    states, tip, volts, observed, truth = (np.stack(series) for series in zip(*rows, strict=True))
     name = name_of(as_controller(controller))
     scale = 1.0 if inner.task.physical_units else inner.plant.sensor_full_scale
     readings = scale * observed if env.observation_space == inner.observation_space else np.zeros((0, 0))
-    return Recording(name, inner.plant.control_interval * np.arange(len(rows)), states, tip, volts, readings)
+    time = inner.plant.control_interval * np.arange(len(rows))
+    return Recording(name, time, states, tip, volts, readings, truth, cost)
 
 
-def record_episode(arguments: Mapping[str, Any], seed: int, pair: tuple[Controller, Controller]) -> RecordedEpisode:
-    """The episode of ``seed`` in the environment with these keyword arguments, three times over.
+def record_episode(
+    arguments: Mapping[str, Any], seed: int, controllers: Mapping[str, Controller], opens: str | None = None
+) -> RecordedEpisode:
+    """The episode of ``seed`` in the environment with these keyword arguments, without control and under each of the controllers.
 
-    A controller of an id or a name in ``IDLE`` counts as the episode without control, and is not run twice.
+    They are called by their keys. One whose own name is in ``IDLE`` counts as the episode without control, and is
+    not run. ``opens`` is the key of the one that is shown first, None that of the first. Raises ``ValueError``
+    for a key that there is not.
     """
     env = gym.make(beamenv.ENV_ID, **{"dtype": "float64", **arguments})
     try:
         inner: Any = env.unwrapped
         idle = no_control(inner.plant)
-        without = record(idle, env, seed)
-        left, right = (without if getattr(law, "name", None) in IDLE else record(law, env, seed) for law in pair)
-        return RecordedEpisode(inner.task.blade, without, (left, right))
+        others = {name: law for name, law in controllers.items() if name_of(law) not in IDLE}
+        place = 1 + list(others).index(checked("opens", opens, Choice(tuple(others)))) if opens is not None else min(1, len(others))
+        recordings = [replace(record(law, env, seed), name=name) for name, law in others.items()]
+        return RecordedEpisode(inner.task, (record(idle, env, seed), *recordings), place)
     finally:
         env.close()

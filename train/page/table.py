@@ -26,3 +26,8 @@ class Table:
         wrong = [row for row in self.rows if len(row) != len(self.headings)]
         if wrong:
             raise ValueError(f"rows has one of {len(wrong[0])} cells, but each must have {len(self.headings)}, one a heading.")
+
+    @property
+    def text_columns(self) -> tuple[int, ...]:
+        """Places of the columns that have no numbers."""
+        return tuple(place for place in range(len(self.headings)) if all(row[place].value is None for row in self.rows))

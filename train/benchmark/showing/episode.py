@@ -1,61 +1,63 @@
-"""The episode that the benchmark's page shows: LQG and the best agent that ships, side by side."""
+"""The episode that the benchmark's page shows, under every controller that is measured there."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass
 
+from baselines import Controller
 from beamenv.knowledge import TRUTH
-from beamenv.scenarios.scenario import scenario
-from beamenv.task import resolve_task
-from train.benchmark.table import BenchmarkTable
+from beamenv.task import Task, resolve_task
+from train.benchmark.table import BenchmarkTable, Row
 from train.controllers.choice import chosen
-from train.controllers.named import KINDS, named
+from train.controllers.named import KINDS
 from train.controllers.shipped import shipped_agents
 from train.page import RecordedEpisode, record_episode
 from train.shared.held_out import HELD_OUT
 
 
-def shown_episode(table: BenchmarkTable) -> tuple[RecordedEpisode | None, str]:
-    """The first held-out episode of the scenario in which a shipped agent gains most on LQG, and what to say of it.
+@dataclass(frozen=True, slots=True, eq=False)
+class ShownEpisode:
+    """An episode of one scenario, and what to say of it."""
 
-    Scenarios whose plant is drawn or changes are passed over: their blades have other shapes than the configured one. None without
-    a shipped agent. Of a model of one's own, LQG and the best other law in the first scenario.
+    episode: RecordedEpisode
+    scenario: str
+    best: Row
+    """The least J there of all that see no more than a real blade shows."""
+    note: str
+
+
+def shown_episode(table: BenchmarkTable) -> ShownEpisode | None:
+    """The first held-out episode of the scenario in which a shipped agent gains most on LQG, under everyone who is measured there
+    and can be made again from its name. It opens beside the best that sees no more than a real blade shows.
+
+    Without a shipped agent, and of a model of one's own, that of the first scenario; None where nobody can be made again.
     """
-    ships, environment = shipped_agents(), table.configuration.get("environment", {})
-    if environment.get("plant") is not None:
-        return _of_model(table, environment)
-    candidates = [row for row in table.rows if row.controller in ships and row.measured and _one_plant(row.scenario)]
-    if not candidates:
-        return None, ""
-    best = min(candidates, key=lambda row: row.estimates["difference_to_lqg"].value)
-    arguments = {**environment, "scenario": best.scenario}
-    task = resolve_task(**arguments)
-    try:
-        agent = chosen(best.controller, task, best.scenario)
-    except ValueError:  # the table's blade is another one than that which agents ship for
-        return None, ""
-    note = f"Scenario {best.scenario}, held-out episode of seed {HELD_OUT}: LQG, and the agent that gains most on it."
-    return record_episode(arguments, HELD_OUT, (named("lqg").build_for(task), agent)), note
-
-
-def _of_model(table: BenchmarkTable, environment: Mapping[str, Any]) -> tuple[RecordedEpisode | None, str]:
-    """The first held-out episode of the first scenario under LQG and the best other law with sensors there; it has no shape."""
-    name = table.scenarios[0]
-    rivals = [row for row in table.within(name) if row.measured and row.kind in KINDS and row.controller not in ("none", "lqg")]
-    rivals = [row for row in rivals if row.tier < TRUTH]
+    environment = table.configuration.get("environment", {})
+    ships = {} if environment.get("plant") is not None else shipped_agents()
+    gains = [
+        (row.estimates["difference_to_lqg"].value, row.scenario) for row in table.rows if row.controller in ships and row.measured
+    ]
+    name = min(gains)[1] if gains else table.scenarios[0]
     arguments = {**environment, "scenario": table.configuration["scenarios"][name]}
     task = resolve_task(**{key: value for key, value in arguments.items() if key != "max_episode_steps"})
-    lqg = named("lqg").build_for(task)
-    best = min(rivals, key=lambda row: row.mean_cost, default=None)
-    pair = (named("none" if best is None else best.controller).build_for(task), lqg)
-    told = "LQG, and no control" if best is None else f"LQG, and {best.controller}, the law that costs least beside it"
-    return record_episode(arguments, HELD_OUT, pair), f"Scenario {name}, held-out episode of seed {HELD_OUT}: {told}."
+    rows = sorted((row for row in table.within(name) if row.measured), key=lambda row: row.mean_cost)
+    made = {row: law for row in rows if (law := _made(row, task)) is not None}
+    rivals = [row for row in made if row.controller != "none" and row.tier < TRUTH]
+    if not rivals:
+        return None
+    episode = record_episode(arguments, HELD_OUT, {row.controller: law for row, law in made.items()}, rivals[0].controller)
+    which = ", where an agent gains most on LQG" if gains else ""
+    without = [row.controller for row in rows if row not in made]
+    left = f" Not shown, for they cannot be made again from their names: {', '.join(without)}." if without else ""
+    note = f"Scenario {name}{which}: held-out episode of seed {HELD_OUT}. J₀: J without control, in this episode.{left}"
+    return ShownEpisode(episode, name, rivals[0], note)
 
 
-def _one_plant(name: str) -> bool:
+def _made(row: Row, task: Task) -> Controller | None:
+    """The controller of a row; None of one that cannot be had from its name, such as a caller's own."""
+    if row.kind not in KINDS and row.controller not in shipped_agents():
+        return None
     try:
-        plants = scenario(name).plants
-    except ValueError:
-        return False
-    return not plants.varies and plants.spin_up is None
+        return chosen(row.controller, task, row.scenario)
+    except ValueError:  # the table's blade is another one than that which agents ship for
+        return None

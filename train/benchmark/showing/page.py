@@ -4,34 +4,76 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from train.benchmark.showing.episode import shown_episode
+from baselines import Estimate
+from beamenv.knowledge import TRUTH
+from train.benchmark.showing.episode import ShownEpisode, shown_episode
 from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.legend import legend
 from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
 from train.benchmark.showing.section import Section
-from train.benchmark.table import BenchmarkTable, Row
+from train.benchmark.table import RIVAL, BenchmarkTable, Row
 from train.benchmark.targets import findings
 from train.controllers.shipped import shipped_agents
-from train.page import Cell, LearningCurves, PageContent, Table, write_page
+from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
+from train.page.lead import COST, blade_in_words, counted, load_in_words
 from train.shared.curve import read_curve
+
+COLUMN = next(column for column in COLUMNS if column.name == "relative_cost")
 
 
 def write_report(path: Path, table: BenchmarkTable) -> None:
     """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration."""
-    episode, note = shown_episode(table)
+    shown = shown_episode(table)
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
-        title=f"Controllers of a {'rotating blade' if episode is None or episode.has_shape else 'model'} across scenarios",
+        title=f"Controllers of a {'model' if of_model(table) else 'rotating blade'} across scenarios",
+        lead=None if shown is None else lead(table, shown),
         note="\n".join([*(each.sentence for each in findings(table)), *table.left_out, *wrong]),
         table=page_table(table),
         further={each.heading: further_table(each) for each in sections(table)},
         heat_map=heat_map(table),
-        episode=episode,
-        episode_note=note,
+        episode=None if shown is None else shown.episode,
+        episode_note="" if shown is None else shown.note,
         learning=learning_curves(table),
         configuration=table.configuration,
     )
     write_page(path, content)
+
+
+def of_model(table: BenchmarkTable) -> bool:
+    """Whether a model of one's own moves, and no blade."""
+    return table.configuration.get("environment", {}).get("plant") is not None
+
+
+def lead(table: BenchmarkTable, shown: ShownEpisode) -> Lead:
+    """The least J in the first scenario and in the one that is shown, what moves under which loads, and how this was made."""
+    first, last = table.configuration["seeds"]
+    names = dict.fromkeys(["nominal" if "nominal" in table.scenarios else table.scenarios[0], shown.scenario])
+    first_best, *further = [each for name in names if (each := least_rival(table, name)) is not None]
+    others = [f"; in {row.scenario} it is {row.controller}, with {_of_without(table, row)}" for row in further]
+    moved, load = blade_in_words(shown.episode.blade), load_in_words(shown.episode.task.scenario)
+    return Lead(
+        f"In {first_best.scenario}, {first_best.controller} has the least {COST} of all controllers that see no more than a real "
+        f"blade shows, {_of_without(table, first_best)} of that without control{''.join(others)}.",
+        f"What moves is {moved}, in {shown.scenario} under {load}; {counted(len(table.controllers), 'controller')} went through "
+        f"{counted(len(table.scenarios), 'scenario')} of {last - first + 1} held-out episodes each.",
+    )
+
+
+def least_rival(table: BenchmarkTable, scenario: str) -> Row | None:
+    """Who has the least J there of all that see no more than a real blade shows; None if nobody was measured."""
+    rows = [row for row in table.within(scenario) if row.measured and row.tier < TRUTH]
+    return min(rows, key=lambda row: row.mean_cost, default=None)
+
+
+def _of_without(table: BenchmarkTable, row: Row) -> str:
+    rival = table.row(row.scenario, RIVAL)
+    beside = "" if rival is None or not rival.measured or rival is row else f" (LQG: {COLUMN.text(_relative(rival))})"
+    return COLUMN.text(_relative(row)) + beside
+
+
+def _relative(row: Row) -> Estimate:
+    return row.estimates["relative_cost"]
 
 
 def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
