@@ -177,9 +177,9 @@ def test_command_writes_the_page_and_the_documentation(tmp_path):
         app, ["reproduce", "table-3.4", "figure-3.3", "--folder", str(tmp_path / "out"), "--docs", str(tmp_path / "docs")]
     )
     assert result.exit_code == 0, result.output
-    page = (tmp_path / "docs" / "thesis.md").read_text()
-    assert "![figure-3.3](figures/figure-3.3.png)" in page and (tmp_path / "docs" / "figures" / "figure-3.3.png").exists()
-    assert "not run" in page and "Chapter 6" not in page
+    index, page = ((tmp_path / "docs" / name).read_text() for name in ("thesis.md", "thesis-chapter-3.md"))
+    assert "](figures/figure-3.3.png)" in page and (tmp_path / "docs" / "figures" / "figure-3.3.png").exists()
+    assert "not run" in index and "Chapter 6: " not in index and not (tmp_path / "docs" / "thesis-chapter-6.md").exists()
     assert (tmp_path / "out" / "report.html").exists() and (tmp_path / "out" / "report.md").exists()
     assert "resumed" not in result.stderr
     again = CliRunner().invoke(app, ["reproduce", "table-3.4", "--folder", str(tmp_path / "out"), "--json"])

@@ -27,9 +27,9 @@ def test_training_runs_are_pooled_and_specialists_stay_at_home(tmp_path):
         ("spillover", "ppo-generalist"): 2,
     }
     sentences = [each.sentence for each in findings(table)]
-    assert "is ahead of every law in 0 of 2 single fault scenarios, behind in " in sentences[0]
+    assert "is ahead of every classical controller in 0 of 2 single fault scenarios, behind in " in sentences[0]
     within = "in 2 of 2 scenarios of a single fault (+0.0 % to +0.0 %)."  # of no control, the best law in so short an episode
-    assert sentences[-1].startswith("ppo-generalist: within 3 %")
+    assert sentences[-1].startswith("ppo-generalist: J within 3 % of the best classical controller")
     assert sentences[-1].endswith(within)
     (tmp_path / "ppo" / "generalist" / "1" / "weights.npz").write_bytes(b"")
     row = benchmark(trained=tmp_path, **chosen).row("nominal", "ppo-generalist")

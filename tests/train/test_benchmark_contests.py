@@ -158,8 +158,8 @@ def test_the_leader_of_a_tier_is_of_any_kind_and_clear_only_by_every_paired_inte
 
 def test_tables_say_who_was_not_chosen_and_that_this_favours_it():
     text = markdown(table_of(COSTS, ["gusty"]))
-    assert "Agents against laws: one of each stands for its kind" in text
-    assert text.count("Agents against laws:") == 1
+    assert text.count("A name in brackets was not chosen: it has the least J on these very seeds, which favours it.") == 1
+    assert "| gusty | (agent-a) | (told) |" in text
 
 
 @pytest.mark.parametrize("today", [True, False])

@@ -15,19 +15,21 @@ from train.benchmark.table import BenchmarkTable, Row
 AHEAD, BEHIND, LEVEL = "ahead", "behind", "not told apart"
 
 RULE = (
-    "Agents against laws: one of each stands for its kind, chosen on validation seeds, which are others than these, by the least "
-    "mean J there; in scenarios that nothing may be chosen on, by the least interquartile mean of J / J₀ over those that may, of "
-    "who is the same in all: not of laws made of what they are told of a scenario, for they are told nothing there. "
-    "Where nobody was chosen, it is the least J on these very seeds, in brackets, which favours it. The agent is ahead if its J is "
-    "below that of every law told no more, each by the paired interval, and behind if J of the chosen law is below that of every "
-    "agent."
+    "In each scenario one agent and one classical controller stand for their kind. Both were chosen beforehand, on validation "
+    "seeds, which are other seeds than these: by the least mean J. In unseen scenarios, on which nothing may be chosen, by the "
+    "least interquartile mean of J / J₀ over the others, among those that are the same everywhere: a controller made from what "
+    "it is told of a scenario is told nothing there. A name in brackets was not chosen: it has the least J on these very seeds, "
+    "which favours it.\n\n"
+    "Ahead: the agent's J is below that of every classical controller told no more. Behind: the J of the "
+    "chosen classical controller is below that of every agent. Each by the paired interval. The hardest is the classical "
+    "controller that the agent is least clearly ahead of."
 )
 """How agents and laws are compared, for whoever shows it."""
 
 
 STALE = (
-    "Who was chosen may not be who would be chosen today, for the choice that ships was made with other code, or other versions of "
-    "NumPy and SciPy, than these."
+    "Today others might be chosen: the choice that ships was made with other code, or other versions of NumPy and SciPy, than this "
+    "table."
 )
 
 

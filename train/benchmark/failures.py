@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 RULE = (
-    "A blade that fails without control is charged to its episode's end as in its last interval, so that J₀ is a number. Who lets "
-    "it fail too has neither saved nor lost it, and its J counts as J₀. Who keeps it whole has saved it, and its J counts as it "
-    "is. Where a blade that stands without control fails, it is lost: J is infinite, and so are J / J₀ and, below zero, the score. "
-    "Saved and lost episodes are counted over all seeds and runs, and none is left out. Settling, peaks and effort of a blade that "
-    "fails are those up to its failure; it settles not at all."
+    "Where the blade fails without control, J₀ counts the rest of the episode as its last interval, so that it is a number. A "
+    "controller under which it fails too has neither saved nor lost it: its J counts as J₀. One that keeps it whole has saved "
+    "it: its J counts as it is. One that breaks a blade which stands without control has lost it: J and J / J₀ are infinite, and "
+    "the score is minus infinity. Saved and lost episodes are counted over all seeds and runs; none is left out. Settling, peaks "
+    "and effort of a blade that fails are those up to its failure; it does not settle."
 )
 """What an episode in which a blade fails counts as, for whoever shows one."""
 

@@ -25,15 +25,20 @@ SPLITS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Scenarios by what they ask for; each is in one split."""
 
 RULE = (
-    "Score: (J₀ − J) / (J₀ − J of clairvoyant), 0 without control and 1 with what is told the truth, each a mean over seeds and "
-    "runs; nothing is clipped. Over a split it is the interquartile mean over its scenarios of the scores in them. A scenario has "
-    "none where clairvoyant was not measured, which refuses plants that change within an episode, where it breaks a blade or "
-    "gains nothing in some resample; the split then stands on the others. clairvoyant is a reference, no bound, for it estimates "
-    "loads as others do: a score may be above 1. Intervals draw runs within each scenario (Agarwal et al., NeurIPS 2021), those of "
-    "a generalist together, for they are the same in all scenarios; seeds are drawn together for all scenarios and controllers, so "
-    "that differences are paired."
+    "How much of what can be gained is gained: (J₀ − J) / (J₀ − J of clairvoyant), each a mean over seeds and runs. 0 is no "
+    "control, 1 is clairvoyant, which is told each episode's truth; below 0 is worse than no control. The score of a split is "
+    "the interquartile mean of those of its scenarios."
 )
 """What a score is, for whoever shows one."""
+
+DETAILS = (
+    "Scores are not clipped. clairvoyant is a reference, no bound, for it estimates loads as others do: a score may be above 1. A "
+    "scenario has no score where clairvoyant was not measured, which refuses plants that change within an episode, breaks a blade, "
+    "or gains nothing in some resample; the split then stands on the others. Intervals draw training runs within each scenario "
+    "(Agarwal et al., NeurIPS 2021), those of a generalist together, for they are the same in all scenarios; seeds are drawn "
+    "together for all scenarios and controllers, so that differences are paired."
+)
+"""By which rules it is made."""
 
 
 @dataclass(frozen=True, slots=True)

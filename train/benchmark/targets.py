@@ -47,36 +47,35 @@ class Leader:
 def findings(table: BenchmarkTable) -> list[Finding]:
     """All of them: what learning buys, who leads in each tier, and how far the generalists reach."""
     told = [claim(table, contests(table)), *(leading(table, tier) for tier in TIERS)]
-    return [Finding(each) for each in told if each] + list(_generalists(table))
+    return [Finding(each) for each in told if each] + [each.finding for each in reaches(table)]
 
 
 def claim(table: BenchmarkTable, found: Sequence[Contest]) -> str:
-    """In how many scenarios of each split the agent is ahead of all laws that are told no more, and behind; empty without any."""
+    """In which scenarios the agent is ahead of all classical controllers that are told no more, and behind; empty without any."""
+    said = ahead_and_behind(table, found, named=True)
+    return f"Tier {LEARNT} and below, by paired intervals of J: {said}." if said else ""
+
+
+def ahead_and_behind(table: BenchmarkTable, found: Sequence[Contest], named: bool) -> str:
+    """In how many scenarios of each split, ``named`` or not; empty without any."""
     if not found:
         return ""
-    parts = [
-        part for split in (*SPLITS, "") if (part := _of_split(split, [c for c in found if split_of(table, c.scenario) == split]))
-    ]
+    by_split = {split: [each for each in found if split_of(table, each.scenario) == split] for split in (*SPLITS, "")}
+    parts = [_of_split(split, those, named) for split, those in by_split.items() if those]
     agent = (
         "the agent chosen on validation seeds"
         if all(each.agent_chosen for each in found)
         else (
-            "the agent, where none was chosen on validation seeds the one with the least J on these very seeds, which favours it,"
+            "the agent chosen on validation seeds (where none was, the one with the least J on these very seeds, which favours it)"
         )
     )
-    return f"Tier {LEARNT} and below, by paired intervals of J: {agent} is ahead of every law in {'; in '.join(parts)}."
+    return f"{agent} is ahead of every classical controller in {'; in '.join(parts)}"
 
 
-def _of_split(split: str, found: Sequence[Contest]) -> str:
-    """Empty where there is no contest."""
-    if not found:
-        return ""
+def _of_split(split: str, found: Sequence[Contest], named: bool) -> str:
     ahead, behind = ([each.scenario for each in found if each.verdict == verdict] for verdict in (AHEAD, BEHIND))
-    return f"{len(ahead)} of {len(found)} {split or 'other'} scenarios{_listed(ahead)}, behind in {len(behind)}{_listed(behind)}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    return f" ({', '.join(names)})" if names else ""
+    which = [f" ({', '.join(names)})" if names and named else "" for names in (ahead, behind)]
+    return f"{len(ahead)} of {len(found)} {split or 'other'} scenarios{which[0]}, behind in {len(behind)}{which[1]}"
 
 
 def leading(table: BenchmarkTable, tier: int) -> str:
@@ -117,7 +116,38 @@ def best(rows: Iterable[Row]) -> Row | None:
     return min((row for row in rows if row.measured), key=lambda row: row.mean_cost, default=None)
 
 
-def breadth(table: BenchmarkTable, agent: str) -> Finding:
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """In how many scenarios of a split a generalist meets a target."""
+
+    agent: str
+    goal: str
+    split: str
+    scenarios: int
+    span: str
+    """From the least to the most that was found; empty where nothing is finite, or not asked for."""
+    beyond: tuple[str, ...]
+    """Where it misses it, and by how much or why."""
+
+    @property
+    def met(self) -> bool:
+        """Whether it does so in all of them."""
+        return not self.beyond
+
+    @property
+    def share(self) -> str:
+        """In how many of how many, as "8 of 10"."""
+        return f"{self.scenarios - len(self.beyond)} of {self.scenarios}"
+
+    @property
+    def finding(self) -> Finding:
+        """In a sentence."""
+        where = f"scenarios of a {self.split}" if self.split == SINGLE else f"{self.split} scenarios"
+        span, but = f" ({self.span})" if self.span else "", ", but not in " if self.beyond else ""
+        return Finding(f"{self.agent}: {self.goal} in {self.share} {where}{span}{but}{', '.join(self.beyond)}.", self.met)
+
+
+def breadth(table: BenchmarkTable, agent: str) -> Reach:
     """In how many scenarios of a single fault a generalist's J is within 3 % of that of the best law told no more."""
     excess = {
         name: each
@@ -126,22 +156,17 @@ def breadth(table: BenchmarkTable, agent: str) -> Finding:
     }
     beyond = [_beyond(table, name, agent, f"{100.0 * each:+.2f} %") for name, each in excess.items() if each > MARGIN]
     finite = [each for each in excess.values() if isfinite(each)]
-    between = f" ({_percent(min(finite))} to {_percent(max(finite))})" if finite else ""
-    sentence = (
-        f"{agent}: within {100 * MARGIN:.0f} % of the J of the best law told no more, the least on these very seeds, in "
-        f"{len(excess) - len(beyond)} of {len(excess)} scenarios of a single fault{between}"
-    )
-    return Finding(f"{sentence}{', but not in ' if beyond else ''}{', '.join(beyond)}.", not beyond)
+    span = f"{_percent(min(finite))} to {_percent(max(finite))}" if finite else ""
+    goal = f"J within {100 * MARGIN:.0f} % of the best classical controller's"
+    return Reach(agent, goal, SINGLE, len(excess), span, tuple(beyond))
 
 
-def steadiness(table: BenchmarkTable, agent: str) -> Finding:
+def steadiness(table: BenchmarkTable, agent: str) -> Reach:
     """In how many of the scenarios that nobody trains on at most 2 % of a generalist's episodes are unstable."""
     rows = {name: row for name in UNSEEN if split_of(table, name) and (row := table.row(name, agent))}
     shares = {name: row.estimates["unstable"].value if row.measured else inf for name, row in rows.items()}
     beyond = [_beyond(table, name, agent, f"{100.0 * each:.3g} %") for name, each in shares.items() if each > UNSTEADY]
-    steady = f"{len(shares) - len(beyond)} of {len(shares)}"
-    sentence = f"{agent}: at most {100 * UNSTEADY:.0f} % of episodes unstable in {steady} unseen scenarios"
-    return Finding(f"{sentence}{', but not in ' if beyond else ''}{', '.join(beyond)}.", not beyond)
+    return Reach(agent, f"at most {100 * UNSTEADY:.0f} % of episodes unstable", "unseen", len(shares), "", tuple(beyond))
 
 
 def _excess(table: BenchmarkTable, scenario: str, agent: str) -> float | None:
@@ -165,8 +190,8 @@ def _beyond(table: BenchmarkTable, scenario: str, agent: str, by: str) -> str:
     return f"{scenario} {by}" if "inf" not in by else f"{scenario} (a blade breaks)"
 
 
-def _generalists(table: BenchmarkTable) -> Iterator[Finding]:
-    """What there is to say of each agent that is told no more than the scenario's distribution."""
+def reaches(table: BenchmarkTable) -> Iterator[Reach]:
+    """How far each generalist reaches that is told no more than the scenario's distribution."""
     names = dict.fromkeys(row.controller for row in choice.agents(table.rows) if row.controller.endswith(GENERALIST))
     for name in names:
         if any(_excess(table, each, name) is not None for each in table.scenarios if split_of(table, each) == SINGLE):

@@ -193,7 +193,9 @@ def reproduce(
     names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
     folder: Annotated[Path, typer.Option(help="Where CSV and PNG of each, and the page, are written.")] = Path("results/thesis"),
     overwrite: Annotated[bool, overwriting("what is finished already")] = False,
-    docs: Annotated[Path | None, typer.Option(help="Folder that gets the page too, as thesis.md with figures/.")] = None,
+    docs: Annotated[
+        Path | None, typer.Option(help="Folder that gets the pages too: thesis.md, one a chapter, and figures/.")
+    ] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
     as_json: JsonOption = False,

@@ -13,11 +13,12 @@ from beamenv.configuration.writing import write_whole
 from train.cli.bars import Bars
 from train.cli.options import complain, print_json
 from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIES, chosen
+from train.reproduce.index import first_verdicts, second_verdicts
 from train.reproduce.judging.ledger import ROWS, counts
 from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
-from train.reproduce.overview import first_verdicts, second_verdicts, verdicts_of
-from train.reproduce.report import html_page, markdown_page
+from train.reproduce.overview import verdicts_of
+from train.reproduce.report import documentation, html_page, markdown_page
 from train.reproduce.runner import Record, load, run, source_fingerprint
 from train.reproduce.section import OWN_WORDS
 from train.reproduce.thesis import Model
@@ -111,7 +112,8 @@ def write_pages(output: Path, records: list[Record], docs: Path | None) -> None:
     write_whole(output / "report.html", html_page(shown, output))
     write_whole(output / "report.md", markdown_page(shown))
     if docs is not None:
-        write_whole(docs / "thesis.md", markdown_page(shown, "figures"))
+        for name, content in documentation(shown, "figures").items():
+            write_whole(docs / name, content)
         for record in shown:
             if not record.error:
                 write_whole(docs / "figures" / f"{record.name}.png", (output / f"{record.name}.png").read_bytes())
@@ -130,7 +132,7 @@ def report(records: list[Record], output: Path) -> None:
     everything = with_earlier(output, records)
     told("Statements", verdicts_of(THESIS_STUDIES, first_verdicts(records)))
     told("By the thesis' equations", verdicts_of(THESIS_STUDIES, second_verdicts(records)))
-    told(f"Checks of {FUTURE_WORK[0]!r}", verdicts_of(FUTURE_WORK[1], first_verdicts(records)), OWN_WORDS)
+    told("Checks of the future work", verdicts_of(FUTURE_WORK[1], first_verdicts(records)), OWN_WORDS)
     rows = [row.verdict(first_verdicts(everything)) for row in ROWS if row.decided_by]
     if any(rows):
         told("Conclusions", [*rows, *(Verdict.UNTESTABLE for row in ROWS if not row.decided_by)])

@@ -51,7 +51,7 @@ THESIS: tuple[Chapter, ...] = (
 """The thesis' tables and figures, whose statements are counted."""
 
 FUTURE_WORK: Chapter = (
-    "7.2, done",
+    "Future work: section 7.2, done",
     (
         *chapter7_graded.STUDIES,
         *chapter7_adaptive.STUDIES,

@@ -13,6 +13,7 @@ import numpy as np
 from train.figures.figure import PLAIN, Curve, Look, Marker, Panel
 from train.figures.paper import draw_panel, handles
 from train.reproduce.judging.study import Grid, Outcome
+from train.reproduce.thesis.points import is_printed
 
 SIGNS = (
     *("circle", "square", "triangle-up", "diamond", "triangle-down"),
@@ -52,28 +53,30 @@ def draw(outcome: Outcome, title: str) -> bytes:
         if entries:
             figure.legend(handles=entries, loc="outside lower center", ncols=per_row)
         canvas.draw()  # once, where savefig lays everything out twice
-    return compact(canvas.buffer_rgba())
+    return compact(canvas.buffer_rgba(), rare=bool(printed_entries(outcome.panels)))
 
 
-def compact(pixels: Any) -> bytes:
-    """A picture (height, width, 4) in 64 colours: a third of the bytes, and no difference to the eye.
+def compact(pixels: Any, rare: bool) -> bytes:
+    """A picture (height, width, 4) in few colours, more where rare ones count: a third of the bytes, no difference to the eye.
 
     Compressed as usual: the most that can be had is 9 % less, and takes eight times as long.
     """
     from PIL import Image
 
     picture = io.BytesIO()
-    Image.fromarray(np.asarray(pixels)).convert("RGB").quantize(64).save(picture, format="png")
+    plain = Image.fromarray(np.asarray(pixels)).convert("RGB")
+    few = plain.quantize(256, Image.Quantize.MAXCOVERAGE) if rare else plain.quantize(64)
+    few.save(picture, format="png")
     return picture.getvalue()
 
 
 def curves_of(panels: Sequence[Panel | Grid]) -> list[Curve]:
-    """All curves."""
-    return [curve for panel in panels if isinstance(panel, Panel) for curve in panel.curves]
+    """All curves but the thesis' own numbers."""
+    return [curve for panel in panels if isinstance(panel, Panel) for curve in panel.curves if not is_printed(curve)]
 
 
 def labels_of(panels: Sequence[Panel | Grid]) -> list[str]:
-    """The labels of all curves, in the order of their first appearance."""
+    """The labels of these curves, in the order of their first appearance."""
     return list(dict.fromkeys(curve.label for curve in curves_of(panels) if curve.label))
 
 
@@ -83,7 +86,7 @@ def appearances(outcome: Outcome) -> Looks:
     from matplotlib.colors import to_hex
 
     labels = labels_of(outcome.panels)
-    if len(labels) < 2:
+    if not labels or len(labels) + len(printed_entries(outcome.panels)) < 2:
         return {}
     looks: Looks = {}
     for together in shared_labels(outcome.panels):
@@ -106,7 +109,7 @@ def shared_labels(panels: Sequence[Panel | Grid]) -> list[list[str]]:
 
 
 def legend_entries(outcome: Outcome, looks: Looks) -> list[Curve]:
-    """One for each meaning of a line and for each label."""
+    """One for each meaning of a line and for each label, the thesis' own numbers last."""
     labels, curves = labels_of(outcome.panels), curves_of(outcome.panels)
     used = {label: {curve.line for curve in curves if curve.label == label} for label in labels}
     solid = PALE if "dotted" in outcome.lines else PLAIN
@@ -122,7 +125,13 @@ def legend_entries(outcome: Outcome, looks: Looks) -> list[Curve]:
         if scatters and label != labels[0] and look.marker:
             look = replace(look, marker=replace(look.marker, fill="none"))
         entries.append(Curve(NOTHING, NOTHING, label, line, look))
-    return entries
+    return entries + printed_entries(outcome.panels)
+
+
+def printed_entries(panels: Sequence[Panel | Grid]) -> list[Curve]:
+    """One for each label of the thesis' own numbers."""
+    found = [curve for panel in panels if isinstance(panel, Panel) for curve in panel.curves if is_printed(curve)]
+    return [replace(curve, x=NOTHING, y=NOTHING) for curve in {curve.label: curve for curve in reversed(found)}.values()][::-1]
 
 
 def signed_labels(panels: Sequence[Panel | Grid]) -> set[str]:
@@ -137,12 +146,15 @@ def signed_labels(panels: Sequence[Panel | Grid]) -> set[str]:
 
 def dressed(panel: Panel, looks: Looks, in_pairs: bool) -> Panel:
     """The panel with the looks of its curves. Where dotted curves run on solid ones, these are broad and pale so that both show."""
-    points = any(curve.line == "points" for curve in panel.curves)
-    scattered = all(curve.line == "points" for curve in panel.curves)
+    own = curves_of([panel])
+    points = any(curve.line == "points" for curve in own)
+    scattered = all(curve.line == "points" for curve in own)
     curves = []
     for curve in panel.curves:
-        if curve.line == "points":
-            look = point_look(curve, looks, hollow=scattered and curve is not panel.curves[0])
+        if is_printed(curve):
+            look = curve.look
+        elif curve.line == "points":
+            look = point_look(curve, looks, hollow=scattered and curve is not own[0])
         else:
             look = line_look(curve, looks, in_pairs, marked=not points)
         curves.append(replace(curve, look=look))
@@ -193,7 +205,7 @@ def curve_rows(outcome: Outcome) -> tuple[list[str], list[list[object]]]:
     for panel in outcome.panels:
         if isinstance(panel, Panel):
             for curve in panel.curves:
-                meaning = outcome.lines.get(curve.line, "") if curve.line in outcome.lines else ""
+                meaning = "" if is_printed(curve) else outcome.lines.get(curve.line, "")
                 points = zip(np.asarray(curve.x).tolist(), np.asarray(curve.y).tolist(), strict=True)
                 rows += [
                     [panel.title, curve.label, meaning, f"{x:.8g}", f"{y:.8g}", panel.x_label, panel.y_label] for x, y in points

@@ -1,68 +1,88 @@
-"""What the page opens with: how it judges, how many of each verdict, why so many are negative, the concluding statements."""
+"""What the pages open with: what is judged and how, how many of each verdict there are, and why so many are negative."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from train.reproduce import catalogue
-from train.reproduce.judging.ledger import ROWS, Judgements, Row, counts
+from train.reproduce.index import first_verdicts, second_verdicts
+from train.reproduce.judging.ledger import ROWS, Judgements, Row, counts, of
 from train.reproduce.judging.study import Study
-from train.reproduce.judging.stumbling import STUMBLING
 from train.reproduce.judging.verdicts import Verdict
-from train.reproduce.markup import Markup
+from train.reproduce.markup import Link, Markup, Text
 from train.reproduce.runner import Record
-from train.reproduce.section import BY_EQUATIONS, IN_NATURE, shown_second, shown_verdict
+from train.reproduce.section import BY_EQUATIONS, IN_NATURE, shown_verdict
 from train.reproduce.thesis.equations import EQUATIONS
 
 INTRODUCTION = (
     "D. N. Vadiraja, Vibration Analysis, Control and Optimal Placement of MFC Actuators and Sensors on Rotating Thin-Walled "
-    "Composite Cantilever Beams, IIT Guwahati, 2008. Made by `beamenv reproduce`. Every verdict is computed from the numbers "
-    "beside it by "
-    "the rule stated with it; a table or figure, and a concluding statement, takes the weakest verdict of the statements that "
-    "decide it. "
-    "Questions of our own stand beside them and decide nothing. Step loads are 30 N/m, so that ±1500 V matters; the thesis prints "
-    "no load for "
-    "its figures. Where the thesis leaves a configuration open or misprints it, the one used is named."
+    "Composite Cantilever Beams, IIT Guwahati, 2008. `beamenv reproduce` computes every table and figure of its chapters 2, 3, 5 "
+    "and 6 again, and judges every statement that it makes of them. Each verdict follows from numbers by a fixed rule; numbers and "
+    "rule stand beside it."
 )
-TWO_COLUMNS = (
-    "Every statement is judged twice. “In nature” asks whether it is so: of the thesis' model, derived again from its energies, "
-    "with the shear flow that a closed cell asks for, and checked against what others measured and computed (what that model "
-    "still leaves out of nature is listed in the errata). “By the thesis' equations” asks whether the thesis computed it "
-    "rightly from what it prints: the same computation with the equations of the table below in place of ours, all of those "
-    "that bear on a figure together; chapter 6, whose weights are not printed, by the layouts that it prints. Where a statement "
-    "then holds better than in nature, the equation is named that does it alone, the first in the table's order, or those that "
-    "are needed together. What the thesis itself refutes, by its text, tables or equations, is tried last, told, and counts for "
-    "nothing."
+DEFINITIONS = (
+    "Each statement has two verdicts. In nature: is it true of the blade? By the thesis' equations: does it follow from what the "
+    "thesis itself prints?"
 )
-FUTURE_WORK_INTRODUCTION = (
-    "What the thesis' section 7.2 left to others, and is there now (in words: docs/beyond-the-thesis.md). Nothing of the thesis is "
-    "reproduced here: the statements are ours, written with the numbers at hand, and are counted apart. Where a closed form, a "
-    "published number or an independent computation is named, one that holds is a validation; a limit or an order of our own that "
-    "holds is a regression check: the code still gives what it gave when we looked."
+SYMBOLS = (
+    f"{shown_verdict(Verdict.REPRODUCED)}: it holds.",
+    f"{shown_verdict(Verdict.TREND)}: it holds on the whole, but not in every case, or not to the number.",
+    f"{shown_verdict(Verdict.NOT_REPRODUCED)}: it does not hold.",
+    f"{shown_verdict(Verdict.UNTESTABLE)}, or evaluated: the thesis does not say enough.",
 )
+WEAKEST = "A table, a figure or a conclusion has the weakest verdict of the statements that it stands on."
+HOW: tuple[tuple[Text, ...], ...] = (
+    (
+        "The verdict in nature rests on the thesis' model, derived again from its energies, with the shear flow that a closed cell "
+        "asks for. It was checked against what others measured and computed. What it still leaves out of nature is listed in the ",
+        Link("errata", "thesis-errata.md"),
+        ".",
+    ),
+    (
+        "The verdict by the thesis' equations rests on the same computation with the equations of the table below in place of "
+        "ours, all at once that bear on a figure. Chapter 6 prints no weights; it is judged by the layouts that it prints. "
+        "Where a statement holds better in this way, the page names the equation that does it alone, the first in the table's "
+        "order, or those that are needed together. What the thesis itself refutes, by its text, tables or equations, is tried "
+        "last and told, but counts for nothing.",
+    ),
+    (
+        "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit "
+        "of ±1500 V matters; the thesis prints no load for its figures. Where it leaves a configuration open or misprints it, "
+        "the page names the one that was computed.",
+    ),
+)
+FUTURE_WORK_INTRODUCTION: tuple[Text, ...] = (
+    "What the thesis' section 7.2 left to others, and is there now; in words: ",
+    Link("Beyond the thesis", "beyond-the-thesis.md"),
+    ". Nothing of the thesis is reproduced here: the statements are ours, written with the numbers at hand, and are counted "
+    "apart. Where a closed form, a published number or an independent computation is named, one that holds is a validation; a "
+    "limit or an order of our own that holds is a regression check: the code still gives what it gave when we looked.",
+)
+COMPARED = Row(
+    "3.5",
+    "Its comparisons with an experiment and with other authors (Tables 3.2 to 3.4) hold here too.",
+    of("table-3.2", "experiment", "theory") + of("table-3.3", "oh") + of("table-3.4", "chandiramani"),
+)
+COUNTED = ("tables and figures", "their statements", "concluding statements")
 
 
 def opening(records: Sequence[Record], markup: Markup) -> list[str]:
-    """All that comes before the chapters."""
+    """What is judged, the counts, and why so many are negative."""
     return [
         markup.paragraph(INTRODUCTION),
+        markup.paragraph(DEFINITIONS),
+        markup.listed(SYMBOLS),
+        markup.paragraph(WEAKEST),
         *overview(records, markup),
-        markup.paragraph(TWO_COLUMNS),
+        markup.heading(2, "Why so many verdicts are negative", ""),
         markup.paragraph(why(records)),
-        equations(markup),
-        *stumbling(records, markup),
-        *ledger(records, markup),
     ]
 
 
-def first_verdicts(records: Sequence[Record]) -> Judgements:
-    """In nature, by study and key."""
-    return {record.name: record.judgements for record in records if not record.error}
-
-
-def second_verdicts(records: Sequence[Record]) -> Judgements:
-    """By the thesis' equations, likewise."""
-    return {record.name: record.second for record in records if not record.error}
+def how(markup: Markup) -> list[str]:
+    """How both verdicts are made."""
+    told = [markup.paragraph(*pieces) for pieces in HOW]
+    return [markup.heading(2, "How the verdicts are made", ""), *told, equations(markup)]
 
 
 def verdicts_of(studies: Sequence[Study], judgements: Judgements) -> list[Verdict]:
@@ -83,10 +103,8 @@ def own_checks(records: Sequence[Record], markup: Markup) -> list[str]:
     """How many of the checks of our own work hold, in a sentence of their own."""
     verdicts = verdicts_of(catalogue.FUTURE_WORK[1], first_verdicts(records))
     held = verdicts.count(Verdict.REPRODUCED)
-    return [markup.paragraph(f"Of the {len(verdicts)} checks of “{catalogue.FUTURE_WORK[0]}” {held} hold.")] if verdicts else []
-
-
-COUNTED = ("tables and figures", "their statements", "concluding statements")
+    told = f"Counted apart: of the {len(verdicts)} checks of what section 7.2 left to others, {held} hold."
+    return [markup.paragraph(told)] if verdicts else []
 
 
 def count(what: str, found: Judgements) -> list[str]:
@@ -103,7 +121,7 @@ def count(what: str, found: Judgements) -> list[str]:
 
 
 def why(records: Sequence[Record]) -> str:
-    """Why so many verdicts are negative: what of it is the thesis' model, its arithmetic, and the strict rules, in numbers."""
+    """Why so many verdicts are negative: the strict rules, the thesis' equations, and what neither explains, in numbers."""
     first, second = (verdicts_of(catalogue.THESIS_STUDIES, found(records)) for found in (first_verdicts, second_verdicts))
     pairs = list(zip(first, second, strict=True))
     missed = [again for verdict, again in pairs if verdict in (Verdict.TREND, Verdict.NOT_REPRODUCED)]
@@ -112,15 +130,21 @@ def why(records: Sequence[Record]) -> str:
     fallen = [study.verdicts(first_verdicts(records)[study.name]) for study in figures]
     partly = sum(Verdict.NOT_REPRODUCED in each and Verdict.REPRODUCED in each for each in fallen)
     none = sum(Verdict.NOT_REPRODUCED in each for each in fallen)
+    compared = f" {COMPARED.text}" if COMPARED.verdict(first_verdicts(records)) is Verdict.REPRODUCED else ""
     return (
-        f"Why so many are negative. Of {len(first)} statements {len(missed)} are not so in nature, {first.count(Verdict.TREND)} of "
-        "which hold in trend. "
-        f"The thesis' model accounts for {found[Verdict.REPRODUCED]}: by its own equations they are right. {found[Verdict.TREND]} "
-        f"keep a trend by them, {found[Verdict.NOT_REPRODUCED]} do not: there it is the thesis' arithmetic, values read off plots, "
-        "loads, weights or lay-ups that it does not print, and what it saw in four curves and stated of all. "
-        f"{found[Verdict.UNTESTABLE]} cannot be evaluated. {lost} that are so in nature do not follow from its equations or cannot "
-        "be evaluated. The rest is the strict rule: one step in hundreds that goes the other way leaves a trend, and one statement "
-        f"that fails makes a table or figure fail: of the {none} that fail in nature, {partly} have other statements that hold."
+        f"Of {len(first)} statements {first.count(Verdict.REPRODUCED)} hold in nature, {first.count(Verdict.TREND)} hold in trend, "
+        f"{first.count(Verdict.NOT_REPRODUCED)} do not hold and {first.count(Verdict.UNTESTABLE)} cannot be tested. "
+        "There are three reasons. The first is the strict rule: one step in hundreds that goes the other way leaves only a trend, "
+        "and one statement that fails makes its table or figure fail. "
+        f"Of the {none} that fail in nature, {partly} have other statements that hold. "
+        f"The second is the thesis' model. Of the {len(missed)} statements that do not fully hold in nature, its equations explain "
+        f"{found[Verdict.REPRODUCED]}, and {found[Verdict.TREND]} in trend: the thesis computed them rightly, by equations that do "
+        f"not hold of the blade. The third is what no equation explains. {found[Verdict.NOT_REPRODUCED]} do not follow from the "
+        f"thesis' own equations either, and {found[Verdict.UNTESTABLE]} cannot be evaluated by them: they rest on loads, weights "
+        "or lay-ups that the thesis does not print, on values read off plots, on slips in its arithmetic, or on more than its few "
+        "curves show. Some of these may be our fault, for where a configuration is not printed we had to choose one. The reverse "
+        f"happens too: {lost} statements that hold in nature do not follow from the thesis' equations, or cannot be evaluated by "
+        f"them.{compared}"
     )
 
 
@@ -128,28 +152,3 @@ def equations(markup: Markup) -> str:
     """The thesis' equations that the second verdicts take in place of ours."""
     rows = [[equation.name, equation.place, equation.words, equation.refuted or "counts"] for equation in EQUATIONS]
     return markup.table(["equation", "where", "as the thesis has it", "in the second verdict"], rows)
-
-
-def stumbling(records: Sequence[Record], markup: Markup) -> list[str]:
-    """What a reader who compares with the thesis stumbles over first, and why."""
-    return [markup.heading(2, "What a reader stumbles over"), rows_table(STUMBLING, "where", records, markup)]
-
-
-def ledger(records: Sequence[Record], markup: Markup) -> list[str]:
-    """The concluding statements."""
-    return [markup.heading(2, "Concluding statements"), rows_table(ROWS, "section", records, markup)]
-
-
-def rows_table(rows: Sequence[Row], place: str, records: Sequence[Record], markup: Markup) -> str:
-    """Statements with both verdicts, and why."""
-    first, second = first_verdicts(records), second_verdicts(records)
-    header = [place, "statement", IN_NATURE, BY_EQUATIONS, "decided by", "why"]
-    return markup.table(header, [ledger_row(row, first, second) for row in rows])
-
-
-def ledger_row(row: Row, first: Judgements, second: Judgements) -> list[str]:
-    """One of them with both verdicts."""
-    verdict, again = row.verdict(first), row.verdict(second)
-    deciding = ", ".join(dict.fromkeys(study for study, _ in row.decided_by)) or "nothing"
-    shown = [shown_verdict(verdict) if verdict else "not run", shown_second(again) if again else "not run"]
-    return [row.section, row.text, *shown, deciding, row.remark if {verdict, again} != {Verdict.REPRODUCED} else ""]

@@ -22,6 +22,8 @@ OWN_WORDS = {
 """Of our own work, where nothing of the thesis is reproduced."""
 IN_NATURE, BY_EQUATIONS = "in nature", "by the thesis' equations"
 """The two columns of verdicts."""
+MANY = 12
+"""Rows of numbers beyond which they are folded."""
 
 
 def shown_verdict(verdict: Verdict) -> str:
@@ -48,24 +50,52 @@ def own_rule(words: str) -> str:
 
 
 def section(study: Study, record: Record, markup: Markup) -> list[str]:
-    """One table or figure."""
-    parts = [markup.heading(3, study.heading), markup.paragraph(f"Configuration: {study.configuration}.")]
+    """One table or figure: both verdicts, the picture, what is stated, what is to be known of it, and folded how it is judged."""
+    heading, configuration = markup.heading(3, study.heading, study.name), markup.paragraph(f"Computed: {study.configuration}.")
     if record.error:
-        return [*parts, markup.paragraph(f"This study failed: {record.error}")]
+        return [heading, configuration, markup.paragraph(f"This study failed: {record.error}")]
     own = study in catalogue.FUTURE_WORK[1]
-    parts.append(markup.paragraph(own_verdict(study, record) if own else both_verdicts(study, record)))
-    parts.append(own_table(study, record, markup) if own else statement_table(study, record, markup))
-    remarks = dict.fromkeys(statement.remark for statement in study.statements if statement.remark)
-    told = [] if own else tellings(study, record)
-    parts += [markup.paragraph(text) for text in (*remarks, *told, *record.notes)]
-    parts.append(markup.image(study.name))
-    return [*parts, markup.table(record.header, record.rows)] if record.rows else parts
+    told = remarks(study) if own else [*remarks(study), *tellings(study, record)]
+    return [
+        heading,
+        markup.paragraph(own_verdict(study, record) if own else both_verdicts(study, record)),
+        markup.image(study.name, study.heading),
+        configuration,
+        own_table(study, record, markup) if own else statement_table(study, record, markup),
+        *([markup.listed(told)] if told else []),
+        *(markup.paragraph(text) for text in record.notes),
+        markup.folded("By which rule each is judged", rules(study, markup, own)),
+        *number_table(record, markup),
+    ]
+
+
+def remarks(study: Study) -> list[str]:
+    """What is to be known of statements, each with those that it is of."""
+    found: dict[str, list[str]] = {}
+    for each in study.statements:
+        if each.remark:
+            found.setdefault(each.remark, []).append(f"“{each.text}”")
+    return [f"{', '.join(texts)}: {remark}" for remark, texts in found.items()]
+
+
+def number_table(record: Record, markup: Markup) -> list[str]:
+    """A table's numbers, folded where they are many; empty without any."""
+    if not record.rows:
+        return []
+    shown = markup.table(record.header, record.rows)
+    return [shown if len(record.rows) <= MANY else markup.folded(f"The numbers, {len(record.rows)} rows", shown)]
+
+
+def rules(study: Study, markup: Markup, own: bool) -> str:
+    """The rule of every statement in words."""
+    worded_rules = [(worded(each), own_rule(each.rule.words) if own else each.rule.words) for each in study.statements]
+    return markup.table(["statement", "rule"], worded_rules)
 
 
 def own_verdict(study: Study, record: Record) -> str:
     """The verdict of our own work, with how many of its statements hold."""
     verdicts = study.verdicts(record.judgements)
-    held = f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements"
+    held = share(verdicts)
     return f"Check: {shown_own(study.verdict(record.judgements))} ({held})."
 
 
@@ -74,20 +104,20 @@ def both_verdicts(study: Study, record: Record) -> str:
     first, second = study.verdict(record.judgements), study.verdict(record.second)
     shares = share(study.verdicts(record.judgements)), share(study.verdicts(record.second))
     return (
-        f"Verdict {IN_NATURE}: {shown_verdict(first)} ({shares[0]}); {BY_EQUATIONS}: {shown_second(second)} ({shares[1]})"
-        f"{taken_as_printed(study)}."
+        f"In nature: {shown_verdict(first)} ({shares[0]}). By the thesis' equations: {shown_second(second)} ({shares[1]}"
+        f"{taken_as_printed(study)})."
     )
 
 
 def share(verdicts: Sequence[Verdict]) -> str:
     """How many of them are reproduced."""
-    return f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements reproduced"
+    return f"{verdicts.count(Verdict.REPRODUCED)} of {len(verdicts)} statements hold"
 
 
 def taken_as_printed(study: Study) -> str:
     """What the second verdict takes as the thesis has it, in words."""
     if study.printed is not None:
-        return ", which are judged by the layouts that it prints"
+        return ", judged by the layouts that it prints"
     names = [name for name in TOGETHER if name in study.rests_on]
     return f", with its {', '.join(names)}" if names else ""
 
@@ -98,8 +128,8 @@ def statement_table(study: Study, record: Record, markup: Markup) -> str:
     for statement in study.statements:
         found = record.judgements[statement.key]
         again = second_cell(record.second[statement.key], found) if statement.key in record.second else ""
-        rows.append([worded(statement), *numbers(found), shown_verdict(found.verdict), again, statement.rule.words])
-    return markup.table(["statement", "thesis", "ours", "deviation", IN_NATURE, BY_EQUATIONS, "rule"], rows)
+        rows.append([worded(statement), *numbers(found), shown_verdict(found.verdict), again])
+    return markup.table(["statement", "thesis", "ours", "deviation", IN_NATURE, BY_EQUATIONS], rows)
 
 
 def own_table(study: Study, record: Record, markup: Markup) -> str:
@@ -107,8 +137,8 @@ def own_table(study: Study, record: Record, markup: Markup) -> str:
     rows = []
     for statement in study.statements:
         found = record.judgements[statement.key]
-        rows.append([worded(statement), *numbers(found), shown_own(found.verdict), own_rule(statement.rule.words)])
-    return markup.table(["statement", "expected", "ours", "deviation", "check", "rule"], rows)
+        rows.append([worded(statement), *numbers(found), shown_own(found.verdict)])
+    return markup.table(["statement", "expected", "ours", "deviation", "check"], rows)
 
 
 def worded(statement: Statement) -> str:

@@ -1,7 +1,8 @@
-"""Tables in Markdown, whatever stands in their cells."""
+"""Tables in Markdown, whatever stands in their cells, and what is folded."""
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Sequence
 
@@ -28,3 +29,8 @@ def markup_table(headings: Sequence[str], rows: Sequence[Sequence[str]], words: 
     left = len(headings) if words is None else words
     rule = ["---"] * left + ["---:"] * (len(headings) - left)
     return "\n".join("| " + " | ".join(line) + " |" for line in (headings, rule, *rows))
+
+
+def folded(summary: str, body: str) -> str:
+    """Markdown that a line of plain text, ``summary``, opens and closes."""
+    return f"<details markdown>\n<summary>{html.escape(on_one_line(summary))}</summary>\n\n{body}\n\n</details>"

@@ -1,17 +1,17 @@
-"""Who leads in each tier, and agents against laws."""
+"""Who leads in each tier, and agents against classical controllers."""
 
 from __future__ import annotations
 
 from beamenv.titles import TIERS
 from train.benchmark.contests import Contest, contests, rule
-from train.benchmark.showing.section import COST, Entry, Section, gap, words
+from train.benchmark.showing.section import Entry, Section, gap, words
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import leaders_of
-from train.shared.columns import share
+from train.shared.columns import number, share
 
 LEADERS = (
-    'The least mean J of each tier, of all kinds and on these very seeds; "clearly" if it is below every other of its tier, each '
-    "by the paired interval."
+    "The controller with the least mean J of each tier, of any kind and on these very seeds, with its J / J₀. Clearly: it is below "
+    "every other of its tier, each by the paired interval. Alone: its tier has no other."
 )
 
 
@@ -28,7 +28,7 @@ def _leader(table: BenchmarkTable, scenario: str, tier: int) -> str:
     if first is None:
         return "–"
     how = "" if first.rivals and not first.clear else ", clearly" if first.rivals else ", alone"
-    return f"{first.row.controller} {COST.text(first.row.estimates['relative_cost'])}{_unstable(first.row)}{how}"
+    return f"{first.row.controller} {number(first.row.estimates['relative_cost'].value, '{:.3f}')}{_unstable(first.row)}{how}"
 
 
 def _unstable(row: Row) -> str:
@@ -38,8 +38,8 @@ def _unstable(row: Row) -> str:
 
 def agents_and_laws(table: BenchmarkTable) -> Section:
     """One of each against the other in each scenario."""
-    headings = ["scenario", "agent", "law", "verdict", "hardest law", "J / J₀, agent less law", "agent less the hardest"]
-    return Section("Agents against laws", rule(), headings, [_contest(each) for each in contests(table)], 5)
+    headings = ["scenario", "agent", "classical", "verdict", "hardest", "J / J₀, agent less classical", "agent less the hardest"]
+    return Section("Agents against classical controllers", rule(), headings, [_contest(each) for each in contests(table)], 5)
 
 
 def _contest(one: Contest) -> list[Entry]:

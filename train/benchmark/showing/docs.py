@@ -1,31 +1,42 @@
-"""The last full run as a page of the documentation."""
+"""The last full run as a page of the documentation: definitions, findings, and folded all that was measured."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from beamenv.configuration.writing import write_whole
+from train.benchmark.score import by_split
+from train.benchmark.showing.contests import agents_and_laws, leaders
+from train.benchmark.showing.findings import findings_table
 from train.benchmark.showing.heat_map import RULE, heat_map
-from train.benchmark.showing.report import markdown
+from train.benchmark.showing.legend import details, terms
+from train.benchmark.showing.report import overview, scenario_table
+from train.benchmark.showing.scores import headroom, scores
 from train.benchmark.table import BenchmarkTable
 from train.figures.paper import save
 from train.figures.paper_heat_map import heat_map as drawn
+from train.shared.markdown import escaped, folded
+from train.shared.markdown import table as markdown_table
 
 INTRODUCTION = """\
 # The benchmark
 
-Every controller in every scenario on the same held-out episodes. Controllers are built from what their tier of information is told,
-and agents, which train on the scenario's distribution, are used as shipped. The scenarios are files in `beamenv/scenarios/named/`:
-those with a single fault, open ones, in which the blade changes within the episode or everything is wrong at once, and those kept
-for judging, which no agent trains on by themselves and by which nothing is chosen, though development looked at agents there.
-Their pairs of faults are of no new kinds: `unknown-everything`, an open one, by its definition puts all of these kinds together,
-each mildly, and agents train on it by today's recipes. The controllers are files in `train/controllers/named/`: a further file in
-either folder adds a row or a column.
+Every controller in every scenario, on the same held-out episodes. [What learning buys](agents.md#what-learning-buys), and what it
+does not, is told beside the agents.
 
-[What learning buys](agents.md#what-learning-buys), and what it does not, is told beside the agents. `beamenv benchmark --submit
-mine` puts a trained agent of yours through every scenario and enters it on the [leaderboard](leaderboard.md).
+- **Scenarios** are files in `beamenv/scenarios/named/`, in three splits. A *single fault* scenario has one thing wrong. In an
+  *open* scenario the blade changes within the episode, or everything is wrong at once. *Unseen* scenarios are kept for judging: no
+  agent trains on them by themselves, and nothing is chosen by them. Development did look at agents there. Their pairs of faults
+  are of no new kinds: `unknown-everything`, an open scenario that agents train on, has all these kinds at once, each mildly.
+- **Controllers** are files in `train/controllers/named/`. Each is built from what its tier of information is told. *Agents* learn
+  on the scenarios' distributions, and are used as shipped: a *generalist* trained on all scenarios but the unseen ones, a
+  *specialist* on the one that it is measured in. All others are *classical*.
+- **Yours**: a further file in either folder adds a row or a column. `beamenv benchmark --submit mine` puts a trained agent of
+  yours through every scenario and enters it on the [leaderboard](leaderboard.md).
 """
+PICTURE = "![J / J₀ of controllers in every scenario; lower is better](images/benchmark.png)"
+FOLDED = "The tables are folded: a click opens one. An agent has a row for all its training runs together."
 
 
 def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
@@ -35,9 +46,48 @@ def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
 
 
 def page(table: BenchmarkTable, command: str) -> str:
-    """The page: how it was made, the picture, and the table."""
-    made = f"Made by\n\n```sh\n{command}\n```\n\nwith {in_a_line(table.configuration['versions'])}."
-    return f"{INTRODUCTION}\n{made}\n\n![J over J without control](images/benchmark.png)\n\n{RULE}\n\n{markdown(table)}"
+    """The page: what the words mean, findings and picture, what they rest on, and folded the numbers."""
+    parts = [
+        INTRODUCTION.strip(),
+        definitions(table),
+        findings_table(table).markdown(2),
+        f"{PICTURE}\n\n{RULE}",
+        *(section(table).markdown(2) for section in (agents_and_laws, leaders, scores, headroom)),
+        f"## All numbers\n\n{FOLDED}",
+        *overviews(table),
+        *scenarios(table),
+        *remarks("What was left out", [escaped(each) for each in table.left_out]),
+        *remarks("What went wrong", [f"{escaped(where)}: {escaped(told)}" for where, told in table.sentences.items()]),
+        f"## How it was made\n\n```sh\n{command}\n```\n\nwith {in_a_line(table.configuration['versions'])}.",
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def definitions(table: BenchmarkTable) -> str:
+    """What the words mean, as a table; what only who looks closer needs is folded."""
+    more = folded("Further words and rules", _dictionary(details()))
+    return f"## What the words mean\n\n{_dictionary(terms(table))}\n\n{more}"
+
+
+def _dictionary(meanings: Mapping[str, str]) -> str:
+    return markdown_table(["word", "meaning"], list(meanings.items()))
+
+
+def overviews(table: BenchmarkTable) -> list[str]:
+    """J / J₀ of every controller in every scenario, a folded table for each split."""
+    splits = by_split(table)
+    names = {split: [name for name, each in splits.items() if each == split] for split in dict.fromkeys(splits.values())}
+    return [folded(f"J / J₀: {split}, {len(found)} scenarios", overview(table, found)) for split, found in names.items()]
+
+
+def scenarios(table: BenchmarkTable) -> list[str]:
+    """Every estimate, a folded table for each scenario."""
+    return [folded(f"Every estimate: {name}", scenario_table(table.within(name))) for name in table.scenarios]
+
+
+def remarks(heading: str, lines: Sequence[str]) -> list[str]:
+    """A folded list; nothing without any."""
+    return [folded(heading, "\n".join(f"- {line}" for line in lines))] if lines else []
 
 
 def in_a_line(versions: Mapping[str, str]) -> str:

@@ -9,22 +9,33 @@ from train.controllers.tiers import tiers_told
 
 
 def legend(table: BenchmarkTable) -> str:
-    """Paragraphs on the estimates, on blades that fail, on the score, and on tiers."""
-    return "\n\n".join([estimates(table), failures.RULE, score.RULE, tiers()])
+    """Paragraphs on all of it."""
+    return "\n\n".join(f"{term}: {meaning}" for term, meaning in (terms(table) | details()).items())
 
 
-def estimates(table: BenchmarkTable) -> str:
-    """What each column is, and what its interval."""
+def terms(table: BenchmarkTable) -> dict[str, str]:
+    """What the words mean that a reader needs, in order."""
     first, last = table.configuration["seeds"]
-    return (
-        f"J₀ is J without control on the same episodes: {last - first + 1} held-out seeds, {first} to {last}, equal for every "
-        "controller. J / J₀: ratio of the means over seeds and training runs. IQM: interquartile mean of J / J₀, seed by seed and "
-        f"run by run. Brackets: {100 * CONFIDENCE:.0f} % bootstrap intervals, {RESAMPLES} resamples of seeds and of training runs. "
-        "P(J < LQG's): probability of improvement, ties half. An episode is unstable if the blade fails under the controller, or "
-        f"if J > {UNSTABLE:g} J₀. Settling, peaks and effort are means over episodes."
-    )
+    return {
+        "J": "the cost of an episode, ∫(xᵀQx + uᵀRu) dt: vibration energy plus actuator energy. Lower is better.",
+        "J₀": f"J without control on the same episodes: {last - first + 1} held-out random seeds, {first} to {last}, equal for "
+        "every controller.",
+        "J / J₀": "ratio of the means over seeds and training runs: 1 is as good as no control.",
+        "[low, high]": f"{100 * CONFIDENCE:.0f} % bootstrap interval, {RESAMPLES} resamples of seeds and of training runs. Two "
+        "controllers are compared in pairs, seed by seed; one is below another where the whole interval of the difference is "
+        "below zero.",
+        "unstable": f"an episode in which the blade fails under the controller, or J > {UNSTABLE:g} J₀.",
+        "tier": f"{tiers_told()} The best of a tier is that of all its kinds.",
+        "score": score.RULE,
+    }
 
 
-def tiers() -> str:
-    """What the tiers are, and how they are compared."""
-    return f"{tiers_told()} The best of a tier is that of all its kinds."
+def details() -> dict[str, str]:
+    """What only who looks closer needs."""
+    return {
+        "Score, in detail": score.DETAILS,
+        "Saved and lost blades": failures.RULE,
+        "IQM": "interquartile mean of J / J₀, seed by seed and run by run: the mean of the middle half.",
+        "P(J < LQG's)": "probability that J is below LQG's on the same seed; ties count half.",
+        "Settling, peaks, effort": "means over episodes.",
+    }

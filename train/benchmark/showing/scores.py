@@ -8,9 +8,10 @@ from train.benchmark.table import BenchmarkTable
 from train.shared.markdown import escaped
 
 HEADROOM = (
-    "How far the least J of tiers 0 to 2, of all kinds and the least on these very seeds, is from that of clairvoyant, in pairs. "
-    "Below zero it is ahead of it."
+    "What is left to gain: J / J₀ of the best controller of tiers 0 to 2, of any kind and on these very seeds, less that of "
+    "clairvoyant, which is told each episode's truth; in pairs. Below zero it is ahead of clairvoyant."
 )
+SCORES = "Of every controller that was measured in all scenarios of a split that have a score."
 
 
 def scores(table: BenchmarkTable) -> Section:
@@ -25,8 +26,8 @@ def scores(table: BenchmarkTable) -> Section:
         own = {each.split: each for each in found if each.controller == name}
         one = next(iter(own.values()))
         rows.append([*words(name, one.tier, one.kind), *(entry for split in splits for entry in _entries(own.get(split)))])
-    text = "\n".join(f"- {escaped(one.split)}: {_over(one)}." for one in splits.values())
-    return Section("Score over scenarios", text, headings, rows, 3)
+    over = "\n".join(f"- {escaped(one.split)}: {_over(one)}." for one in splits.values())
+    return Section("Score over scenarios", f"{SCORES}\n\n{over}", headings, rows, 3)
 
 
 def _over(one: Aggregate) -> str:

@@ -34,12 +34,12 @@ class Section:
     words: int
     """Columns of text."""
 
-    def markdown(self) -> str:
-        """Heading, text and table; empty without rows."""
+    def markdown(self, level: int = 3) -> str:
+        """Heading of a level, text and table; empty without rows."""
         if not self.rows:
             return ""
         table = markdown_table(self.headings, [[each.text for each in row] for row in self.rows], self.words)
-        return f"### {escaped(self.heading)}\n\n{self.text}\n\n{table}"
+        return f"{'#' * level} {escaped(self.heading)}\n\n{self.text}\n\n{table}"
 
 
 def words(*texts: object) -> list[Entry]:

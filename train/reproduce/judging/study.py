@@ -112,7 +112,7 @@ class Study:
     @property
     def heading(self) -> str:
         """Name and title: "Table 3.4: …", "Graded walls: …"."""
-        return f"{self.name.capitalize().replace('-', ' ')}: {self.title}"
+        return f"{called(self.name)}: {self.title}"
 
     @property
     def tabulated(self) -> bool:
@@ -153,6 +153,11 @@ class Study:
         if set(keys) != set(outcome.evidence):
             raise ValueError(f"evidence of {self.name} = {sorted(outcome.evidence)} must be for {sorted(keys)}.")
         return judged(self.statements, outcome.evidence)
+
+
+def called(name: str) -> str:
+    """A study's name as one says it: "Table 3.4", "Graded walls"."""
+    return name.capitalize().replace("-", " ")
 
 
 def judged(statements: Sequence[Statement], evidence: Mapping[str, Any]) -> dict[str, Judgement]:

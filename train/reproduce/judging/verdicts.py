@@ -233,7 +233,7 @@ class Holds(Rule):
         held = float(evidence.mean())
         verdict = Verdict.REPRODUCED if held == 1.0 else Verdict.TREND if held >= self.share else Verdict.NOT_REPRODUCED
         ours = f"holds in {int(round(evidence.sum()))} of {evidence.size} cases"
-        return Judgement(verdict, "holds in all cases", ours, percent(1.0 - held) + " do not")
+        return Judgement(verdict, "holds in all cases", ours, exceptions(evidence))
 
     def _words(self) -> str:
         return f"reproduced if it holds in every case, trend from {percent(self.share)} of them"
@@ -247,7 +247,7 @@ class WhateverIsOpen(Rule):
         held = float(evidence.mean())
         verdict = Verdict.REPRODUCED if held == 1.0 else Verdict.NOT_REPRODUCED if held == 0.0 else Verdict.UNTESTABLE
         ours = f"holds for {int(round(evidence.sum()))} of {evidence.size} choices"
-        return Judgement(verdict, "holds", ours, percent(1.0 - held) + " do not")
+        return Judgement(verdict, "holds", ours, exceptions(evidence))
 
     def _words(self) -> str:
         return "reproduced if it holds whatever is left open, not reproduced if it never does, cannot be tested if that decides"
@@ -264,10 +264,17 @@ def span(shares: Array) -> str:
     return f"{low:+.3g} %" if np.isclose(low, high) else f"{low:+.3g} … {high:+.3g} %"
 
 
+def exceptions(evidence: Array) -> str:
+    """How many of the ones and zeros are zero, in words."""
+    fail = evidence.size - int(round(evidence.sum()))
+    return f"{fail or 'no'} exception{'' if fail == 1 else 's'}"
+
+
 def listed(values: Array, unit: str) -> str:
     """A few numbers in full, many by their count."""
-    text = ", ".join(f"{value:.5g}" for value in values) if len(values) <= 6 else f"{len(values)} numbers (see the CSV)"
-    return f"{text} {unit}".rstrip()
+    if len(values) > 6:
+        return f"{len(values)} numbers{f' in {unit}' if unit else ''}"
+    return f"{', '.join(f'{value:.5g}' for value in values)} {unit}".rstrip()
 
 
 def deviations(off: Array) -> str:

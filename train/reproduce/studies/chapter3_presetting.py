@@ -10,7 +10,7 @@ from beamenv.structure.sweep import frequency_sweep
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Small
 from train.reproduce.studies.chapter3_pretwist import ANGLES_DEG, NEWMARK, STEP
-from train.reproduce.studies.chapter3_taper import TURN_DEG, WHY_TURN, stiffness_panels
+from train.reproduce.studies.chapter3_taper import TURN_DEG, WHY_TURN, stiffness_panels, turning_panels
 from train.reproduce.studies.parameter_studies import (
     PLY_ANGLES_DEG,
     SPEEDS,
@@ -63,7 +63,7 @@ def preset_over_ply_angle(model: Model) -> Outcome:
         "second": along_parameter(loci, [1]),
         "turn": turns_at(loci, PLY_ANGLES_DEG, TURN_DEG),
     }
-    return Outcome(evidence, locus_panels(list(preset(model)), PLY_ANGLES_DEG, "ply angle (°)", loci))
+    return Outcome(evidence, turning_panels(list(preset(model)), loci))
 
 
 def preset_stiffness(model: Model) -> Outcome:

@@ -22,6 +22,7 @@ from train.reproduce.studies.parameter_studies import (
 )
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.equations import HOST
+from train.reproduce.thesis.points import on_x
 
 ANGLES_DEG = (0.0, 30.0, 60.0, 90.0)
 PRINTED_CROSSOVER = 120.0
@@ -64,7 +65,8 @@ def pretwist_over_speed(model: Model) -> Outcome:
         "lag-at-rest": loci[:, 0, 1][None],
         "shallow": first_two[1:].ravel(),
     }
-    return Outcome(evidence, locus_panels(list(beams), SPEEDS, "speed (rad/s)", loci))
+    first, *others = locus_panels(list(beams), SPEEDS, "speed (rad/s)", loci)
+    return Outcome(evidence, [on_x(first, PRINTED_CROSSOVER), *others])
 
 
 def crossover(speeds: np.ndarray, one: np.ndarray, other: np.ndarray) -> float:

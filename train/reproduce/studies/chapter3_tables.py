@@ -8,9 +8,13 @@ from beamenv.structure.model import DEFAULT_TERMS
 from train.figures.figure import Curve, Panel
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Holds, Matches, percent
+from train.reproduce.studies.parameter_studies import ORDINALS
 from train.reproduce.thesis import Model, printed_table
 from train.reproduce.thesis.equations import HOST, PRINTED_Q12, SIX_TERMS
 from train.reproduce.thesis.frequencies import (
+    CHORD_TO_WALL,
+    PRESETTINGS_DEG,
+    SPEEDS,
     chandra_chopra,
     convergence,
     convergence_best_fit,
@@ -18,6 +22,7 @@ from train.reproduce.thesis.frequencies import (
     printed_presettings,
     wall_thickness,
 )
+from train.reproduce.thesis.points import SIGNS, with_points
 from train.reproduce.thesis.printed import numbers
 from train.reproduce.thesis.readings import read_by
 
@@ -34,15 +39,22 @@ def table_3_1(model: Model) -> Outcome:
     printed = np.column_stack([numbers("table-3.1", f"omega{mode}") for mode in (1, 2, 3)])
     terms = np.arange(1.0, 11.0)
     names = [f"mode {mode}" for mode in (1, 2, 3)]
+    frequencies = [Curve(terms, ours[:, k], names[k]) for k in range(3)]
+    beside = Panel("frequencies", "number of terms", "natural frequency (rad/s)", frequencies)
+    for k, sign in enumerate(SIGNS[:3]):
+        beside = with_points(beside, terms, printed[:, k], sign)
     panels = [
-        Panel(
-            who,
-            "number of terms",
-            "above ten terms (%)",
-            [excess(terms, values[:, k], names[k]) for k in range(3)],
-            logarithmic=True,
-        )
-        for who, values in ((THESIS, printed), (OURS, ours))
+        beside,
+        *(
+            Panel(
+                f"convergence, {who}",
+                "number of terms",
+                "above ten terms (%)",
+                [excess(terms, values[:, k], names[k]) for k in range(3)],
+                logarithmic=True,
+            )
+            for who, values in ((OURS, ours), (THESIS, printed))
+        ),
     ]
     first = ours[:, 0]
     evidence = {
@@ -86,7 +98,17 @@ def table_3_2(model: Model) -> Outcome:
         names, columns[THESIS], ours, {"experiment": columns["experiment"], "Chandra & Chopra": columns["theory"]}, "Hz"
     )
     evidence = {THESIS: ours, "theory": ours, "experiment": ours, "speed": ours.reshape(3, 2)}
-    return Outcome(evidence, result.panels, header=result.header, rows=result.rows)
+    panels = [validation_panel(model, columns[THESIS]), *result.panels]
+    return Outcome(evidence, panels, header=result.header, rows=result.rows)
+
+
+def validation_panel(model: Model, printed: np.ndarray) -> Panel:
+    """Our frequencies of Chandra and Chopra's box over speed, with the (6,) printed at two speeds."""
+    speeds = np.linspace(0.0, 1000.0, 9)
+    found = chandra_chopra(model, speeds).reshape(3, -1)
+    curves = [Curve(speeds, found[k], name) for k, name in enumerate(("flap 1", "lag 1", "flap 2"))]
+    panel = Panel("frequencies", "speed (rev/min)", "natural frequency (Hz)", curves)
+    return with_points(panel, np.tile([0.0, 1000.0], 3), printed)
 
 
 def table_3_3(model: Model) -> Outcome:
@@ -105,7 +127,28 @@ def table_3_3(model: Model) -> Outcome:
         "third-at-200": ours[doubted],
         "third-at-200-oh": ours[doubted],
     }
-    return Outcome(evidence, result.panels, header=result.header, rows=result.rows)
+    panels = [*presetting_panels(model, printed), *result.panels]
+    return Outcome(evidence, panels, header=result.header, rows=result.rows)
+
+
+def presetting_panels(model: Model, printed: np.ndarray) -> list[Panel]:
+    """Each of three frequencies over speed, a curve for each presetting, with those printed (16, 3)."""
+    speeds = np.linspace(0.0, SPEEDS[-1], 21)
+    found = presetting_and_speed(model, usual_terms(model), speeds).reshape(len(speeds), len(PRESETTINGS_DEG), 3)
+    at = np.repeat(SPEEDS, len(PRESETTINGS_DEG))
+    return [
+        with_points(
+            Panel(
+                f"{ORDINALS[mode]} frequency",
+                "speed (rad/s)",
+                "natural frequency (rad/s)",
+                [Curve(speeds, found[:, k, mode], f"γ = {angle:g}°") for k, angle in enumerate(PRESETTINGS_DEG)],
+            ),
+            at,
+            printed[:, mode],
+        )
+        for mode in range(3)
+    ]
 
 
 def usual_terms(model: Model) -> int:
@@ -130,7 +173,10 @@ def table_3_4(model: Model) -> Outcome:
     misprinted = np.abs(wall_thickness(read_by(model, (PRINTED_Q12,))) / printed - 1.0).max()
     note = f"With Q22 in place of Q12 in Q̄12, as Eq. 4.5 has it, they would be up to {percent(misprinted)} off: the thesis did not "
     notes = [f"{note}compute with it."]
-    return Outcome(evidence, result.panels, header=result.header, rows=result.rows, notes=notes)
+    curves = [Curve(np.array(CHORD_TO_WALL, dtype=float), by_mode[:, k], f"ω{k + 1}") for k in range(3)]
+    panel = Panel("frequencies", "c/h", "natural frequency (rad/s)", curves)
+    panels = [with_points(panel, np.repeat(CHORD_TO_WALL, 3), printed), *result.panels]
+    return Outcome(evidence, panels, header=result.header, rows=result.rows, notes=notes)
 
 
 def column(table: str, name: str) -> tuple[float, ...]:

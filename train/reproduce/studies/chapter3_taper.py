@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -24,9 +24,11 @@ from train.reproduce.studies.parameter_studies import (
     turns_at,
     worst_newmark_error,
 )
+from train.reproduce.studies.responses import ForcedResponses
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import bending_stiffness
 from train.reproduce.thesis.equations import HOST, TURNING, UNIFORM_TENSION
+from train.reproduce.thesis.points import on_x, with_points
 
 TAPERED = (*HOST, UNIFORM_TENSION)
 TAPERS = (1.0, 2.0, 3.0, 4.0)
@@ -72,7 +74,12 @@ def over_ply_angle(model: Model) -> Outcome:
         [frequency_sweep(list(tapered(model, angle, 30.0).values()), [model.speed], 2)[:, 0] for angle in PLY_ANGLES_DEG], axis=1
     )
     evidence = {"taper": (loci[1:] > loci[:1]).astype(float), "turn": turns_at(loci, PLY_ANGLES_DEG, TURN_DEG)}
-    return Outcome(evidence, locus_panels(list(tapered(model)), PLY_ANGLES_DEG, "ply angle (°)", loci))
+    return Outcome(evidence, turning_panels(list(tapered(model)), loci))
+
+
+def turning_panels(labels: list[str], loci: np.ndarray) -> list[Panel]:
+    """Frequencies (labels, angles, modes) over ply angle, with the one at which the thesis has them turn."""
+    return [on_x(panel, TURN_DEG) for panel in locus_panels(labels, PLY_ANGLES_DEG, "ply angle (°)", loci)]
 
 
 def stiffness_panels(labels: list[str], values: np.ndarray) -> list[Panel]:
@@ -95,7 +102,7 @@ def stiffness(model: Model) -> Outcome:
         [[bending_stiffness(beam) for beam in tapered(model, angle, 30.0).values()] for angle in PLY_ANGLES_DEG]
     ).transpose(1, 0, 2)
     evidence = {"taper": along_parameter(values, [0, 1]), "turn": turns_at(values, PLY_ANGLES_DEG, TURN_DEG)}
-    return Outcome(evidence, stiffness_panels(list(tapered(model)), values))
+    return Outcome(evidence, [on_x(panel, TURN_DEG) for panel in stiffness_panels(list(tapered(model)), values)])
 
 
 def forced(model: Model) -> Outcome:
@@ -107,6 +114,7 @@ def forced(model: Model) -> Outcome:
         for name, responses in (("uniform", uniform), ("falling with the chord", pressure))
         for response in responses.values()
     ]
+    panels.append(peak_panel(uniform, pressure))
     cases = [*uniform.values(), *pressure.values()]
     evidence = {
         "peak": [bool(np.all(np.diff(case.peaks) < 0.0)) for case in cases],
@@ -119,6 +127,17 @@ def forced(model: Model) -> Outcome:
         "newmark": worst_newmark_error(uniform),
     }
     return Outcome(evidence, panels, {"points": "Newmark, thesis' constants"})
+
+
+def peak_panel(uniform: Mapping[str, ForcedResponses], pressure: Mapping[str, ForcedResponses]) -> Panel:
+    """Peaks over that of the uniform blade, with those printed."""
+    curves = [
+        Curve(np.array(TAPERS), response.peaks / response.peaks[0], f"{direction}, {spread}", line)
+        for spread, line, found in (("uniform", "solid", uniform), ("falling with the chord", "dashed", pressure))
+        for direction, response in found.items()
+    ]
+    panel = Panel("largest tip displacement", "taper η", "over that of η = 1", curves)
+    return with_points(panel, TAPERS, (1.0, *PRINTED_PEAKS))
 
 
 SHAPE_STATEMENTS = (

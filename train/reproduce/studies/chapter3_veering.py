@@ -14,6 +14,7 @@ from train.reproduce.judging.study import WITH_AND_WITHOUT, Outcome, Statement, 
 from train.reproduce.judging.verdicts import Holds, Matches
 from train.reproduce.studies.parameter_studies import ORDINALS
 from train.reproduce.thesis import Model
+from train.reproduce.thesis.points import on_x, with_points
 from train.reproduce.thesis.shapes import STATIONS, normalised
 from train.reproduce.thesis.veering import LAG_EXTENSION, Veering, exchange, locate_veering
 
@@ -23,6 +24,8 @@ NEAR = np.linspace(300.0, 1300.0, 201)
 LOWER_LOCI = (1, 3)
 """Second lag with first extension, third lag with second extension: the lower locus of each pair (the third locus lies between)."""
 PRINTED = (430.0, 925.0)
+PRINTED_CRITICAL = (1480.0,)
+"""rad/s, where the first frequency is zero."""
 CLOSE = 50.0
 """rad/s on either side of a veering: the "small change in rotational speed" that ought to exchange the modes."""
 
@@ -51,6 +54,7 @@ def loci(model: Model) -> Outcome:
     panel = Panel(
         "lag and extension", "speed (rad/s)", "natural frequency (rad/s)", curves, marked=[*(v.speed for v in found), critical]
     )
+    panel = with_points(on_x(panel, *PRINTED), PRINTED_CRITICAL, (0.0,))
     rows = [["critical speed", f"{critical:.2f}", ""]]
     rows += [[f"veering {k + 1}", f"{v.speed:.1f}", f"{v.gap:.1f}"] for k, v in enumerate(found)]
     rows += [[f"crossing {k + 1} without coupling", f"{speed:.1f}", "0"] for k, speed in enumerate(crossings)]
@@ -168,7 +172,7 @@ STUDIES = (
             Statement(
                 "critical",
                 "The first frequency becomes zero at about 1480 rad/s",
-                Matches((1480.0,), 0.02, 0.10, "rad/s"),
+                Matches(PRINTED_CRITICAL, 0.02, 0.10, "rad/s"),
                 "The extension's stiffness is used up at Ω* = (π/2L)√(a11/b1) for every hub radius; the thesis reads its value "
                 "off the plot.",
             ),

@@ -19,6 +19,7 @@ from train.reproduce.judging.verdicts import Small
 from train.reproduce.studies.closed_loop import Response, blade, patches, simulate, weighed
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.equations import CONTROLLED, HOST, together
+from train.reproduce.thesis.points import on_x
 from train.reproduce.thesis.response import free_motion
 
 Array = NDArray[np.float64]
@@ -117,7 +118,8 @@ def convergence(enough: int, pretwist_deg: float, presetting_deg: float) -> Call
             return Outcome(evidence, [])
         config = blade(model, model.blade(30.0, pretwist_deg=pretwist_deg, presetting_deg=presetting_deg), patches(ganged=True))
         truncated = truncation_errors(build_plant(with_modes(config, REFERENCE_MODES)))
-        panels = [*few_modes_panels(found), *error_panels(tip, voltage, truncated)]
+        controlled, opened = error_panels(tip, voltage, truncated)
+        panels = [*few_modes_panels(found), on_x(controlled, enough), opened]
         rows = [
             [r, f"{t:.4g}", f"{v:.4g}", 2 * r, *(f"{values[k]:.4g}" for values in truncated.values())]
             for k, (r, t, v) in enumerate(zip(MODES, tip, voltage, strict=True))

@@ -21,6 +21,7 @@ from train.reproduce.thesis import Model
 from train.reproduce.thesis.bending_stiffness import shear_bending_stiffness
 from train.reproduce.thesis.configurations import built
 from train.reproduce.thesis.equations import HOST, MFC_DENSITY
+from train.reproduce.thesis.points import on_x
 
 Array = NDArray[np.float64]
 
@@ -84,7 +85,7 @@ def over_ply_angle(rotating: bool) -> Callable[[Model, Mapping[Any, Any]], Outco
         }
         if rotating:
             evidence["alike"] = (np.sign(change[:2]) == np.sign(at_rest[1:3] / at_rest[:1] - 1.0)).astype(float)
-        panels = change_panels(PLY_ANGLES_DEG, "ply angle (°)", found)
+        panels = [on_x(panel, TURN_DEG) for panel in change_panels(PLY_ANGLES_DEG, "ply angle (°)", found)]
         rows = frequency_rows(PLY_ANGLES_DEG, found)
         return Outcome(evidence, panels, {}, ["ply angle (°)", *HEADER], rows, [added_mass(model)])
 
@@ -129,7 +130,7 @@ def shear_bending(model: Model) -> Outcome:
         for taper, mine, theirs in zip(TAPERS, values, thesis, strict=True)
         for row, line in ((mine, "solid"), (theirs, "dotted"))
     ]
-    panel = Panel("ã2 at mid-span", "ply angle (°)", "ã2 (kN m)", curves)
+    panel = on_x(Panel("ã2 at mid-span", "ply angle (°)", "ã2 (kN m)", curves), TURN_DEG)
     beyond = PLY_ANGLES_DEG >= TURN_DEG
     return Outcome(
         {"falls": np.abs(values[:, beyond])},

@@ -10,6 +10,7 @@ from beamenv.blade.layouts import Side
 from train.figures.figure import Curve, Panel
 from train.reproduce.studies.placement_study import SPEEDS, TableRow
 from train.reproduce.thesis import printed_table
+from train.reproduce.thesis.points import printed as points
 
 TRACE = {"actuators": "tr(P)", "sensors": "tr(S)"}
 NUMBERS = {("actuators", "four"): "table-6.1", ("sensors", "four"): "table-6.2"}
@@ -44,11 +45,11 @@ def four_panels(side: Side, rows: Sequence[TableRow]) -> list[Panel]:
         printed = [each for each in printed_table(NUMBERS[side, "four"]) if float(each["speed"]) == row.speed]
         ordinal = np.arange(1.0, row.count + 1.0)
         curves = []
-        for name, line, found in (("GA", "solid", row.ga), ("SQP", "dashed", row.sqp)):
-            stated = np.array([float(each[f"{name.lower()}_position"]) for each in printed])
+        for name, line, sign, found in (("GA", "solid", "circle", row.ga), ("SQP", "dashed", "square", row.sqp)):
+            stated = [float(each[f"{name.lower()}_position"]) for each in printed]
             curves += [
-                Curve(stated, ordinal, f"{name}, thesis", line),
                 Curve(np.array(found.positions), ordinal, f"{name}, ours", line),
+                points(stated, ordinal, name, sign, line),
             ]
         panels.append(
             Panel(f"{row.speed:g} rad/s", "root-side edge from the root (m)", f"number of the {side[:-1]}", curves, whole=True)
@@ -88,6 +89,6 @@ def all_panels(side: Side, rows: Sequence[TableRow]) -> list[Panel]:
         printed = [each for each in printed_table(NUMBERS[side, "all"]) if float(each["speed"]) == speed]
         stated = np.array([[float(each["sqp_position"]), float(each["count"]) + 0.1] for each in printed]).T
         ours = np.array([(at, row.count - 0.1) for row in rows if row.speed == speed for at in row.both.positions]).T
-        curves = [Curve(stated[0], stated[1], "thesis", "points"), Curve(ours[0], ours[1], "ours", "points")]
+        curves = [Curve(ours[0], ours[1], "ours", "points"), points(*stated)]
         panels.append(Panel(f"{speed:g} rad/s", "root-side edge from the root (m)", f"number of {side}", curves, whole=True))
     return panels

@@ -33,6 +33,7 @@ from train.reproduce.studies.placement_study import Layouts, convergence, depth,
 from train.reproduce.studies.printed_layouts import UNPRINTED, with_printed_optimum
 from train.reproduce.thesis import Model
 from train.reproduce.thesis.equations import CONTROLLED, HOST, together
+from train.reproduce.thesis.points import on_y
 from train.reproduce.thesis.readings import read_by
 
 Array = NDArray[np.float64]
@@ -48,6 +49,8 @@ PULSES = (0.02, 0.05)
 LATER = 0.1
 """s after which voltages count as later ones."""
 GENERATIONS, LAST_GENERATIONS = 50, 10
+PRINTED_PEAKS = (429.0, 468.64)
+"""V on the fourth actuator of Figure 6.5, initial and optimal."""
 
 
 def placed_blade(model: Model, pretwist_deg: float = 0.0) -> BladeConfig:
@@ -93,7 +96,9 @@ def untwisted_response(model: Model, by_twist: Mapping[float, Layouts]) -> Outco
     layouts = by_twist[0.0]
     found = [struck(model, layouts.initial, layouts.optimal, pulse) for pulse in PULSES]
     notes = [positions_in_words(layouts), voltages_in_words(found[0])]
-    return Outcome(pulse_evidence(model, layouts.initial, layouts.optimal, found), response_panels(found[0]), notes=notes)
+    *panels, fourth = response_panels(found[0])
+    panels.append(on_y(fourth, *PRINTED_PEAKS))
+    return Outcome(pulse_evidence(model, layouts.initial, layouts.optimal, found), panels, notes=notes)
 
 
 def printed_response(model: Model) -> Mapping[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -41,22 +42,24 @@ def convergence_best_fit(model: Model) -> Array:
     return np.asarray(tried[np.abs(tried / printed - 1.0).max(axis=1).argmin()])
 
 
-def chandra_chopra(model: Model) -> Array:
-    """(6,), Hz: flap 1, lag 1 and flap 2, each at rest and at 1000 rev/min (Table 3.2), distinguished by their kinetic energy."""
+def chandra_chopra(model: Model, rev_per_min: Sequence[float] | Array = (0.0, 1000.0)) -> Array:
+    """(3 S,), Hz: flap 1, lag 1 and flap 2, each at S speeds (Table 3.2 has two), distinguished by their kinetic energy."""
     beam = built(model.validation_box)
     columns = []
-    for speed in (0.0, 1000.0 * REV_PER_MIN):
-        modes = beam.modes(speed, count=5)
+    for speed in rev_per_min:
+        modes = beam.modes(speed * REV_PER_MIN, count=5)
         flap = [f for f, family in zip(modes.natural_frequencies, modes.families, strict=True) if family == "flap"]
         lag = [f for f, family in zip(modes.natural_frequencies, modes.families, strict=True) if family == "lag"]
         columns.append([flap[0], lag[0], flap[1]])
     return np.array(columns).T.ravel() / (2.0 * np.pi)
 
 
-def presetting_and_speed(model: Model, terms: int) -> Array:
-    """(16, 3), rad/s: Table 3.3, 30° pretwist, θ = 0, rigid in shear, bending without gyroscopic coupling."""
+def presetting_and_speed(model: Model, terms: int, speeds: Sequence[float] | Array = SPEEDS) -> Array:
+    """(4 S, 3), rad/s: Table 3.3, four presettings at S speeds; 30° pretwist, θ = 0, rigid in shear, bending without gyroscopic
+    coupling.
+    """
     beams = [model.beam(0.0, pretwist_deg=30.0, presetting_deg=angle, shear="rigid", terms=terms) for angle in PRESETTINGS_DEG]
-    sweep = frequency_sweep(beams, SPEEDS, 3, BENDING, gyroscopic=False)
+    sweep = frequency_sweep(beams, speeds, 3, BENDING, gyroscopic=False)
     return sweep.transpose(1, 0, 2).reshape(-1, 3)
 
 
