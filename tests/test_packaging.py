@@ -181,8 +181,8 @@ def test_baselines_never_know_environments():
 ROOMS_OF_TRAIN = (
     {"shared"},
     {"workers"},
-    {"controllers", "figures", "speed", "tools"},
-    {"probing"},
+    {"controllers", "figures", "speed"},
+    {"probing", "tools"},
     {"datasets", "export", "identification", "learning", "page", "placement", "reproduce"},
     {"benchmark", "comparison", "explore", "rllib", "tuning"},
     {"cli"},

@@ -95,6 +95,8 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 50, "autoreset_mode": AutoresetMode.NEXT_STEP}
+    controller = ""
+    """Who acts, for the title line of pictures; set it before ``reset``."""
 
     def __init__(
         self,
@@ -201,6 +203,8 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
             self._last = Motion(*(_with(whole, rows, new) for whole, new in zip(self._last, motion, strict=True)))
             info = of_rows(information(motion), rows, self.num_envs)
         if self._pictures is not None:
+            if seed is not None or asked.rows is None:
+                self._pictures.told(self.controller, self.np_random_seed, rows if seed is not None else rows[:0])
             self._pictures.begin(self._blades, self._last, rows)
         return self._shown(self._last.observation), {**info, **self._begun(rows)}
 

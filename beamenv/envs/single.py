@@ -199,7 +199,9 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     - `spread`: of a `plant`, a table of relative half widths, "frequency", "damping", "actuator" and "sensor": each episode has one
       of as many plants within it as `scenario`'s bank holds. Agents train on others than the ones they are judged on.
     - `render_mode`: None, `"rgb_array"` (pictures 540 × 960 from `render`) or `"human"` (a window that shows every step); both
-      need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life.
+      need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life. Deflections are
+      magnified by the largest that the scenario brings about without control. The title names scenario and seed, and before them
+      the controller if the attribute `controller` does.
 
     The control interval is 0.5 ms, a field of the configuration: more than four samples a period of the 11th mode
     (2.7 krad/s), the last one retained.
@@ -242,7 +244,11 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 50}
+    controller = ""
+    """Who acts, for the title line of pictures; set it before ``reset``."""
     _renderer: EpisodeRenderer | None = None
+    _episode = 0
+    """How many have begun since the last seed."""
 
     def __init__(
         self,
@@ -286,6 +292,11 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
         return self._blade.state
 
     @property
+    def coming_loads(self) -> Array:
+        """(2,) N/m, lag and flap: the line loads of the interval to come, hidden from an agent."""
+        return self._blade.coming_loads
+
+    @property
     def design_state(self) -> Array:
         """(d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
         return self._blade.design_state
@@ -306,9 +317,10 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
         super().reset(seed=checked_seed(seed))
         self._generators = [self.np_random]
         self._elapsed = 0
+        self._episode = 1 if seed is not None else self._episode + 1
         motion = self._blade.begin(self._generators, scenario=scenario, initial_state=initial_state)
         if self._renderer is not None:
-            self._renderer.begin(self._instant(motion))
+            self._renderer.begin(self._instant(motion), self._whose())
         info = {**information(motion), **steady_information(self._blade.steady(), self.task.note, self.plant.assumed)}
         return motion.observation.astype(self._dtype), info
 
@@ -345,9 +357,15 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
         return renderer_of(self.task, self.metadata["render_fps"] if self.render_mode == "human" else None)
 
-    def _instant(self, motion: Motion) -> Instant:
-        from beamenv.rendering import Instant
+    def _whose(self) -> str:
+        from beamenv.rendering import of_episode
 
+        return of_episode(self.controller, int(self.np_random_seed), self._episode)
+
+    def _instant(self, motion: Motion) -> Instant:
+        from beamenv.rendering import Instant, gains
+
+        actuators, sensors = gains(self.episode_truth, len(motion.volts), len(motion.observation))
         reading = motion.observation / self.plant.sensor_full_scale if self.task.physical_units else motion.observation
         return Instant(
             state=self.state,
@@ -357,4 +375,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
             volts=motion.volts,
             reading=reading,
             cost_increment=float(motion.cost_increment),
+            load=self.coming_loads,
+            actuator_gain=actuators,
+            sensor_gain=sensors,
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beamenv.rendering.palette import PAPER
+from beamenv.rendering.palette import LIGHT, Theme
 
 Colour = str | Sequence[int]
 Points = NDArray[np.float64] | Sequence[Sequence[float]]
@@ -19,6 +20,8 @@ FINENESS = 2
 """Pixels of the canvas for one of the picture, in each direction."""
 SIZES = {"title": 10.5, "label": 8.5, "note": 8.0, "tick": 7.5, "number": 6.5}
 """Of letters, in points of the picture at 100 dots an inch."""
+NEGATIVE = re.compile(r"(?<![\w-])-(?=[\d.])")
+"""A hyphen that is a sign."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,19 +40,22 @@ class Canvas:
     It writes in the DejaVu Sans that matplotlib brings along: the same letters on every machine.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, theme: Theme = LIGHT, size: tuple[int, int] = (WIDTH, HEIGHT)) -> None:
         import pygame
         from matplotlib import get_data_path
+
+        self.theme, self.size = theme, size
+        width, height = size
 
         pygame.font.init()
         file = f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf"
         self._draw, self._scale = pygame.draw, pygame.transform.smoothscale
         self._fonts = {name: pygame.font.Font(file, round(size * FINENESS * 100 / 72)) for name, size in SIZES.items()}
-        self._fine = pygame.Surface((FINENESS * WIDTH, FINENESS * HEIGHT), depth=32)
+        self._fine = pygame.Surface((FINENESS * width, FINENESS * height), depth=32)
         self._background = self._fine.copy()
-        self._picture = pygame.Surface((WIDTH, HEIGHT), depth=32)
-        self._array = np.empty((HEIGHT, WIDTH, 3), dtype=np.uint8)
-        self._array_surface = pygame.image.frombuffer(self._array.data, (WIDTH, HEIGHT), "RGB")
+        self._picture = pygame.Surface(size, depth=32)
+        self._array = np.empty((height, width, 3), dtype=np.uint8)
+        self._array_surface = pygame.image.frombuffer(self._array.data, size, "RGB")
 
     @property
     def picture(self) -> Any:
@@ -57,19 +63,19 @@ class Canvas:
         return self._picture
 
     def pixels(self) -> NDArray[np.uint8]:
-        """A copy (HEIGHT, WIDTH, 3) of the picture."""
+        """A copy (height, width, 3) of the picture."""
         self._array_surface.blit(self._picture, (0, 0))
         return self._array.copy()
 
     def clear(self) -> None:
         """An empty sheet."""
         self._fine.set_clip(None)
-        self._fine.fill(PAPER)
+        self._fine.fill(self.theme.paper)
 
     def keep(self) -> None:
         """What has been drawn becomes the background."""
         self._background.blit(self._fine, (0, 0))
-        self._scale(self._fine, (WIDTH, HEIGHT), self._picture)
+        self._scale(self._fine, self.size, self._picture)
 
     def open(self, frame: Frame) -> None:
         """The background alone in ``frame``; what is drawn next stays inside it."""
@@ -92,10 +98,41 @@ class Canvas:
 
     def write(self, text: str, x: float, y: float, colour: Colour, size: str, anchor: float = 0.0) -> float:
         """Text whose mid-height is at y and whose left (anchor 0), middle (½) or right end (1) is at x; its width."""
-        written = self._fonts[size].render(text.replace("-", "−"), True, colour)
+        written = self._fonts[size].render(_printed(text), True, colour)
         width, height = written.get_size()
         self._fine.blit(written, (FINENESS * x - anchor * width, FINENESS * y - 0.5 * height))
         return float(width / FINENESS)
+
+    def width(self, text: str, size: str) -> float:
+        """Of a text that would be written."""
+        return float(self._fonts[size].size(_printed(text))[0] / FINENESS)
+
+    def fitted(self, text: str, size: str, width: float) -> str:
+        """The text, or as much of its beginning as is no wider, with … behind it."""
+        if self.width(text, size) <= width:
+            return text
+        kept = next((k for k in range(len(text) - 1, 0, -1) if self.width(text[:k].rstrip() + "…", size) <= width), 0)
+        return text[:kept].rstrip() + "…"
+
+    def wrapped(self, text: str, size: str, width: float, lines: int) -> list[str]:
+        """The text in so many lines at most, broken between words, each no wider; what is too much ends in …."""
+        found, rest = [""], text.split()
+        while rest:
+            longer = f"{found[-1]} {rest[0]}".strip()
+            if found[-1] and self.width(longer, size) > width:
+                if len(found) == lines:
+                    found[-1] = self.fitted(" ".join([found[-1], *rest]), size, width)
+                    break
+                found.append("")
+                continue
+            found[-1] = longer
+            rest.pop(0)
+        return [self.fitted(each, size, width) for each in found]
+
+
+def _printed(text: str) -> str:
+    """What has no sign, such as the end of a line, is left blank."""
+    return NEGATIVE.sub("−", "".join(letter if letter.isprintable() else " " for letter in text))
 
 
 def _fine(frame: Frame) -> tuple[int, int, int, int]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from beamenv.rendering.canvas import Canvas
 from beamenv.rendering.history import History, Instant
 from beamenv.rendering.installed import check_installed
+from beamenv.rendering.titles import in_a_line, named_scenario
 from beamenv.rendering.window import Window
 from beamenv.task import Task
 
@@ -23,6 +24,8 @@ class EpisodeRenderer(ABC):
     """
 
     _history: History
+    _whose = ""
+    """Who acts and which episode it is, as the title says it."""
 
     def __init__(self, task: Task, rate: float | None = None) -> None:
         check_installed()
@@ -33,11 +36,11 @@ class EpisodeRenderer(ABC):
         self._rest()
 
     def __getstate__(self) -> tuple[Any, ...]:
-        return self._task, self._rate, self._history
+        return self._task, self._rate, self._history, self._whose
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         """Surfaces and windows are made anew: they cannot be copied."""
-        task, rate, history = state
+        task, rate, history, self._whose = state
         self.__init__(task, rate)  # type: ignore[misc]
         self._history = history
 
@@ -53,8 +56,14 @@ class EpisodeRenderer(ABC):
     def _paint(self) -> None:
         """Draw the last instant recorded."""
 
-    def begin(self, first: Instant) -> None:
-        """Start an episode."""
+    @property
+    def title(self) -> str:
+        """Scenario, controller and seed, as far as they are known."""
+        return in_a_line(named_scenario(self._task.scenario), self._whose)
+
+    def begin(self, first: Instant, whose: str = "") -> None:
+        """Start an episode; ``whose`` says who acts, and which it is."""
+        self._whose = whose
         self._history.begin(first)
         self._rest()
         self._show()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 
 WINDOW = 0.2
 """s of the episode that a picture shows."""
+
+
+NOTHING = np.zeros(0)
 
 
 class Instant(NamedTuple):
@@ -31,6 +34,17 @@ class Instant(NamedTuple):
     """(p,) sensor outputs in full scales."""
     cost_increment: float
     """J s."""
+    load: Array = NOTHING
+    """(k,), N/m: the line loads in lag and flap of the interval to come."""
+    actuator_gain: Array = NOTHING
+    """(m,): 0 of a dead one; of none if all are sound."""
+    sensor_gain: Array = NOTHING
+    """(p,), likewise."""
+
+
+def gains(truth: Array, actuators: int, sensors: int) -> tuple[Array, Array]:
+    """(…, m) of actuators and (…, p) of sensors, of what ``Blades.truth`` tells."""
+    return truth[..., 2 : 2 + actuators], truth[..., 2 + actuators : 2 + actuators + sensors]
 
 
 class History:
@@ -94,5 +108,5 @@ class History:
 
 def _copied(instant: Instant) -> Instant:
     """An instant that stays as it is whatever becomes of the arrays it came in."""
-    state, tip, volts, reading = (each.copy() for each in (instant.state, instant.tip_displacement, instant.volts, instant.reading))
-    return instant._replace(state=state, tip_displacement=tip, volts=volts, reading=reading)
+    arrays: dict[str, Any] = {name: value.copy() for name, value in instant._asdict().items() if isinstance(value, np.ndarray)}
+    return instant._replace(**arrays)

@@ -11,15 +11,16 @@ from beamenv.rendering.canvas import Frame
 from beamenv.rendering.charts import Chart, round_above
 from beamenv.rendering.episode_renderer import EpisodeRenderer
 from beamenv.rendering.history import WINDOW, History
-from beamenv.rendering.palette import INK, QUIET, line_colours
+from beamenv.rendering.palette import line_colours
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 
-READINGS = Chart("sensor readings, full scale", Frame(60.0, 84.0, 400.0, 170.0), -1.0, 1.0)
-DISPLACEMENTS = Chart("displacement, m", Frame(60.0, 310.0, 400.0, 170.0), -1.0, 1.0)
-VOLTAGES = Chart("voltage, V", Frame(540.0, 84.0, 400.0, 170.0), -1.0, 1.0)
-COST = Chart("running cost J", Frame(540.0, 310.0, 400.0, 170.0), 0.0, 1.0)
-CLOCK = Frame(20.0, 14.0, 400.0, 26.0)
+READINGS = Chart("sensor readings, full scale", Frame(66.0, 100.0, 372.0, 160.0), -1.0, 1.0)
+DISPLACEMENTS = Chart("displacement, m", Frame(66.0, 318.0, 372.0, 160.0), -1.0, 1.0)
+VOLTAGES = Chart("voltage, V", Frame(546.0, 100.0, 372.0, 160.0), -1.0, 1.0)
+COST = Chart("running cost J", Frame(546.0, 318.0, 372.0, 160.0), 0.0, 1.0)
+CLOCK = Frame(20.0, 36.0, 400.0, 18.0)
+LEFT, WIDEST = 24.0, 912.0
 POINTS = 401
 """A curve is drawn through so many instants at most: more than it has pixels."""
 
@@ -46,7 +47,9 @@ class ModelRenderer(EpisodeRenderer):
 
     def _lay_out(self) -> None:
         self._canvas.clear()
-        self._canvas.write(f"sensors: {', '.join(self._titles)}", 24.0, 52.0, QUIET, "note")
+        canvas, theme = self._canvas, self._canvas.theme
+        canvas.write(canvas.fitted(self.title, "title", WIDEST), LEFT, 22.0, theme.ink, "title")
+        canvas.write(canvas.fitted(f"sensors: {', '.join(self._titles)}", "note", WIDEST), LEFT, 66.0, theme.quiet, "note")
         for chart in self._charts:
             chart.draw_axes(self._canvas, dated=chart.place.top > VOLTAGES.place.top or len(self._charts) == 3)
         self._canvas.keep()
@@ -62,9 +65,10 @@ class ModelRenderer(EpisodeRenderer):
             self._charts = charts
             self._lay_out()
         for chart, values in zip(self._charts, shown, strict=True):
-            colours = line_colours(values.shape[1]) if values.shape[1] > 1 else [INK]
-            labels = [f"{k + 1}" for k in range(values.shape[1])] if values.shape[1] > 1 else [f"{values[0, 0]:.3g}"]
-            chart.draw(self._canvas, history.ages[newest_first], values, colours, labels)
+            several, ages, ink = values.shape[1] > 1, history.ages[newest_first], self._canvas.theme.ink
+            colours = line_colours(values.shape[1]) if several else [ink]
+            names = [f"{k + 1}" if several else "" for k in range(values.shape[1])]
+            chart.draw(self._canvas, ages, values, colours, names, [] if several else [f"{values[0, 0]:.3g}"])
         self._canvas.open(CLOCK)
-        self._canvas.write(f"t = {history.time:.4g} s", 24.0, 28.0, INK, "title")
+        self._canvas.write(f"t = {history.time:.4g} s", LEFT, 45.0, self._canvas.theme.ink, "label")
         self._canvas.develop(CLOCK)

@@ -15,19 +15,23 @@ from beamenv.rendering.charts import Chart, draw_scale, round_above
 from beamenv.rendering.deformation import Deformation
 from beamenv.rendering.episode_renderer import EpisodeRenderer
 from beamenv.rendering.history import WINDOW, History
-from beamenv.rendering.palette import FLAP, INK, LAG, OUTPUT_SCALE, QUIET, VOLTAGE_SCALE, line_colours
-from beamenv.rendering.scene import Scene
+from beamenv.rendering.largest import largest_of
+from beamenv.rendering.palette import OUTPUT_SCALE, VOLTAGE_SCALE, line_colours
+from beamenv.rendering.scene import PLACE, Scene, Values
 from beamenv.sensors.kinds import PatchSensor, Sensor
 from beamenv.simulation.blades import reward_scale
 from beamenv.task import Task
 
 Array = NDArray[np.float64]
 
-TIP = Chart("tip displacement", Frame(682.0, 44.0, 262.0, 118.0), -1.0, 1.0)
-VOLTAGES = Chart("voltage, V", Frame(682.0, 208.0, 262.0, 118.0), -1.0, 1.0)
-COST = Chart("running cost J, mJ s", Frame(682.0, 372.0, 262.0, 118.0), 0.0, 1.0)
-VOLTAGE_KEY, OUTPUT_KEY = Frame(26.0, 494.0, 240.0, 9.0), Frame(346.0, 494.0, 240.0, 9.0)
-CLOCK = Frame(20.0, 14.0, 300.0, 26.0)
+TIP = Chart("tip", Frame(682.0, 44.0, 230.0, 118.0), -1.0, 1.0)
+VOLTAGES = Chart("voltage, V", Frame(682.0, 208.0, 230.0, 118.0), -1.0, 1.0)
+COST = Chart("running cost J, mJ s", Frame(682.0, 372.0, 230.0, 118.0), 0.0, 1.0)
+VOLTAGE_KEY, OUTPUT_KEY = Frame(34.0, 494.0, 232.0, 9.0), Frame(354.0, 494.0, 232.0, 9.0)
+LEFT, TITLE_AT, CLOCK_AT, NOTES_AT = 24.0, 22.0, 45.0, (66.0, 81.0)
+"""Pixels: of the letters left of the charts."""
+WIDEST = PLACE.width - LEFT
+CLOCK = Frame(20.0, 36.0, 606.0, 18.0)
 CURVE_POINTS = 401
 """A curve is drawn through so many instants at most: more than it has pixels."""
 
@@ -37,7 +41,8 @@ class BladeRenderer(EpisodeRenderer):
 
     def _prepare(self, task: Task) -> None:
         config, plant = task.config, task.plant
-        self._scene = Scene(task.blade)
+        self._largest = largest_of(task)
+        self._scene = Scene(task.blade, self._largest.deflection)
         self._deformation = Deformation(task, self._scene.solid.stations)
         self._actuators = len(config.patches.actuator_positions(config.beam.length))
         self._walls = {side: _in_words([group.wall for group in config.patches.groups(side)]) for side in SIDES}
@@ -45,9 +50,8 @@ class BladeRenderer(EpisodeRenderer):
         self._limit = float(drive_limit(plant).max())
         self._colours = line_colours(plant.B.shape[1])
         usual_cost = 0.1 * WINDOW / config.control_interval * reward_scale(plant)
-        usual_tip = self._scene.solid.reference_deflection
-        unit, self._per_metre, self._digits = ("mm", 1e3, 1) if usual_tip > 1e-3 else ("µm", 1e6, 0)
-        tip = replace(TIP, title=f"{TIP.title}, {unit}").up_to(round_above(self._per_metre * usual_tip))
+        unit, self._per_metre = ("mm", 1e3) if self._largest.deflection > 2e-3 else ("µm", 1e6)
+        tip = replace(TIP, title=f"{TIP.title}, {unit}").up_to(round_above(self._per_metre * self._largest.deflection))
         self._least = tip, COST.up_to(round_above(1e3 * usual_cost))
         self._history = History(config.control_interval)
         self._stride = -(-(round(WINDOW / config.control_interval) + 1) // CURVE_POINTS)
@@ -59,22 +63,26 @@ class BladeRenderer(EpisodeRenderer):
         """Draw what seldom changes."""
         canvas, self._tip, self._voltages, self._cost = self._canvas, tip, VOLTAGES.up_to(self._limit), cost
         canvas.clear()
-        magnified = self._scene.solid.magnification
-        canvas.write(f"deflection × {magnified:,.0f}   ·   dashes: at rest", 24.0, 52.0, QUIET, "note")
-        sensors = f"; sensors lie in {self._walls['sensors']} and are drawn below it" if self._walls["sensors"] else ""
-        canvas.write(
-            f"actuators lie in {self._walls['actuators']}{sensors}{self._others}",
-            24.0,
-            68.0,
-            QUIET,
-            "note",
-        )
+        canvas.write(canvas.fitted(self.title, "title", WIDEST), LEFT, TITLE_AT, canvas.theme.ink, "title")
+        for line, y in zip(canvas.wrapped(self._note(), "note", WIDEST, len(NOTES_AT)), NOTES_AT, strict=False):
+            canvas.write(line, LEFT, y, canvas.theme.quiet, "note")
         draw_scale(canvas, VOLTAGE_KEY, VOLTAGE_SCALE, self._limit, "actuator voltage, V")
         draw_scale(canvas, OUTPUT_KEY, OUTPUT_SCALE, 1.0, "sensor output, full scale")
         for chart in (self._tip, self._voltages, self._cost):
             chart.draw_axes(canvas, dated=chart is self._cost)
         self._scene.draw_rest(canvas)
         canvas.keep()
+
+    def _note(self) -> str:
+        """What the drawing means."""
+        sensors = f"; sensors lie in {self._walls['sensors']} and are drawn below it" if self._walls["sensors"] else ""
+        dead = (
+            "; crosses: dead" if self._task.scenario.failures.dead_actuators or self._task.scenario.failures.faulty_sensors else ""
+        )
+        return (
+            f"deflection × {self._scene.solid.magnification:,.0f}; dashes: at rest; arrow: line load; "
+            f"actuators lie in {self._walls['actuators']}{sensors}{self._others}{dead}"
+        )
 
     def _paint(self) -> None:
         history, last = self._history, self._history.last
@@ -84,16 +92,17 @@ class BladeRenderer(EpisodeRenderer):
         charts = self._tip.reaching(1.02 * np.abs(tip).max()), self._cost.reaching(1.02 * costs[0, 0])
         if charts != (self._tip, self._cost):
             self._lay_out(*charts)
-        volts_now = np.broadcast_to(last.volts, (self._actuators,))  # ganged actuators share one voltage
-        self._scene.draw(
-            self._canvas, self._deformation.displacement(last.state, last.plant), volts_now / self._limit, last.reading
-        )
-        labels = [f"{name} {value:+.{self._digits}f}" for name, value in zip(("lag", "flap"), tip[0], strict=True)]
-        self._tip.draw(self._canvas, ages, tip, [LAG, FLAP], labels)
+        theme, load = self._canvas.theme, last.load[:2] if len(last.load) >= 2 else np.zeros(2)
+        displacement = self._deformation.displacement(last.state, last.plant)
+        self._scene.draw(self._canvas, displacement, Values.of(last, self._actuators, self._limit), load / self._largest.load)
+        digits = max(0, 2 - int(np.floor(np.log10(self._tip.high))))
+        told = [f"{name} {round(value, digits) + 0.0:+.{digits}f}" for name, value in zip(("lag", "flap"), tip[0], strict=True)]
+        self._tip.draw(self._canvas, ages, tip, [theme.lag, theme.flap], ["lag", "flap"], told)
         self._voltages.draw(self._canvas, ages, volts, self._colours, [f"{k + 1}" for k in range(len(self._colours))])
-        self._cost.draw(self._canvas, ages, costs, [INK], [f"{costs[0, 0]:.3g}"])
+        self._cost.draw(self._canvas, ages, costs, [theme.ink], [""], [f"{costs[0, 0]:.3g}"])
         self._canvas.open(CLOCK)
-        self._canvas.write(f"t = {1e3 * history.time:.1f} ms    Ω = {last.speed:.0f} rad/s", 24.0, 28.0, INK, "title")
+        clock = f"t = {1e3 * history.time:.1f} ms    Ω = {last.speed:.0f} rad/s    load {np.linalg.norm(load):.3g} N/m"
+        self._canvas.write(clock, LEFT, CLOCK_AT, theme.ink, "label")
         self._canvas.develop(CLOCK)
 
 

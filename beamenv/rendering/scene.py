@@ -13,28 +13,30 @@ from beamenv.blade.build import Blade
 from beamenv.blade.shape import edges, sides
 from beamenv.rendering.camera import Camera, faces_camera
 from beamenv.rendering.canvas import Canvas, Frame
-from beamenv.rendering.palette import INK, OUTPUT_SCALE, PALE, QUIET, VOLTAGE_SCALE, colour_table, colours_of
+from beamenv.rendering.history import Instant
+from beamenv.rendering.palette import INK, LIGHT, OUTPUT_SCALE, VOLTAGE_SCALE, Shades, Theme, colour_table, colours_of
 from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid, Pose
 
 Array = NDArray[np.float64]
 
-PLACE = Frame(8.0, 78.0, 618.0, 386.0)
+PLACE = Frame(8.0, 100.0, 618.0, 368.0)
 MARGIN = 8.0
-REACH = 2.2
+REACH = 1.1
 """Times ``SHOWN_DEFLECTION`` that the tip may move up or down without leaving the scene."""
 SENSOR_DROP = 0.15
 """Share of the span by which sensors are drawn below the bottom wall they lie in: nobody could see them there."""
 TOWARDS, DISTANCE = np.array([-0.80, 0.62, -0.62]), 1.5
 """Where the eye is from the middle of the blade, with positive pretwist: the direction (lag, flap, span) and how many spans."""
-LIGHT = np.array([0.75, 0.65, -0.45])
+SUN = np.array([0.75, 0.65, -0.45])
 """Towards the light, with positive pretwist: it turns the top wall from it."""
 RIBS = 4
 """At every n-th of the even stations a line across the walls shows how they bend and twist."""
 RIB = 0.90
 """Share of a wall's brightness that a rib has."""
-BODY = np.array([92.0, 104.0, 118.0]), np.array([205.0, 212.0, 220.0])
-HUB = np.array([40.0, 49.0, 59.0]), np.array([92.0, 104.0, 117.0])
-"""Colours in the shade and in the light."""
+ARROW, ARROW_AT = 0.17, 0.88
+"""Shares of the span: how long the largest load is drawn, and where."""
+HEAD, SHAFT, SHORTEST = 9.0, 2.0, 4.0
+"""Pixels: of an arrow's head and shaft, and below which none is drawn."""
 HUB_LENGTH = 0.1
 """Share of the span that the hub is long, at most."""
 DARK = 0.7
@@ -44,6 +46,9 @@ POINT = 5.0
 DIAMOND = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 NARROW = 8.0
 """Height, px, below which a patch has no room for its number."""
+CROSS = 2.0
+"""Width, px, of the lines that cross out what is dead."""
+NO_LOAD = np.zeros(2)
 
 
 class Face(NamedTuple):
@@ -58,11 +63,34 @@ class Face(NamedTuple):
     """Whether a line is drawn along its far station."""
 
 
-class Scene:
-    """Draws a ``BladeSolid`` on a canvas."""
+class Values(NamedTuple):
+    """What patches and sensors of a blade are worth now."""
 
-    def __init__(self, blade: Blade) -> None:
-        self.solid = BladeSolid(blade)
+    volts: Array
+    """(a,), −1 … 1."""
+    outputs: Array
+    """(s,) readings, −1 … 1."""
+    dead_actuators: NDArray[np.bool_]
+    """(a,)."""
+    dead_sensors: NDArray[np.bool_]
+    """(s,)."""
+
+    @classmethod
+    def of(cls, instant: Instant, actuators: int, limit: float) -> Values:
+        """Of an instant: voltages as shares of ``limit`` (V); ganged actuators share one, and sound is what nothing is said of."""
+        readings = len(instant.reading)
+        dead_actuators = instant.actuator_gain == 0.0 if len(instant.actuator_gain) else np.zeros(1, dtype=bool)
+        dead_sensors = instant.sensor_gain == 0.0 if len(instant.sensor_gain) else np.zeros(readings, dtype=bool)
+        volts, dead = (np.broadcast_to(each, (actuators,)) for each in (instant.volts / limit, dead_actuators))
+        return cls(volts, instant.reading, dead, dead_sensors)
+
+
+class Scene:
+    """Draws a ``BladeSolid`` on a canvas, in a part of it."""
+
+    def __init__(self, blade: Blade, largest: float | None = None, place: Frame = PLACE, theme: Theme = LIGHT) -> None:
+        self.solid, self._place, self._theme = BladeSolid(blade, largest), place, theme
+        self._length = blade.config.beam.length
         beam = blade.config.beam
         length = beam.length
         self._drop = np.array([0.0, -SENSOR_DROP * length, 0.0])
@@ -73,7 +101,7 @@ class Scene:
         self._ribs = set(self.solid.even[RIBS::RIBS].tolist())
         middle = np.radians(beam.presetting_deg + 0.5 * beam.pretwist_deg)
         side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])  # look at the side that the top wall is turned to
-        self._light = side * LIGHT / np.linalg.norm(LIGHT)
+        self._light = side * SUN / np.linalg.norm(SUN)
         ends = np.concatenate([each[-1] for each in self._rest.bodies])
         tip = [ends + np.array([0.0, reach * SHOWN_DEFLECTION * length, 0.0]) for reach in (-REACH, REACH)]
         points = [*self._rest.bodies, self._rest.sensors + self._drop, *held, *tip]
@@ -81,72 +109,103 @@ class Scene:
             np.concatenate([each.reshape(-1, 3) for each in points]),
             towards=side * TOWARDS,
             distance=DISTANCE * length,
-            frame=Frame(PLACE.left + MARGIN, PLACE.top + MARGIN, PLACE.width - 2.0 * MARGIN, PLACE.height - 2.0 * MARGIN),
+            frame=Frame(place.left + MARGIN, place.top + MARGIN, place.width - 2.0 * MARGIN, place.height - 2.0 * MARGIN),
         )
         self._above = faces_camera(self._camera.project(self._rest.sensors)[0])  # in an upper face, where most lie in a lower one
-        self._hub = self._seen(held, HUB)
+        self._hub = self._seen(held, theme.hub)
         self._voltage_colours, self._output_colours = colour_table(VOLTAGE_SCALE), colour_table(OUTPUT_SCALE)
 
     def draw_rest(self, canvas: Canvas) -> None:
         """Where the blade is when nothing moves it."""
+        pale = self._theme.pale
         for body, sharp in zip(self._rest.bodies, self._edges, strict=True):
             lines, _ = self._camera.project(body[self.solid.even])
             for line in lines[:, sharp].transpose(1, 0, 2):
                 for start in range(0, len(line) - 1, 2):
-                    canvas.line(line[start : start + 2], PALE)
-            canvas.line(lines[-1], PALE, closed=True)
+                    canvas.line(line[start : start + 2], pale)
+            canvas.line(lines[-1], pale, closed=True)
 
-    def draw(self, canvas: Canvas, displacement: Array, volts: Array, outputs: Array) -> None:
-        """The blade displaced by lag, flap (m) and twist (rad), (3, stations), with the colours of ``volts`` (a,) and ``outputs``
-        (s,), both −1 … 1.
+    def draw(self, canvas: Canvas, displacement: Array, values: Values, load: Array = NO_LOAD) -> None:
+        """The blade displaced by lag, flap (m) and twist (rad), (3, stations), its patches in the colours of ``values``, dead ones
+        crossed out, and the line load in lag and flap (2,) as a share of the scenario's largest.
         """
-        canvas.open(PLACE)
+        canvas.open(self._place)
         pose = self.solid.pose(displacement)
         self._draw_leaders(canvas, pose)
-        patches, points = self._read_by_patches(outputs), outputs[self.solid.places.of_points]
-        self._draw_patches(canvas, self._dropped(pose), colours_of(self._output_colours, patches), patches)
-        _draw_faces(canvas, [face for body in pose.bodies for face in self._seen([sides(body), body[-1:]], BODY, body.shape[1])])
-        self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts)
-        self._draw_points(canvas, pose.points, colours_of(self._output_colours, points))
+        volts, outputs = values.volts, values.outputs
+        patches, points = self._by_patches(outputs), outputs[self.solid.places.of_points]
+        dead = self._by_patches(values.dead_sensors.astype(float)) > 0.0
+        self._draw_patches(canvas, self._dropped(pose), colours_of(self._output_colours, patches), patches, dead)
+        body = self._theme.body
+        _draw_faces(canvas, [face for each in pose.bodies for face in self._seen([sides(each), each[-1:]], body, each.shape[1])])
+        self._draw_patches(canvas, pose.actuators, colours_of(self._voltage_colours, volts), volts, values.dead_actuators)
+        self._draw_points(
+            canvas, pose.points, colours_of(self._output_colours, points), values.dead_sensors[self.solid.places.of_points]
+        )
         _draw_faces(canvas, self._hub)
-        canvas.develop(PLACE)
+        self._draw_load(canvas, pose, load)
+        canvas.develop(self._place)
+
+    def _draw_load(self, canvas: Canvas, pose: Pose, load: Array) -> None:
+        """An arrow that ends in the middle of the blade, near its tip: a uniform line load pushes there as everywhere."""
+        station = int(np.argmin(np.abs(self.solid.stations - ARROW_AT * self._length)))
+        end = np.mean([each[station].mean(axis=0) for each in pose.bodies], axis=0)
+        begin = end - np.array([*(ARROW * self._length * np.clip(load, -1.0, 1.0)), 0.0])
+        (tail, head), _ = self._camera.project(np.stack([begin, end]))
+        size = float(np.linalg.norm(head - tail))
+        if not size > SHORTEST:
+            return
+        ahead = (head - tail) / size
+        across, back = np.array([-ahead[1], ahead[0]]), head - min(HEAD, size) * ahead
+        canvas.line([tail.tolist(), back.tolist()], self._theme.load, SHAFT)
+        canvas.polygon(np.stack([head, back + 0.45 * HEAD * across, back - 0.45 * HEAD * across]), self._theme.load)
 
     def _dropped(self, pose: Pose) -> Array:
         """(s, 4, 3): sensor patches where they are drawn, with the side up that is seen at rest."""
         return np.where(self._above[:, None, None], pose.sensors, pose.sensors[:, ::-1]) + self._drop
 
-    def _read_by_patches(self, outputs: Array) -> Array:
+    def _by_patches(self, outputs: Array) -> Array:
         """(s,): 0 of a patch that is not read."""
         channels = self.solid.places.of_patches
         return np.where(channels < 0, 0.0, outputs[channels])
 
-    def _draw_points(self, canvas: Canvas, points: Array, colours: list[list[int]]) -> None:
+    def _draw_points(self, canvas: Canvas, points: Array, colours: list[list[int]], dead: NDArray[np.bool_]) -> None:
         """Diamonds where sensors sit that are no patches, seen through the blade."""
         if not len(points):
             return
         middles, _ = self._camera.project(points)
-        for middle, colour in zip(middles, colours, strict=True):
+        for middle, colour, is_dead in zip(middles, colours, dead.tolist(), strict=True):
             canvas.polygon(middle + POINT * DIAMOND, colour)
-            canvas.line(middle + POINT * DIAMOND, INK, closed=True)
+            canvas.line(middle + POINT * DIAMOND, self._theme.outline, closed=True)
+            if is_dead:
+                self._cross_out(canvas, middle + POINT * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]]))
 
     def _draw_leaders(self, canvas: Canvas, pose: Pose) -> None:
         """From where sensors lie to where they are drawn."""
         middles = pose.sensors.mean(axis=1)
         ends, _ = self._camera.project(np.stack([middles, middles + self._drop], axis=1))
         for leader in ends:
-            canvas.line(leader, QUIET)
+            canvas.line(leader, self._theme.quiet)
 
-    def _draw_patches(self, canvas: Canvas, patches: Array, colours: list[list[int]], values: Array) -> None:
-        """Patches (k, 4, 3), those whose upper side is seen, numbered from the root."""
+    def _draw_patches(
+        self, canvas: Canvas, patches: Array, colours: list[list[int]], values: Array, dead: NDArray[np.bool_]
+    ) -> None:
+        """Patches (k, 4, 3), those whose upper side is seen, numbered from the root; dead ones are crossed out."""
         corners, _ = self._camera.project(patches)
         for k in np.flatnonzero(faces_camera(corners)).tolist():
             canvas.polygon(corners[k], colours[k])
-            canvas.line(corners[k], INK, closed=True)
-            if np.linalg.norm(corners[k, 3] - corners[k, 0]) > NARROW:
+            canvas.line(corners[k], self._theme.outline, closed=True)
+            if dead[k]:
+                self._cross_out(canvas, corners[k])
+            elif np.linalg.norm(corners[k, 3] - corners[k, 0]) > NARROW:
                 x, y = corners[k].mean(axis=0).tolist()
                 canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
 
-    def _seen(self, surfaces: Sequence[Array], colours: tuple[Array, Array], corners_around: int = 0) -> list[Face]:
+    def _cross_out(self, canvas: Canvas, corners: Array) -> None:
+        for line in (corners[[0, 2]], corners[[1, 3]]):
+            canvas.line(line, INK, CROSS)
+
+    def _seen(self, surfaces: Sequence[Array], colours: Shades, corners_around: int = 0) -> list[Face]:
         """Faces (k, c, 3) of some surfaces, the farthest first, those turned away left out. Of a body with so many corners around
         there are ribs across the first surface.
         """
@@ -160,11 +219,11 @@ class Scene:
             found += map(Face, far, corners[seen], shades, ribbed)
         return sorted(found, key=attrgetter("depth"), reverse=True)
 
-    def _shades(self, faces: Array, shade: Array, lit: Array) -> list[list[int]]:
+    def _shades(self, faces: Array, shade: Sequence[float], lit: Sequence[float]) -> list[list[int]]:
         normals = np.cross(faces, np.roll(faces, -1, axis=1)).sum(axis=1)
         size = np.maximum(np.linalg.norm(normals, axis=-1), np.finfo(np.float64).tiny)  # of nothing between stations all but one
         brightness = 0.5 + 0.5 * (normals @ self._light) / size
-        colours: list[list[int]] = np.rint(shade + brightness[:, None] * (lit - shade)).astype(int).tolist()
+        colours: list[list[int]] = np.rint(np.array(shade) + brightness[:, None] * np.subtract(lit, shade)).astype(int).tolist()
         return colours
 
 

@@ -11,22 +11,14 @@ from beamenv.blade.build import Blade
 from beamenv.blade.sensor_places import SensorPlaces
 from beamenv.blade.shape import bodies, magnification, patch, quadrilaterals
 from beamenv.patches.layout import SIDES
-from beamenv.plant.plant import Plant
-from beamenv.scenarios.load_cases import static_deflection
+from beamenv.rendering.largest import usual_of
 
 Array = NDArray[np.float64]
 
 STATIONS = 49
 """Evenly spaced; the edges of the patches are stations too."""
-SHOWN_DEFLECTION = 0.075
-"""Share of the span that the largest static tip deflection under the reference load is drawn as, at most: a step of the
-greatest load of the nominal scenario, with its overshoot, then reaches three times as far."""
-
-
-def reference_deflection(plant: Plant) -> float:
-    """Static tip deflection, m, under the reference load in lag or in flap, whichever is larger."""
-    tip = plant.tip_displacement @ static_deflection(plant, np.diag(np.asarray(plant.reference_load))).T
-    return float(np.linalg.norm(tip, axis=0).max())
+SHOWN_DEFLECTION = 0.15
+"""Share of the span that the scenario's largest deflection of the tip is drawn as, at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,15 +36,16 @@ class Pose:
 
 
 class BladeSolid:
-    """A blade and its patches; ``pose`` bends and twists them, ``magnification`` times larger than life.
+    """A blade and its patches; ``pose`` bends and twists them, ``magnification`` times larger than life: so that the ``largest``
+    deflection (m) of its tip, if None that of a step of the reference load, is drawn as a share of its span.
 
     ``stations`` (m from the root), of which ``even`` indexes evenly spaced ones.
     """
 
-    def __init__(self, blade: Blade) -> None:
+    def __init__(self, blade: Blade, largest: float | None = None) -> None:
         beam, patches = blade.beam, blade.config.patches
-        self.reference_deflection = reference_deflection(blade.plant)
-        self.magnification = magnification(self.reference_deflection, SHOWN_DEFLECTION * beam.length)
+        self.largest = usual_of(blade.plant).deflection if largest is None else largest
+        self.magnification = magnification(self.largest, SHOWN_DEFLECTION * beam.length)
         inlays = [[each for group in patches.groups(side) for each in group.inlays(side, beam.length)] for side in SIDES]
         spans = [np.array([[each.start, each.start + each.length] for each in side]).reshape(-1, 2) for side in inlays]
         self.places = SensorPlaces.on(blade)

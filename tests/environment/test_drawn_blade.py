@@ -15,9 +15,11 @@ pytest.importorskip("pygame")
 
 from beamenv.rendering.camera import Camera, faces_camera
 from beamenv.rendering.canvas import Canvas, Frame
-from beamenv.rendering.palette import VOLTAGE_SCALE, colour_table, colours_of
-from beamenv.rendering.scene import PLACE, Scene
+from beamenv.rendering.largest import largest_of, reference_deflection
+from beamenv.rendering.palette import DARK, INK, LIGHT, VOLTAGE_SCALE, colour_table, colours_of
+from beamenv.rendering.scene import PLACE, Scene, Values
 from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid
+from beamenv.task import resolve_task
 
 
 def test_the_drawn_tip_moves_by_the_magnified_tip_displacement():
@@ -63,10 +65,33 @@ def test_the_solid_has_the_blade_s_pretwist_taper_and_outer_dimensions():
 
 
 @pytest.mark.parametrize("preset", sorted(beamenv.PRESETS))
-def test_the_reference_load_bends_the_drawn_blade_by_a_set_share_of_its_length_or_a_little_less(preset):
-    solid = BladeSolid(Blade(blade_config(preset)))
-    share = solid.magnification * solid.reference_deflection / blade_config(preset).beam.length
+def test_a_step_of_the_reference_load_bends_the_drawn_blade_by_a_set_share_of_its_length_or_a_little_less(preset):
+    blade = Blade(blade_config(preset))
+    share = BladeSolid(blade).magnification * 2.0 * reference_deflection(blade.plant) / blade_config(preset).beam.length
     assert 0.5 * SHOWN_DEFLECTION < share <= SHOWN_DEFLECTION
+
+
+@pytest.mark.parametrize("scenario", ["default", "overload", "white", "rotor"])
+def test_the_largest_deflection_of_a_scenario_is_drawn_as_a_set_share_of_the_span_or_a_little_less(scenario):
+    task = resolve_task(scenario=scenario)
+    largest = largest_of(task)
+    share = BladeSolid(task.blade, largest.deflection).magnification * largest.deflection / task.config.beam.length
+    assert 0.5 * SHOWN_DEFLECTION < share <= SHOWN_DEFLECTION
+
+
+def test_the_largest_deflection_is_that_of_an_episode_left_alone():
+    env, largest = RotatingBeamEnv(scenario="pulse", dtype="float64"), largest_of(resolve_task(scenario="pulse"))
+    found = []
+    for seed in range(4):
+        env.reset(seed=seed)
+        found.append(max(np.linalg.norm(env.step(np.zeros(4))[-1]["tip_displacement"]) for _ in range(200)))
+    assert 0.5 * largest.deflection < max(found) <= largest.deflection * (1.0 + 1e-9)
+    assert largest.load == pytest.approx(45.0, rel=0.2)  # the strongest pulse, and a little white load on it
+
+
+def test_where_nothing_moves_a_blade_it_is_drawn_for_a_step_of_the_reference_load():
+    task = resolve_task(scenario="quiet")
+    assert largest_of(task) == (2.0 * reference_deflection(task.plant), 30.0)
 
 
 def test_a_camera_sees_a_length_in_inverse_proportion_to_its_distance():
@@ -98,18 +123,64 @@ def test_every_actuator_and_sensor_of_every_preset_is_in_the_scene(preset):
         assert (corners <= [PLACE.left + PLACE.width, PLACE.top + PLACE.height]).all()
 
 
+def sheet(scene, values=None, load=(0.0, 0.0), theme=LIGHT):
+    """A blade at rest, its patches worth ``values``, as a picture."""
+    canvas, still = Canvas(theme), np.zeros((3, len(scene.solid.stations)))
+    canvas.clear()
+    scene.draw_rest(canvas)
+    canvas.keep()
+    values = values or Values(np.zeros(4), np.zeros(4), np.zeros(4, dtype=bool), np.zeros(4, dtype=bool))
+    scene.draw(canvas, still, values, np.array(load))
+    return canvas.pixels().astype(int)
+
+
+def test_dead_patches_are_crossed_out_and_no_others():
+    scene = Scene(Blade(blade_config()))
+    dead = np.array([False, True, False, False])
+    sound, crossed = sheet(scene), sheet(scene, Values(np.zeros(4), np.zeros(4), dead, dead[::-1]))
+    changed = np.abs(crossed - sound).max(axis=-1) > 60
+    for patches, gone in ((scene._rest.actuators, dead), (scene._dropped(scene._rest), dead[::-1])):
+        corners, _ = scene._camera.project(patches)
+        for patch, is_dead in zip(corners, gone, strict=True):
+            (left, top), (right, bottom) = patch.min(axis=0).astype(int), patch.max(axis=0).astype(int)
+            assert changed[top : bottom + 1, left : right + 1].any() == is_dead
+            x, y = np.rint(0.75 * patch[0] + 0.25 * patch[2]).astype(int)  # on the diagonal, away from the number
+            ink = np.array([int(INK[k : k + 2], 16) for k in (1, 3, 5)])
+            assert (np.abs(crossed[y - 1 : y + 2, x - 1 : x + 2] - ink).max(axis=-1) < 90).any() == is_dead
+
+
+@pytest.mark.parametrize(("load", "side"), [((0.0, 1.0), 1.0), ((0.0, -1.0), -1.0)])
+def test_an_arrow_pushes_the_blade_the_way_the_load_does(load, side):
+    scene = Scene(Blade(blade_config()))
+    arrow = np.argwhere(np.abs(sheet(scene, load=load) - sheet(scene)).max(axis=-1) > 60)
+    along = np.array([*scene.solid.stations[[0, -1]]])
+    axis, _ = scene._camera.project(np.stack([[0.0, 0.0, z] for z in along]))
+    level = np.interp(arrow[:, 1], axis[:, 0], axis[:, 1])  # y of the blade's axis there; y runs down
+    tail = arrow[np.argmax(side * (arrow[:, 0] - level))]
+    assert side * (tail[0] - np.interp(tail[1], axis[:, 0], axis[:, 1])) > 40.0
+    assert np.min(np.abs(arrow[:, 0] - level)) < 3.0
+
+
+def test_no_load_has_no_arrow_and_a_small_one_a_short_one():
+    scene = Scene(Blade(blade_config()))
+    whole, half, none = ((np.abs(sheet(scene, load=(0.0, x)) - sheet(scene)).max(axis=-1) > 60).sum() for x in (1.0, 0.5, 0.0))
+    assert none == 0 < half < whole
+
+
+def test_a_dark_page_is_dark_but_for_the_blade():
+    picture = sheet(Scene(Blade(blade_config()), theme=DARK), theme=DARK)
+    assert picture[0, 0].tolist() == [13, 17, 23]
+    assert (picture.mean(axis=-1) > 100).mean() < 0.3
+
+
 def test_a_blade_of_any_closed_section_is_drawn_with_its_patches():
     corners = ((0.127, 0.0), (0.09, 0.028), (-0.03, 0.028), (-0.127, 0.0), (-0.03, -0.018), (0.09, -0.018))
     section = PolygonSection(corners, ("nose", "top", "back", "tail", "bottom", "chin"), 0.006)
     blade = Blade(blade_config())
     vars(blade)["beam"] = RotatingBeam(section, Layup.uniform(GRAPHITE_EPOXY, [30.0] * 6), 2.023, 0.2, pretwist_deg=30.0)
-    scene, canvas = Scene(blade), Canvas()
-    canvas.clear()
-    scene.draw_rest(canvas)
-    canvas.keep()
+    scene, sound = Scene(blade), np.zeros(4, dtype=bool)
     still = np.zeros((3, len(scene.solid.stations)))
-    scene.draw(canvas, still, np.array([1.0, -1.0, 1.0, -1.0]), np.zeros(4))
-    picture = canvas.pixels().astype(int)
+    picture = sheet(scene, Values(np.array([1.0, -1.0, 1.0, -1.0]), np.zeros(4), sound, sound))
     corners, _ = scene._camera.project(scene.solid.pose(still).actuators)
     assert faces_camera(corners).all()
     for patch, sign in zip(corners, (1.0, -1.0, 1.0, -1.0), strict=True):

@@ -191,7 +191,7 @@ COMMANDS = {
     "speed": ((), {}, ("--json", "--check"), ("train.cli.speed.measured",)),
     "explore": (
         (),
-        {"--port": "0", "--host": "127.0.0.1", "--preset": "thesis", "--blade": "blade.toml"},
+        {"--port": "0", "--host": "127.0.0.1", "--preset": "thesis", "--speed": "20", "--blade": "blade.toml"},
         (),
         ("train.explore.serve",),
     ),

@@ -1,10 +1,10 @@
 """What the explorer's page asks of its server, and how it refuses."""
 
 from train.explore import app as page
-from train.explore.layout import RANGES
+from train.explore.controls import THESIS_PAGE
 
 CALLBACK = "/_dash-update-component"
-START = [*(entry.value for entry in RANGES.values()), "flap"]
+START = list(THESIS_PAGE.start.values())
 
 
 def check_refused(response, status=(400, 403, 404, 405, 408, 411, 413, 415, 429)):
@@ -17,13 +17,13 @@ def check_refused(response, status=(400, 403, 404, 405, 408, 411, 413, 415, 429)
 
 
 def with_values(asked, **changed):
-    values = dict(zip((*RANGES, "load"), START, strict=True)) | changed
+    values = THESIS_PAGE.start | changed
     return asked | {"inputs": [{"id": "wanted", "property": "data", "value": list(values.values())}]}
 
 
 def nothing(values, *_):
     """In place of a redraw, which takes a while."""
-    outputs = page.outputs().items()
+    outputs = page.quick_outputs().items()
     return {name: [page.no_update] * len(each) if isinstance(each, list) else page.no_update for name, each in outputs}
 
 

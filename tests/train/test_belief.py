@@ -20,7 +20,7 @@ from train.learning.sb3.ppo import PPOSettings, PPOTraining
 from train.learning.sb3.quadratic import Quadratic
 from train.learning.sb3.recurrent_ppo import RecurrentPPOSettings
 from train.learning.sb3.vec_env import TrainingVecEnv
-from train.shared.curve import kept_cost, read_curve, write_curve
+from train.shared.curve import LOOKED, drawn_as, kept_cost, read_curve, write_curve
 
 SHORT = {"duration": 0.01}  # 20 control intervals
 TINY = PPOSettings(
@@ -161,7 +161,12 @@ def test_curves_tell_what_validation_saw_and_the_policy_kept_is_the_best_seen(tm
     write_curve(tmp_path, [(1.0, 10, 1, 0.9, nobody), (2.0, 20, 2, 0.8, 0.5), (3.0, 30, 3, 0.7, 0.6)])
     np.testing.assert_array_equal(read_curve(tmp_path), [(2.0, 20.0, 0.5), (3.0, 30.0, 0.6)])
     assert kept_cost(tmp_path) == 0.5
+    assert drawn_as("ppo", tmp_path) == "ppo"
+    write_curve(tmp_path, [(1.0, 10, 1, 0.9, 0.4), (2.0, 20, 2, 0.8, nobody), (3.0, 30, 3, 0.7, 0.6)], LOOKED)
+    np.testing.assert_array_equal(read_curve(tmp_path), [(1.0, 10.0, 0.4), (3.0, 30.0, 0.6)])
+    assert kept_cost(tmp_path) == 0.6  # who is looked at keeps the last
     write_curve(tmp_path, [(1.0, 10, 1, 0.7, nobody), (2.0, 20, 2, 0.8, nobody)])
+    assert drawn_as("belief", tmp_path) == "belief, in training"
     np.testing.assert_array_equal(read_curve(tmp_path), [(1.0, 10.0, 0.7), (2.0, 20.0, 0.8)])
     assert kept_cost(tmp_path) == 0.8
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 pytest.importorskip("dash", reason="dash is not installed")
 
-from tests.train.explorer import CALLBACK, check_refused, nothing, with_values  # noqa: E402
+from tests.train.explorer import CALLBACK, START, check_refused, nothing, with_values  # noqa: E402
 from train.explore import app as page  # noqa: E402 - they need the package asked for above
-from train.explore.layout import RANGES  # noqa: E402
+from train.explore.controls import RANGES, THESIS_PAGE  # noqa: E402
 from train.explore.requests import LARGEST_BODY  # noqa: E402
 
 
@@ -30,7 +30,7 @@ EDGES = RANGES["actuators"].value
     [
         *(
             {name: wrong}
-            for name in ("ply_angle_deg", "speed", "pretwist_deg", "taper")
+            for name in ("ply_angle_deg", "speed", "pretwist_deg", "taper", "white_load", "actuator_energy_weight")
             for wrong in (None, True, "30", [30.0], {}, -1.0, 1e9, -1e308, math.nan, math.inf, 10**400)
         ),
         *(
@@ -50,6 +50,7 @@ EDGES = RANGES["actuators"].value
             )
         ),
         *({"load": wrong} for wrong in (None, 1, [], {}, "twist", "<script>alert(1)</script>", "flap\n")),
+        *({"actuator": wrong} for wrong in (None, 1, "0", "5", "-1", "1.0", "one")),
     ],
     ids=lambda changed: str(changed)[:40],
 )
@@ -57,6 +58,18 @@ def test_values_that_no_slider_has_are_refused_by_their_names(client, asked, cha
     answer = client.post(CALLBACK, data=json.dumps(with_values(asked, **changed)), content_type="application/json")
     check_refused(answer, [400])
     assert answer.get_data(as_text=True).startswith(next(iter(changed))) or 10**400 in changed.values()
+
+
+def test_what_is_said_of_the_loop_is_asked_for_by_itself(client, asked):
+    output = next(each["output"] for each in client.get("/_dash-dependencies").get_json() if "margins.children" in each["output"])
+    inputs = [{"id": "settled", "property": "data", "value": START}]
+    answer = client.post(CALLBACK, json={"output": output, "inputs": inputs})
+    assert answer.status_code == 200
+    said = answer.get_json()["response"]
+    assert said["lost"]["children"] == "" and said["poles"]["figure"]["data"]
+    crossed = {"output": output, "inputs": [{"id": "wanted", "property": "data", "value": START}]}
+    check_refused(client.post(CALLBACK, json=crossed), [400])
+    check_refused(client.post(CALLBACK, json={**asked, "inputs": inputs}), [400])
 
 
 @pytest.mark.parametrize("key", ["output", "inputs"])
@@ -125,7 +138,7 @@ def check_payload(client, asked, key, value, control):
                 check_refused(answer, [400])
 
 
-@given(st.sampled_from(["output", "inputs", "outputs"]), json_values, st.sampled_from([*RANGES, "load"]))
+@given(st.sampled_from(["output", "inputs", "outputs"]), json_values, st.sampled_from([*THESIS_PAGE.controls]))
 @example("inputs", [{"id": "wanted", "property": "data", "value": None}], "load")
 @settings(max_examples=25, deadline=None, derandomize=True)
 def test_no_payload_is_an_error_of_the_server(client, asked, key, value, control):
@@ -133,7 +146,7 @@ def test_no_payload_is_an_error_of_the_server(client, asked, key, value, control
 
 
 @pytest.mark.slow
-@given(st.sampled_from(["output", "inputs", "outputs"]), json_values, st.sampled_from([*RANGES, "load"]))
+@given(st.sampled_from(["output", "inputs", "outputs"]), json_values, st.sampled_from([*THESIS_PAGE.controls]))
 @settings(max_examples=200, deadline=None, derandomize=True)
 def test_no_payload_of_many_is_an_error_of_the_server(client, asked, key, value, control):
     check_payload(client, asked, key, value, control)

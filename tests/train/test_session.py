@@ -19,6 +19,7 @@ from train.controllers.tiers import told_tier
 from train.learning.checkpoint import read_checkpoint
 from train.learning.job import run
 from train.learning.session import Budget, follow
+from train.learning.validation import Validation
 from train.shared.interruption import Interrupted, ending_as_interrupted
 
 
@@ -260,6 +261,34 @@ def test_runs_side_by_side_are_saved_apart(tmp_path):
         load_policy(tmp_path)
     curves = [(place / "learning.csv").read_text() for place in places]
     assert curves[0] != curves[1]
+
+
+def test_looks_at_a_policy_are_in_its_curve_and_leave_its_weights_alone(tmp_path):
+    several = replace(GRADIENT, settings=replace(GRADIENT.settings, runs=2))
+    alone = run(job(several), tmp_path / "alone", ignore)
+    looked_at = run(replace(job(several), looks=3), tmp_path / "looked", ignore)
+    (task,) = job(several).tasks().values()
+    for one, other in zip(alone, looked_at, strict=True):
+        assert_same(weights(one), weights(other))
+        rows = curve(other)
+        assert [row["updates"] for row in rows if row["looked"] != "nan"] == ["2", "4", "6"]
+        assert float(rows[-1]["looked"]) == pytest.approx(Validation([task]).cost(load_policy(other)), rel=1e-9)
+    assert "looked" not in curve(alone[0])[0]
+
+
+def test_looks_go_on_where_a_training_was_interrupted(tmp_path):
+    whole, rest = (replace(job(GRADIENT), looks=3) for _ in range(2))
+    run(whole, tmp_path / "whole", ignore)
+    run(rest, tmp_path / "parts", interrupted_after(3))
+    run(rest, tmp_path / "parts", ignore, resume=True)
+    seen = [[row["looked"] for row in curve(tmp_path / name)] for name in ("whole", "parts")]
+    assert seen[0] == seen[1]
+
+
+def test_a_training_that_looks_itself_is_not_looked_at(tmp_path):
+    looking = replace(PPO, settings=replace(PPO.settings, validation=3))
+    (place,) = run(replace(job(looking), looks=6), tmp_path, ignore)
+    assert "validation" in curve(place)[0] and "looked" not in curve(place)[0]
 
 
 def test_a_generalist_knows_the_plant_of_every_scenario(tmp_path, monkeypatch):

@@ -173,16 +173,24 @@ def explore(
     port: Annotated[int, typer.Option(help="Where the page is served; 0 takes any free one.")] = 8050,
     host: Annotated[str, typer.Option(help="A loopback address: the page is for this computer alone.")] = "127.0.0.1",
     preset: PresetOption = "thesis",
+    speed: SpeedOption = None,
     blade: BladeOption = None,
 ) -> None:
-    """Serve a page whose sliders redraw a blade's frequencies, mode shapes, damping and step response. Ctrl-C ends it."""
+    """Serve a page that shows a blade and its LQG, and redraws what its controls change. Ctrl-C ends it.
+
+    Frequencies, mode shapes, damping, step response, poles, margins, Bode diagram and singular values, by the blade's geometry,
+    plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file for --blade.
+    """
     with one_sentence():
         check_names(preset, blade=blade)
+        from dataclasses import replace
+
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
         from train.explore import serve
 
-        server = serve(port, host, blade_config(preset, load_config(blade) if blade else None))
+        base = blade_config(preset, load_config(blade) if blade else None)
+        server = serve(port, host, base if speed is None else replace(base, speed=speed))
     name = f"[{host}]" if ":" in host else host
     say(f"http://{name}:{server.port} (Ctrl-C ends it)")
     server.serve_forever()

@@ -33,7 +33,7 @@ from train.learning.recipes import NAMES
 from train.learning.session import Budget
 from train.learning.training import Progress
 from train.shared.claim import NAME, check_nothing_replaced
-from train.shared.curve import read_curve
+from train.shared.curve import drawn_as, read_curve
 from train.shared.files import as_path, read_json, write_json
 from train.shared.held_models import held_models, told_models
 from train.shared.held_out import HELD_OUT, SEEDS, held_out
@@ -42,6 +42,9 @@ from train.shared.lock import alone_in
 
 CLASSICAL = ("none", "velocity", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
 """The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
+
+LOOKS = 12
+"""At the policy on validation seeds, for the learning curve of an agent that never looks itself."""
 
 DRAWN = ("none", "velocity", "positive-position-feedback", "lqg")
 """Whose loops' poles are drawn."""
@@ -86,7 +89,8 @@ class Comparison:
         """The training of an agent."""
         environment = dict(self.environment)
         scenario = environment.pop("scenario", "nominal")
-        return Job(agent, self.recipe(agent), scenario, self.training_seed, Budget(seconds=self.budget[agent]), environment)
+        budget = Budget(seconds=self.budget[agent])
+        return Job(agent, self.recipe(agent), scenario, self.training_seed, budget, environment, looks=LOOKS)
 
 
 def _alone(recipe: Recipe) -> tuple[str, Any]:
@@ -145,7 +149,7 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
         )  # what cannot be compared is refused before anything is written
         with claimed(folder, content):
             agents = {name: trained(comparison, name, folder, envs.unwrapped.task, listener) for name in comparison.budget}
-            curves = {name: read_curve(folder / "agents" / name) for name in agents}
+            curves = {drawn_as(name, folder / "agents" / name): read_curve(folder / "agents" / name) for name in agents}
             evaluations = evaluate_all({**laws, **agents}, envs, comparison, folder, listener, alone)
     finally:
         envs.close()

@@ -32,7 +32,7 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
     columns = 3
     rows = -(-len(evaluations) // columns)
     with plt.rc_context(STYLE):
-        figure = plt.figure(figsize=(11.0, 2.9 * rows), layout="constrained")
+        figure = plt.figure(figsize=(11.0, 3.1 * rows), layout="constrained")
         cells = figure.subfigures(rows, columns, squeeze=False).ravel()
         upper = _cost_panel if not tells_displacements(evaluations[0]) else _tip_panel
         for cell, evaluation in zip(cells, evaluations, strict=False):
@@ -40,7 +40,7 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
             drawn = [upper(evaluation, episode), _voltage_panel(evaluation, episode)]
             for axis, panel in zip(axes, drawn, strict=True):
                 draw_panel(axis, panel)
-            cell.suptitle(f"{plain(evaluation.name)}: J = {_relative(evaluation, episode):.3f} of no control", fontsize=9)
+            cell.suptitle(f"{plain(evaluation.name)}\nJ = {_relative(evaluation, episode):.3f} of no control", fontsize=9)
         for cell in cells[len(evaluations) :]:
             cell.set_facecolor("none")
         entries = handles(drawn)
@@ -102,15 +102,16 @@ def _voltage_panel(evaluation: Evaluation, episode: int) -> Panel:
 
 
 def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) -> Any:
-    """Running cost of each agent over training time, (k, 3) of seconds, steps and cost, against controllers' lines."""
+    """Cost of each agent's policy over training time, (k, 3) of seconds, steps and cost, against controllers' lines."""
     import matplotlib.pyplot as plt
 
     panel = learning_panel(LearningCurves(curves, {f"{name}, held-out episodes": level for name, level in levels.items()}))
     with plt.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
         draw_panel(axis, panel)
-        axis.set(ylabel=f"{panel.y_label}, in training or on validation seeds", ylim=(0.3, panel.y_limits[1]))
-        axis.legend(handles=handles([panel]), loc="upper right")
+        lowest = min(float(np.nanmin(curve.y, initial=np.inf)) for curve in panel.curves)
+        axis.set(ylabel=f"{panel.y_label}\nvalidation episodes, lower is better", ylim=(np.floor(9.0 * lowest) / 10.0, None))
+        axis.legend(handles=handles([panel]), loc="best")
     return figure
 
 

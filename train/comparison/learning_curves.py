@@ -1,6 +1,7 @@
 """How the shipped agents of Stable-Baselines3 learnt: every training run, without exploration, on validation seeds.
 
-``python -m train.comparison.learning_curves`` writes ``learning.png`` into ``docs/images``, or the folder that is its argument.
+``python -m train.comparison.learning_curves`` writes ``learning.png`` and ``learning-dark.png``, for dark pages, into
+``docs/images``, or the folder that is its argument.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from train.controllers.shipped import FOLDER as SHELF
 from train.controllers.shipped import Shipped, shipped
 from train.figures.figure import Curve, Look, Panel
 from train.figures.palette import LINES, NEUTRAL, colour
-from train.figures.paper import STYLE, draw_panel, handles, save
+from train.figures.paper import draw_panel, handles, save_themes, styled
 from train.learning.validation import Validation
 from train.shared.curve import read_curve
 
@@ -30,6 +31,8 @@ AGENTS = ("ppo", "ppo-belief-idle", "ppo-belief", "sac")
 """Whose runs are drawn, where they ship."""
 HIGHEST = 2.5
 """Of J over that of LQG: what is above is a blade that shakes itself."""
+COLUMNS, WIDTH, HEIGHT = 3, 8.4, 2.5
+"""Inches: of the figure, as wide as a page, and of a row."""
 
 
 def reference_cost(scenario: str) -> float:
@@ -41,7 +44,7 @@ def reference_cost(scenario: str) -> float:
 
 def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
     """One for each agent and scenario: J over LQG's, against control intervals, a curve for each run."""
-    panels = []
+    panels: list[Panel] = []
     for agent, scenario in sorted({(run.agent, run.scenario) for run in runs}, key=lambda pair: (AGENTS.index(pair[0]), pair[1])):
         own = [run for run in runs if (run.agent, run.scenario) == (agent, scenario)]
         reference = reference_cost(scenario)
@@ -51,25 +54,26 @@ def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
             look = Look(colour(place), width=1.2)
             curves.append(Curve(seen[:, 1] / 1e6, seen[:, 2] / reference, f"seed {run.seed}", LINES[place % len(LINES)], look))
         end = max(float(curve.x[-1]) for curve in curves)
-        curves.append(Curve(np.array([0.0, end]), np.ones(2), "LQG", "solid", Look(NEUTRAL, width=0.8)))
-        title = f"{agent}, {scenario}"
-        panels.append(Panel(title, "million intervals", "J / J of LQG", curves, x_limits=(0.0, end), y_limits=(0.8, HIGHEST)))
+        level = Curve(np.array([0.0, end]), np.ones(2), "LQG", "solid", Look(NEUTRAL, width=0.8))
+        name = "J / J of LQG" if len(panels) % COLUMNS == 0 else ""
+        x_limits, y_limits, title = (0.0, end), (0.8, HIGHEST), f"{agent}, {scenario}"
+        panels.append(Panel(title, "million intervals", name, [level, *curves], x_limits=x_limits, y_limits=y_limits))
     return panels
 
 
-def learning_curves(runs: Sequence[Shipped]) -> Any:
+def learning_curves(panels: Sequence[Panel], theme: str = "light") -> Any:
     """The figure."""
     import matplotlib.pyplot as plt
 
-    panels = learning_panels(runs)
-    columns = 3
-    rows = -(-len(panels) // columns)
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(rows, columns, figsize=(9.0, 2.7 * rows), layout="constrained", squeeze=False)
+    rows = -(-len(panels) // COLUMNS)
+    with styled(theme):
+        size = (WIDTH, HEIGHT * rows + 0.6)
+        figure, axes = plt.subplots(rows, COLUMNS, figsize=size, layout="constrained", squeeze=False)
         for axis, panel in zip(axes.ravel(), panels, strict=False):
             draw_panel(axis, panel)
         for axis in axes.ravel()[len(panels) :]:
             axis.set_axis_off()
+        figure.suptitle("The policy without exploration on validation episodes: lower is better", fontsize=10, x=0.01, ha="left")
         entries = handles(panels)
         figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
     return figure
@@ -78,7 +82,8 @@ def learning_curves(runs: Sequence[Shipped]) -> Any:
 def main(arguments: Sequence[str] = ()) -> None:
     """Draw what ships."""
     folder = Path(arguments[0]) if arguments else FOLDER
-    save(learning_curves([run for run in shipped(SHELF) if run.agent in AGENTS]), folder / "learning.png")
+    panels = learning_panels([run for run in shipped(SHELF) if run.agent in AGENTS])
+    save_themes(lambda theme: learning_curves(panels, theme), folder / "learning.png")
 
 
 if __name__ == "__main__":

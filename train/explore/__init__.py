@@ -1,6 +1,8 @@
 """``beamenv explore``: a page on this computer whose sliders redraw what the model says of a blade."""
 
-from train.explore.blade import Settings, View, view
+from train.explore.blade import View, view
+from train.explore.loop import Loop, loop
 from train.explore.server import serve
+from train.explore.settings import Settings
 
-__all__ = ["Settings", "View", "serve", "view"]
+__all__ = ["Loop", "Settings", "View", "loop", "serve", "view"]

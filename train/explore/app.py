@@ -1,4 +1,4 @@
-"""The page and its one callback."""
+"""The page and its callbacks."""
 
 from __future__ import annotations
 
@@ -7,20 +7,24 @@ from importlib.resources import files
 from threading import Lock
 from typing import Any
 
-from dash import ClientsideFunction, Dash, Input, Output, html, no_update
+from dash import ClientsideFunction, Dash, Input, Output, State, no_update
 from dash.exceptions import DashException
 from werkzeug.exceptions import HTTPException, NotFound
 from werkzeug.wrappers import Response
 
-from beamenv.configuration import Refused
-from train.explore.blade import CAMPBELL_MODES, Settings, View, view
-from train.explore.figures import campbell_diagram, mode_shape, step_response
-from train.explore.layout import THESIS_PAGE, Page, layout
+from train.explore import figures, loop_figures
+from train.explore.blade import CAMPBELL_MODES, blade_of, view
+from train.explore.controls import THESIS_PAGE, Page
+from train.explore.hertz import hertz
+from train.explore.layout import layout
+from train.explore.loop import loop
+from train.explore.picture import picture, said
 from train.explore.requests import ANSWERED, OnlyThePage, told
+from train.explore.saved import saved
+from train.explore.tables import cost_note, damping_rows, filter_note, heading, margin_rows
 from train.figures.themes import THEMES
 from train.shared.threads import one_thread
 
-SIDES = ("actuators", "sensors")
 SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
 """Ids of the small figures."""
 
@@ -58,16 +62,37 @@ def create_app(page: Page = THESIS_PAGE) -> Dash:
     app.server.register_error_handler(DashException, lambda _: refusal(NotFound()))
     app.server.view_functions["/<path:path>"] = lambda path: refusal(NotFound())  # Dash gives the page under every name
     app.layout = layout(page)
-    app.clientside_callback(
-        ClientsideFunction("explore", "newest"), Output("wanted", "data"), [Input(name, "value") for name in page.controls]
-    )
-    app.clientside_callback(ClientsideFunction("explore", "goOn"), Input("busy", "data"))
-    app.callback(
-        outputs(page), Input("wanted", "data"), running=[(Output("busy", "data"), True, False)], prevent_initial_call=True
-    )(lambda wanted: redraw(**dict(zip(page.controls, wanted, strict=True)), page=page))
-    (callback,) = (name for name in app.callback_map if name.startswith(".."))
-    app.server.wsgi_app = OnlyThePage(app.server.wsgi_app, callback, page)
+    _in_the_browser(app, page)
+    answers = {}
+    for asked, busy, outputs, answer in (
+        ("wanted", "busy", quick_outputs(page), redraw),
+        ("settled", "analysing", thorough_outputs(), analyse),
+    ):
+        before = set(app.callback_map)
+        app.callback(outputs, Input(asked, "data"), running=[(Output(busy, "data"), True, False)], prevent_initial_call=True)(
+            lambda values, answer=answer: answer(page, **dict(zip(page.controls, values, strict=True)))
+        )
+        (output,) = set(app.callback_map) - before
+        answers[output] = asked
+    app.server.wsgi_app = OnlyThePage(app.server.wsgi_app, answers, page)
     return app
+
+
+def _in_the_browser(app: Dash, page: Page) -> None:
+    """What the page does by itself: one list of values for all its controls, its pace, and the buttons."""
+    fields = [field for name, entry in page.controls.items() for field in entry.entries(name)]
+    values = [(name, "value") for name in (*page.controls, *fields)]
+    triggers = [Input("link", "data"), Input("reset", "n_clicks"), *(Input(*value) for value in values)]
+    kept = [State("about", "data"), State("state", "data")]
+    for name, outputs, inputs in (
+        ("settle", [*(Output(*value) for value in values), Output("state", "data")], [*triggers, *kept]),
+        ("newest", Output("wanted", "data"), [Input("state", "data")]),
+        ("rested", Output("settled", "data"), [Input("busy", "data"), State("wanted", "data")]),
+        ("analysed", Output("named", "data"), [Input("analysing", "data")]),
+        ("copied", Output("done", "children"), [Input("copy", "n_clicks")]),
+        ("saved", Output("done", "children", allow_duplicate=True), [Input("save", "n_clicks"), State("file", "data")]),
+    ):
+        app.clientside_callback(ClientsideFunction("explore", name), outputs, *inputs, prevent_initial_call=name == "saved")
 
 
 def refusal(error: HTTPException) -> Response:
@@ -82,18 +107,34 @@ def theme() -> str:
     return ":root{" + "".join(f"--{name}:light-dark({getattr(light, name)},{getattr(dark, name)});" for name in names) + "}"
 
 
-def outputs(page: Page = THESIS_PAGE) -> dict[str, Any]:
-    """What the callback gives, by the names that ``redraw`` uses."""
+def quick_outputs(page: Page = THESIS_PAGE) -> dict[str, Any]:
+    """What is given while a control moves, by the names that ``redraw`` uses."""
     return {
-        "values": [Output(f"{name}-value", "children") for name in page.ranges],
+        "hertz": [Output("speed-value", "children")] if "speed" in page.ranges else [],
         "message": Output("message", "children"),
         "results": Output("results", "hidden"),
+        "file": Output("file", "data"),
+        "save": Output("save", "children"),
+        "picture": Output("picture", "src"),
+        "said": Output("picture", "alt"),
         "campbell": Output("campbell", "figure"),
         "response": Output("response", "figure"),
         "damping": Output("damping", "children"),
         "filter": Output("filter", "children"),
         "shapes": [Output(name, "figure") for name in SHAPES],
         "headings": [Output(f"{name}-heading", "children") for name in SHAPES],
+    }
+
+
+def thorough_outputs() -> dict[str, Any]:
+    """What is given once the controls rest, by the names that ``analyse`` uses."""
+    return {
+        "lost": Output("lost", "children"),
+        "poles": Output("poles", "figure"),
+        "bode": Output("bode", "figure"),
+        "singular": Output("singular", "figure"),
+        "margins": Output("margins", "children"),
+        "cost": Output("cost", "children"),
     }
 
 
@@ -109,52 +150,47 @@ def redraw(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:
 
 def drawn(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]:
     """What ``redraw`` gives, on as many threads as there are."""
-    texts = [entry.text(values[name]) for name, entry in page.ranges.items()]
+    kept = {name: [no_update] * len(each) if isinstance(each, list) else no_update for name, each in quick_outputs(page).items()}
     try:
-        seen = view(settings(**values), page.base)
+        wanted = page.settings(values)
+        seen, blade = view(wanted, page.base), blade_of(wanted, page.base)
     except ValueError as error:
-        kept = dict.fromkeys(("campbell", "response", "damping", "filter"), no_update)
-        rows = {name: [no_update] * CAMPBELL_MODES for name in ("shapes", "headings")}
-        return {"values": texts, "message": str(error), "results": True, **kept, **rows}
+        return {**kept, "message": str(error), "results": True, "file": None}
+    name, text = saved(blade.config)
     return {
-        "values": texts,
+        "hertz": [hertz(seen.speed)] * len(kept["hertz"]),
         "message": "",
         "results": False,
-        "campbell": campbell_diagram(seen),
-        "response": step_response(seen),
+        "file": {"name": name, "text": text},
+        "save": f"Save as {name}",
+        "picture": picture(blade.config, blade.beam),
+        "said": said(blade.config),
+        "campbell": figures.campbell_diagram(seen),
+        "response": figures.step_response(seen),
         "damping": damping_rows(seen),
         "filter": filter_note(seen),
-        "shapes": [mode_shape(seen, mode) for mode in range(CAMPBELL_MODES)],
+        "shapes": [figures.mode_shape(seen, mode) for mode in range(CAMPBELL_MODES)],
         "headings": [heading(seen, mode) for mode in range(CAMPBELL_MODES)],
     }
 
 
-def settings(**values: Any) -> Settings:
-    """The controls' values, with patches in mm, as settings."""
-    for name, value in values.items():
-        if value is None:
-            raise Refused(name, value, "what its control can have")
-    metres = {side: tuple(round(1e-3 * edge, 9) for edge in values[side]) for side in SIDES if side in values}
-    return Settings(**values | metres)
+def analyse(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:
+    """What is said of the loop for the controls' values; where there is none, one sentence beside what was said last."""
+    with ONE_AT_A_TIME, one_thread():
+        return analysed(values, page)
 
 
-def heading(seen: View, mode: int) -> str:
-    """Of one mode's small figure."""
-    return f"{mode + 1} {seen.families[mode]}, {seen.natural_frequencies[mode]:.1f} rad/s"
-
-
-def damping_rows(seen: View) -> list[html.Tr]:
-    """A row a mode: number, family, frequency, damping in per cent."""
-    rows = zip(seen.families, seen.natural_frequencies, 100.0 * seen.damping.free, 100.0 * seen.damping.controlled, strict=True)
-    return [
-        html.Tr([html.Td(cell) for cell in (f"{mode} {family}", f"{frequency:.1f}", f"{free:.2f}", f"{controlled:.2f}")])
-        for mode, (family, frequency, free, controlled) in enumerate(rows, start=1)
-    ]
-
-
-def filter_note(seen: View) -> str:
-    """On the poles that the table does not hold."""
-    return (
-        "Natural frequencies ω, and damping ratios ζ of the blade alone and with LQG: of the regulator's poles. "
-        f"The loop's other poles are its Kalman filter's, whose error decays at {seen.damping.filter_rate:.1f} 1/s or faster."
-    )
+def analysed(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]:
+    """What ``analyse`` gives, on as many threads as there are."""
+    try:
+        closed = loop(page.settings(values), page.base)
+    except ValueError as error:
+        return {**dict.fromkeys(thorough_outputs(), no_update), "lost": str(error)}
+    return {
+        "lost": "",
+        "poles": loop_figures.poles(closed),
+        "bode": loop_figures.bode(closed),
+        "singular": loop_figures.singular_values(closed),
+        "margins": margin_rows(closed),
+        "cost": cost_note(closed),
+    }

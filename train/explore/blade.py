@@ -1,27 +1,26 @@
-"""From the sliders' values to everything the page shows of a blade."""
+"""From the settings to what the page shows of a blade while a control moves."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from baselines.design.weights import weighted
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import Blade
-from beamenv.blade.config import ON_EVERY_WALL, BladeConfig
-from beamenv.blade.layouts import SIDES, with_positions
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
-from beamenv.configuration import Choice, Number, Numbers, configuration
 from beamenv.configuration.read_only import sealed
 from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
 from train.explore.loops import Damping, StepResponses, damping, step_responses
+from train.explore.settings import Settings
 
 Array = NDArray[np.float64]
-Direction = Literal["lag", "flap"]
 
 HIGHEST_SPEED = 400.0
 """rad/s: where the Campbell diagram ends."""
@@ -34,42 +33,9 @@ STEP_DURATION = 0.5
 """s."""
 
 
-@configuration("settings")
-class Settings:
-    """What the sliders say; the rest, and what is None, is that of the blade which the page began with.
-
-    Raises ``ValueError`` for a value that is no number, or a load that is neither in lag nor in flap.
-    """
-
-    ply_angle_deg: Annotated[float | None, Number(unit="degrees")] = None
-    """Of all plies of every wall, from the contour tangent."""
-    speed: Annotated[float | None, Number(unit="rad/s")] = None
-    """rad/s."""
-    pretwist_deg: Annotated[float | None, Number(unit="degrees")] = None
-    taper: Annotated[float | None, Number()] = None
-    """Root chord over tip chord."""
-    actuators: Annotated[tuple[float, ...] | None, Numbers()] = None
-    """Root-side edges, m."""
-    sensors: Annotated[tuple[float, ...] | None, Numbers()] = None
-    """Root-side edges, m."""
-    load: Annotated[Direction, Choice(("lag", "flap"))] = "flap"
-
-    def config(self, base: BladeConfig = THESIS) -> BladeConfig:
-        """The blade."""
-        changes: dict[str, Any] = {name: getattr(self, name) for name in ("pretwist_deg", "taper")}
-        if self.ply_angle_deg is not None:
-            changes["ply_angles_deg"] = (
-                (ON_EVERY_WALL, (self.ply_angle_deg,) * len(dict(base.beam.ply_angles_deg)[ON_EVERY_WALL])),
-            )
-        given = {side: getattr(self, side) for side in SIDES if getattr(self, side) is not None}
-        beam = replace(base.beam, **{name: value for name, value in changes.items() if value is not None})
-        whole = with_positions(replace(base, beam=beam), given)
-        return whole if self.speed is None else replace(whole, speed=self.speed)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """A blade with r retained modes, at one speed."""
+    """A blade with r retained modes, at one speed; n is r, or the Campbell diagram's number of modes if that is more."""
 
     speed: float
     """rad/s."""
@@ -78,9 +44,9 @@ class View:
     campbell: Array
     """(speeds, modes), rad/s, at ``CAMPBELL_SPEEDS``."""
     natural_frequencies: Array
-    """(r,), rad/s, with gyroscopic coupling and all trial functions."""
+    """(n,), rad/s, with gyroscopic coupling and all trial functions."""
     families: tuple[str, ...]
-    """(r,): lag, flap, extension or twist."""
+    """(n,): lag, flap, extension or twist."""
     stations: Array
     """(k,), m from the root."""
     shapes: NDArray[np.complex128]
@@ -91,12 +57,11 @@ class View:
 
 def view(settings: Settings, base: BladeConfig = THESIS) -> View:
     """Everything the page shows; ``ValueError``, in one sentence, for a blade or patches that cannot be."""
-    config = settings.config(base)
-    blade = built(replace(config, speed=base.speed)).changed(config)
-    beam, plant = blade.beam, blade.plant
-    modes = beam.modes(config.speed, config.modes)
+    blade = blade_of(settings, base)
+    config, beam, plant = blade.config, blade.beam, blade.plant
+    modes = beam.modes(config.speed, max(config.modes, CAMPBELL_MODES))
     stations, shapes = mode_shapes(beam, modes.mode_shapes[:, :CAMPBELL_MODES], 0.5 * width(beam))
-    held, (_, K), (_, L) = sampled_design(plant)
+    held, (_, K), (_, L) = sampled_design(weighted(plant, *settings.weights(plant)))
     line_load = blade.reference_load * np.array([settings.load == "lag", settings.load == "flap"], dtype=float)
     return View(
         speed=config.speed,
@@ -106,9 +71,21 @@ def view(settings: Settings, base: BladeConfig = THESIS) -> View:
         families=modes.families,
         stations=stations,
         shapes=shapes,
-        damping=damping(held, K, L),
+        damping=damping(held, K, L, len(plant.A)),
         response=step_responses(plant, held, K, L, line_load, STEP_DURATION),
     )
+
+
+@lru_cache(maxsize=2)
+def blade_of(settings: Settings, base: BladeConfig = THESIS) -> Blade:
+    """The blade that the settings stand for; ``ValueError`` where they make none."""
+    config = settings.config(base)
+    return built(without_noise(replace(config, speed=base.speed), base)).changed(config)
+
+
+def without_noise(config: BladeConfig, base: BladeConfig) -> BladeConfig:
+    """The blade under its first noise, on which none of its matrices but those of the noise depend."""
+    return replace(config, white_load=base.white_load, sensor_noise_fraction=base.sensor_noise_fraction)
 
 
 @lru_cache(maxsize=16)

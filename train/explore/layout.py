@@ -2,128 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Any, get_args
+from base64 import b64encode
+from typing import Any
 
 from dash import dcc, html
 
-from beamenv.blade.build import Blade
-from beamenv.blade.config import ON_EVERY_WALL, BladeConfig
-from beamenv.blade.layouts import SIDES, Side
+from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
-from beamenv.configuration import Number, Numbers
-from train.explore.blade import CAMPBELL_MODES, HIGHEST_SPEED, MOTIONS, Direction
+from train.explore.blade import CAMPBELL_MODES, MOTIONS
+from train.explore.controls import BLADE, GROUPS, PAIR, THESIS_PAGE, Options, Page, Range
+from train.explore.figures import MOTION_LINES
+from train.explore.picture import key
+from train.explore.slider import slider
 from train.figures.palette import PALETTE
 
-DIRECTIONS = get_args(Direction)
-ROUND_OFF = 1e-6
-"""How far a slider's last step may lie beyond its end, in its unit."""
-
-
-@dataclass(frozen=True, slots=True)
-class Range:
-    """What a slider goes through; with several values, one handle each."""
-
-    label: str
-    unit: str
-    low: float
-    high: float
-    step: float
-    value: float | list[float]
-    apart: int = 0
-    """Steps that keep handles from one another."""
-
-    def control(self, name: str) -> html.Div:
-        """The slider under its label and value."""
-        limits: dict[str, Any] = {"min": self.low, "max": self.high, "step": self.step, "value": self.value, "marks": None}
-        limits |= {"updatemode": "drag", "allow_direct_input": False}  # an emptied input would stop the handle
-        several = isinstance(self.value, list)
-        slider = dcc.RangeSlider(id=name, **limits, pushable=self.apart) if several else dcc.Slider(id=name, **limits)
-        return _control(self.label, html.Output(id=f"{name}-value"), slider)
-
-    @property
-    def kind(self) -> Number | Numbers:
-        """What its value may be."""
-        each = Number(ge=self.low - ROUND_OFF, le=self.high + ROUND_OFF, unit=self.unit)
-        return Numbers(each, len(self.value), len(self.value)) if isinstance(self.value, list) else each
-
-    def text(self, value: float | list[float] | None) -> str:
-        """A value as the page writes it, with its unit."""
-        if isinstance(value, list):
-            return ", ".join(f"{edge:.1f}" for edge in value) + f" {self.unit}"
-        return "" if value is None else f"{value:g} {self.unit}".rstrip()
-
-
-def _control(label: str, *children: Any) -> html.Div:
-    return html.Div([html.Span(label), *children], role="group", className="control", **{"aria-label": label})
-
-
-def _millimetres(edges: tuple[float, ...]) -> list[float]:
-    return [round(1e3 * edge, 6) for edge in edges]
-
-
-@dataclass(frozen=True, slots=True)
-class Page:
-    """The blade that a page begins with, and its sliders: of what it has, and has in one way that a slider can change."""
-
-    base: BladeConfig
-    ranges: Mapping[str, Range]
-
-    @classmethod
-    def of(cls, base: BladeConfig) -> Page:
-        """That of a blade."""
-        sliders = {"ply_angle_deg": _plies(base), "speed": _within("rotor speed", "rad/s", 0.0, HIGHEST_SPEED, 5.0, base.speed)}
-        if base.beam.twist_table is None:
-            sliders["pretwist_deg"] = _within("pretwist", "°", 0.0, 90.0, 1.0, base.beam.pretwist_deg)
-        if base.beam.chord_table is None:
-            sliders["taper"] = _within("taper, root chord over tip chord", "", 1.0, 3.0, 0.05, base.beam.taper)
-        for side in SIDES:
-            sliders[side] = _patches(base, side)
-        return cls(base, MappingProxyType({name: entry for name, entry in sliders.items() if entry is not None}))
-
-    @property
-    def controls(self) -> tuple[str, ...]:
-        """Ids: the fields of ``Settings``."""
-        return (*self.ranges, "load")
-
-
-def _within(label: str, unit: str, low: float, high: float, step: float, value: float) -> Range | None:
-    return Range(label, unit, low, high, step, value) if low <= value <= high else None
-
-
-def _plies(base: BladeConfig) -> Range | None:
-    """Where all plies of all walls have one angle."""
-    angles = {angle for _, each in base.beam.ply_angles_deg for angle in each}
-    if len(angles) > 1 or set(dict(base.beam.ply_angles_deg)) != {ON_EVERY_WALL}:
-        return None
-    return _within("ply angle from the contour", "°", 0.0, 90.0, 1.0, angles.pop())
-
-
-def _patches(base: BladeConfig, side: Side) -> Range | None:
-    """Where they are one group."""
-    groups, length = base.patches.groups(side), base.beam.length
-    if len(groups) != 1:
-        return None
-    group = groups[0]
-    last = round(1e3 * (group.outermost * length - group.length), 6)
-    step = round(last / STEPS, 6)
-    where = {"top": "on top", "bottom": "below"}.get(group.wall, f"on the {group.wall} wall")
-    edges = _millimetres(base.patches.positions(side, length))
-    apart = math.ceil(1e3 * group.length / step)
-    return Range(f"{side} {where}, from the root at", "mm", 0.0, last, step, edges, apart) if step > 0.0 else None
-
-
-STEPS = 153
-"""Of a slider for patches: the thesis' four, 51 of them apart, lie on its grid. Dash 4 counts what handles are apart in steps,
-whatever it says."""
-
-THESIS_PAGE = Page.of(THESIS)
-RANGES, CONTROLS = THESIS_PAGE.ranges, THESIS_PAGE.controls
-
 _QUIET: Any = {"displayModeBar": False, "responsive": True}
+DASHES = {"solid": "", "dashed": "7 3", "dashdot": "7 3 2 3", "dotted": "2 3"}
 
 
 def layout(page: Page = THESIS_PAGE) -> html.Div:
@@ -131,11 +25,29 @@ def layout(page: Page = THESIS_PAGE) -> html.Div:
     return html.Div(
         [
             html.Header([html.H1("Rotating blade"), html.P(_introduction(page.base))]),
-            html.Main([html.Div(_controls(page), id="controls"), html.Div([_message(), _results(page.base)], id="shown")]),
-            dcc.Store(id="wanted"),
-            dcc.Store(id="busy"),
+            html.Main([_controls(page), html.Div([_message(), _results(page)], id="shown")]),
+            dcc.Store(id="about", data=about(page)),
+            *(dcc.Store(id=name) for name in ("link", "state", "wanted", "settled", "busy", "analysing", "file", "named")),
         ]
     )
+
+
+def about(page: Page) -> list[dict[str, Any]]:
+    """What the browser knows of the controls."""
+    return [
+        {
+            "name": name,
+            "label": entry.label,
+            "start": entry.value,
+            "entries": entry.entries(name),
+            **({"options": entry.options} if isinstance(entry, Options) else _bounds(entry)),
+        }
+        for name, entry in page.controls.items()
+    ]
+
+
+def _bounds(entry: Range) -> dict[str, Any]:
+    return {"unit": entry.unit, "low": entry.low, "high": entry.high, "logarithmic": entry.logarithmic}
 
 
 def _introduction(base: BladeConfig) -> str:
@@ -153,29 +65,81 @@ def _introduction(base: BladeConfig) -> str:
     )
 
 
-def _controls(page: Page) -> list[Any]:
-    choice = dcc.RadioItems(id="load", options=list(DIRECTIONS), value="flap", inline=True)
-    load = float(Blade(page.base).reference_load)
-    return [*(entry.control(name) for name, entry in page.ranges.items()), _control(f"step load of {load:.3g} N/m in", choice)]
+def _controls(page: Page) -> html.Div:
+    groups = []
+    for name in GROUPS:
+        inside = [control(each, entry) for each, entry in page.controls.items() if entry.group == name]
+        if inside:
+            groups.append(html.Details([html.Summary(name), *inside], open=True, className="first" if name == BLADE else ""))
+    buttons = [
+        html.Button(text, id=name, n_clicks=0, type="button")
+        for name, text in (("reset", "Reset"), ("copy", "Copy link"), ("save", "Save as blade.toml"))
+    ]
+    done = html.P(id="done", role="status")
+    return html.Div([html.Div(buttons, className="buttons"), done, *groups], id="controls")
+
+
+def control(name: str, entry: Range | Options) -> html.Div:
+    """A slider under its name and the fields that take its values as numbers; or what can be chosen from."""
+    if isinstance(entry, Options):
+        options = [{"label": each, "value": each} for each in entry.options]
+        parts: list[Any] = [html.Span(entry.label), dcc.RadioItems(id=name, options=options, value=entry.value, inline=True)]
+    else:
+        fields = [dcc.Input(id=each, type="number", debounce=True, step="any") for each in entry.entries(name)]
+        beside = html.Output(id=f"{name}-value") if entry.unit == "rad/s" else None
+        parts = [
+            html.Span(entry.label),
+            html.Div([*fields, html.Span(entry.unit)], className="numbers"),
+            beside,
+            slider(name, entry),
+        ]
+    return html.Div([each for each in parts if each is not None], role="group", className="control", **{"aria-label": entry.label})
 
 
 def _message() -> html.P:
     return html.P(id="message", role="alert")
 
 
-def _results(base: BladeConfig) -> html.Div:
+def _results(page: Page) -> html.Div:
+    base = page.base
     small = html.Div([_small(mode) for mode in range(CAMPBELL_MODES)], className="shapes")
     crossings = "Dots: natural frequencies at the rotor speed. Dotted: its multiples."
     sudden = f"Uniform line load that sets in at once on the blade at rest. The drive is limited to {_volts(base)}."
+    pair = [control(name, page.choices[name]) for name in PAIR]
+    bode = (
+        "From a voltage to a reading of the sampled plant, in full scales of the sensor per limit of the drive; with LQG: from "
+        "what is added to its voltage, once it has gone round the loop."
+    )
+    singular = (
+        "Of all voltages and readings together, in full scales per limit of the drive, without control; and the largest from loads "
+        "in lag and flap to the tip."
+    )
     left = [
         _section("Campbell diagram", crossings, _graph("campbell", 430)),
         _section("Step response of the tip", sudden, _graph("response", 660)),
+        _section("Poles", "Of the sampled loops, as log(z)/Δt. Right of the line is unstable.", _graph("poles", 400)),
+        _section("Singular values", singular, _graph("singular", 480)),
     ]
     right = [
         _section("Mode shapes", _legend(), small),
-        _section("Damping", html.Span(id="filter"), _table()),
+        _section("Damping", html.Span(id="filter"), _table(DAMPING, "damping")),
+        _section("Margins of LQG", html.Span(id="cost"), html.Div([html.P(id="lost", role="alert"), _table(MARGINS, "margins")])),
+        _section("Bode diagram", bode, html.Div([html.Div(pair, className="pair"), _graph("bode", 480)])),
     ]
-    return html.Div([html.Div(left), html.Div(right)], id="results")
+    return html.Div([_picture(base), html.Div(left), html.Div(right)], id="results")
+
+
+DAMPING = ("mode", "ω, rad/s", "f, Hz", "ζ alone, %", "ζ with LQG, %")
+MARGINS = ("margin, the loops broken at", "voltages", "readings")
+
+
+def _picture(base: BladeConfig) -> html.Section:
+    keys: list[Any] = [
+        html.Span([html.I(style={"background": each}, className="patch"), name], className="key")
+        for name, each in key(base).items()
+    ]
+    note = "Numbered from the root: actuators full, sensors pale, below the blade where they cannot be seen; dashed: behind a wall."
+    return html.Section([html.H2("Blade"), html.Img(id="picture", alt=""), html.P([*keys, html.Span(note)])], className="wide")
 
 
 def _volts(base: BladeConfig) -> str:
@@ -193,17 +157,23 @@ def _graph(name: str, height: int) -> dcc.Graph:
 
 def _legend() -> list[Any]:
     keys = [
-        html.Span([html.I(style={"borderColor": colour}), motion], className="key")
-        for motion, colour in zip(MOTIONS, PALETTE, strict=False)
+        html.Span([_line(colour, line), motion], className="key")
+        for motion, colour, line in zip(MOTIONS, PALETTE, MOTION_LINES, strict=False)
     ]
-    return [*keys, html.Br(), html.Span("Each over the mode's largest. Dotted: a quarter of a period later.")]
+    return [*keys, html.Br(), html.Span("Each over the mode's largest. Thin: a quarter of a period later.")]
+
+
+def _line(colour: str, line: str) -> html.Img:
+    """A piece of a curve, as its legend shows it."""
+    stroke = f'stroke="{colour}" stroke-width="2" stroke-dasharray="{DASHES[line]}"'
+    drawn = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 30 8"><path d="M0 4H30" {stroke}/></svg>'
+    return html.Img(src="data:image/svg+xml;base64," + b64encode(drawn.encode()).decode(), alt="", className="line")
 
 
 def _small(mode: int) -> html.Div:
     return html.Div([html.H3(id=f"shape-{mode}-heading"), _graph(f"shape-{mode}", 190)])
 
 
-def _table() -> html.Div:
-    names = ("mode", "ω, rad/s", "ζ alone, %", "ζ with LQG, %")
+def _table(names: tuple[str, ...], body: str) -> html.Div:
     head = html.Thead(html.Tr([html.Th(name, scope="col") for name in names]))
-    return html.Div(html.Table([head, html.Tbody(id="damping")]), className="scroll", tabIndex=0)
+    return html.Div(html.Table([head, html.Tbody(id=body)]), className="scroll", tabIndex=0)

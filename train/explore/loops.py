@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.analysis.response import linear_response
+from baselines.design.loop import spectral_radius
 from baselines.laws.lqg import compensator
 from beamenv.plant.plant import Plant, SampledPlant
 from beamenv.plant.poles import damping_ratios, poles_of_sampled
@@ -27,14 +28,18 @@ class Damping:
     """1/s: at least this fast the error of the Kalman filter decays."""
 
 
-def damping(held: SampledPlant, K: Array, L: Array) -> Damping:
-    """Damping of a sampled plant without control and with gains K (m, n) and L (n, p)."""
-    free, controlled = held.A, held.A - held.B @ K
+def damping(held: SampledPlant, K: Array, L: Array, states: int) -> Damping:
+    """Damping of a sampled plant without control and with gains K (m, n) and L (n, p), of whose states so many are the blade's.
+
+    The others are what readings show of the voltages before, which moves nothing.
+    """
+    own = np.s_[:states, :states]
+    free, controlled = held.A[own], (held.A - held.B @ K)[own]
     error = held.A - held.A @ L @ held.C
     return Damping(
         free=damping_ratios(poles_of_sampled(free, held.interval)),
         controlled=damping_ratios(poles_of_sampled(controlled, held.interval)),
-        filter_rate=float(-poles_of_sampled(error, held.interval).real.max()),
+        filter_rate=-float(np.log(spectral_radius(error))) / held.interval,
     )
 
 
@@ -56,16 +61,16 @@ class StepResponses:
 
 def step_responses(plant: Plant, held: SampledPlant, K: Array, L: Array, line_load: Array, duration: float) -> StepResponses:
     """Exact responses, without noise, to a uniform ``line_load`` (2,) in N/m, sampled over ``duration`` s."""
-    steps, tip = round(duration / held.interval) + 1, plant.tip_displacement
+    steps, tip, n = round(duration / held.interval) + 1, plant.tip_displacement, len(plant.A)
     push = held.disturbance_input @ line_load
     at_rest: Array = np.asarray(np.linalg.solve(np.eye(len(held.A)) - held.A, push), dtype=np.float64)
     states, volts = linear_response(held, compensator(plant, "LQG", held, K, L), np.tile(line_load, (steps, 1)))
     return StepResponses(
         time=held.interval * np.arange(steps, dtype=np.float64),
-        free=(at_rest - powers(held.A, at_rest, steps)) @ tip.T,
-        controlled=states[:-1] @ tip.T,
+        free=(at_rest - powers(held.A, at_rest, steps))[:, :n] @ tip.T,
+        controlled=states[:-1, :n] @ tip.T,
         volts=volts,
-        at_rest=tip @ at_rest,
+        at_rest=tip @ at_rest[:n],
     )
 
 

@@ -1,4 +1,4 @@
-"""What the server answers: the page's own files, and one callback with values that its controls can have."""
+"""What the server answers: the page's own files, and callbacks with values that its controls can have."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from urllib.parse import urlsplit
 from werkzeug.exceptions import HTTPException
 from werkzeug.wrappers import Request, Response
 
-from beamenv.configuration import Choice, checked, shown
-from train.explore.layout import DIRECTIONS, THESIS_PAGE, Page
+from beamenv.configuration import shown
+from train.explore.controls import THESIS_PAGE, Page
 
 CALLBACK = "/_dash-update-component"
 LARGEST_BODY = 2**16
 """Bytes; the page's own have some 2000."""
 MOST_AT_ONCE = 8
 """Redraws asked for and not yet answered; one page asks for one."""
-ANSWERED = "the page's own files and one callback are all that is answered"
+ANSWERED = "the page's own files and callbacks are all that is answered"
 
 
 class Unanswered(Exception):  # noqa: N818 - an answer, not an error of ours
@@ -39,8 +39,9 @@ class OnlyThePage:
     checked and written anew: what the application gets of them are the values of the controls, within the controls' ranges.
     """
 
-    def __init__(self, application: Any, output: str, page: Page = THESIS_PAGE) -> None:
-        self.application, self.output, self.page = application, output, page
+    def __init__(self, application: Any, asked: Mapping[str, str], page: Page = THESIS_PAGE) -> None:
+        """``asked``: by what a callback gives, the store that asks for it."""
+        self.application, self.asked, self.page = application, asked, page
         self.free = BoundedSemaphore(MOST_AT_ONCE)
 
     def __call__(self, environ: dict[str, Any], start_response: Any) -> Iterable[bytes]:
@@ -58,7 +59,7 @@ class OnlyThePage:
 
     def redrawn(self, request: Request, environ: dict[str, Any], start_response: Any) -> Iterable[bytes]:
         """The callback's answer."""
-        body = json.dumps(self.body(wanted(content(request), self.output, self.page))).encode()
+        body = json.dumps(self.body(*wanted(content(request), self.asked, self.page))).encode()
         if not self.free.acquire(blocking=False):
             raise Unanswered(429, f"{MOST_AT_ONCE} redraws are being made: ask again.")
         try:
@@ -67,11 +68,12 @@ class OnlyThePage:
         finally:
             self.free.release()
 
-    def body(self, values: list[Any]) -> dict[str, Any]:
+    def body(self, output: str, values: list[Any]) -> dict[str, Any]:
         """What the page would send."""
-        outputs = [dict(zip(("id", "property"), each.rsplit(".", 1), strict=True)) for each in self.output.strip(".").split("...")]
-        inputs = [{"id": "wanted", "property": "data", "value": values}]
-        return {"output": self.output, "outputs": outputs, "inputs": inputs, "changedPropIds": ["wanted.data"]}
+        asked = self.asked[output]
+        outputs = [dict(zip(("id", "property"), each.rsplit(".", 1), strict=True)) for each in output.strip(".").split("...")]
+        inputs = [{"id": asked, "property": "data", "value": values}]
+        return {"output": output, "outputs": outputs, "inputs": inputs, "changedPropIds": [f"{asked}.data"]}
 
 
 def told(sentence: str, status: int | None) -> Response:
@@ -125,20 +127,19 @@ def content(request: Request) -> Any:
         raise Unanswered(408, "the body must come whole, and without a long pause.") from None
 
 
-def wanted(asked: Any, output: str, page: Page = THESIS_PAGE) -> list[Any]:
-    """The controls' values in a callback's body."""
+def wanted(asked: Any, answers: Mapping[str, str], page: Page = THESIS_PAGE) -> tuple[str, list[Any]]:
+    """What a callback's body asks for, and the controls' values in it."""
     match asked:
-        case {"output": where, "inputs": [{"id": "wanted", "property": "data", "value": list(values)}]}:
-            if where == output and len(values) == len(page.controls):
-                return controlled(dict(zip(page.controls, values, strict=True)), page)
+        case {"output": str(output), "inputs": [{"id": str(store), "property": "data", "value": list(values)}]}:
+            if answers.get(output) == store and len(values) == len(page.controls):
+                return output, controlled(dict(zip(page.controls, values, strict=True)), page)
     raise Unanswered(400, f"the body must ask for the page's outputs with the values of {', '.join(page.controls)}.")
 
 
 def controlled(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> list[Any]:
     """Values as the controls can have them."""
     try:
-        read = {name: checked(name, values[name], entry.kind) for name, entry in page.ranges.items()}
-        read["load"] = checked("load", values["load"], Choice(DIRECTIONS))
+        read = page.checked(values)
     except ValueError as error:
         raise Unanswered(400, str(error)) from None
     return [list(value) if isinstance(value, tuple) else value for value in read.values()]

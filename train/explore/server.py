@@ -11,7 +11,7 @@ from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
 from beamenv.configuration import Count, Instance, Refused, checked
 from train.explore.app import create_app
-from train.explore.layout import Page
+from train.explore.controls import Page
 from train.explore.requests import is_loopback
 
 LOOPBACK = "127.0.0.1"

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from train.figures.palette import INK
 
 Array = NDArray[np.float64]
-Line = Literal["solid", "dashed", "dotted", "dashdot", "points"]
+Line = Literal["solid", "dashed", "dotted", "dashdot", "points", "bars"]
 Limits = tuple[float | None, float | None]
 """Low and high; None where the data decide."""
 
@@ -49,8 +49,8 @@ PLAIN = Look()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """One curve of a panel. Curves of the same ``label`` look alike in all panels; ``line`` is solid, dotted, dashed, dashdot or
-    points.
+    """One curve of a panel. Curves of the same ``label`` look alike in all panels; ``line`` is solid, dotted, dashed, dashdot,
+    points or bars, which are broad and end where they end.
     """
 
     x: Array
@@ -94,6 +94,9 @@ class Panel:
     x_linear_within: float | None = None
     """x is drawn in its logarithm, of either sign, beyond this."""
     notes: Sequence[Note] = ()
+    y_names: Sequence[str] = ()
+    """Of y = 1, 2, …, in place of numbers."""
+    x_logarithmic: bool = False
 
 
 def listed(panels: Iterable[Panel]) -> list[Curve]:

@@ -9,8 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines import Evaluation
+from train.shared.columns import number, share
 
 Array = NDArray[np.float64]
+
+SCALE = "cividis_r"
+"""Of both renderers; its lightness falls steadily: dark is bad in greyscale too, and for those who are colour-blind."""
+RANGE = (0.35, 2.0)
+"""J / J without control between which shades differ, on a logarithmic scale: twice no control and worse is all the same dark."""
+TICKS = (0.35, 0.5, 0.7, 1.0, 1.4, 2.0)
+QUANTITY, WAY = "J / J without control", "lower is better"
+UNSTABLE, LOST, NOTHING = "▲", "✕", "–"
+"""Signs of cells: a share of unstable episodes, what was run but not measured, what has nothing to do there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,3 +60,24 @@ class HeatMap:
                 place = row, controllers.index(each.name)
                 relative_cost[place], failed[place] = each.relative_cost.value, each.episodes.failed.mean()
         return cls(tuple(evaluations), controllers, relative_cost, failed)
+
+    def text(self, line: int, column: int) -> tuple[str, str]:
+        """What is written in a cell: the cost, or the sign of what is missing; and the share of unstable episodes, if any."""
+        cost, part = self.relative_cost[line, column], self.failed[line, column]
+        if np.isnan(cost):
+            return (LOST if (self.scenarios[line], self.controllers[column]) in self.lost else NOTHING), ""
+        return number(cost, "{:.2f}" if cost < 10.0 else "{:.0f}"), f"{UNSTABLE} {share(part)}" if part > 0.0 else ""
+
+    def is_best(self, line: int, column: int) -> bool:
+        """Whether a cell is the one pointed out in its scenario."""
+        return bool(self.best) and self.best[line] == self.controllers[column]
+
+    @property
+    def key(self) -> str:
+        """What the signs mean that are there."""
+        best = ["bold: least of those shown, tier 3 aside"] if any(self.best) else []
+        written = [self.text(*place) for place in np.ndindex(self.relative_cost.shape)]
+        unstable = [f"{UNSTABLE} share of unstable episodes"] if any(part for _, part in written) else []
+        signs = {LOST: "not measured", NOTHING: "nothing to do there"}
+        missing = [f"{sign} {meaning}" for sign, meaning in signs.items() if any(cost == sign for cost, _ in written)]
+        return "    ".join([*best, *unstable, *missing])

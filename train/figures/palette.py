@@ -10,14 +10,13 @@ NEUTRAL = "#7d8793"
 """What is without control, and what is only for orientation."""
 BEHIND = "#bfbfbf"
 """What is without control where it lies behind a black curve."""
+PATCH_COLOURS = {"MFC": PALETTE[1], "PZT": PALETTE[0], "PIC255": PALETTE[2]}
+"""Of patches by their material, the same wherever patches or what they do are drawn side by side."""
+PATCHES_OF_YOUR_OWN = PALETTE[3]
 LINES = ("solid", "dashed", "dotted", "dashdot")
 """The second sign besides colour."""
 SIGNS = ("x-thin", "cross-thin", "square", "circle", "diamond", "triangle-up")
 """Of points, the second sign besides colour."""
-BETTER_OR_WORSE = "RdBu"
-"""Scale about no control, from red to blue."""
-DARK_IS_BAD = "cividis_r"
-"""Its lightness falls steadily: dark is bad in greyscale too, and for those who are colour-blind."""
 
 
 def colour(index: int) -> str:
@@ -29,6 +28,11 @@ def contrast(one: str, other: str) -> float:
     """Ratio of the luminances of two colours "#rrggbb", 1 to 21 (WCAG 2.1)."""
     low, high = sorted(_luminance(colour) for colour in (one, other))
     return (high + 0.05) / (low + 0.05)
+
+
+def ink_on(shade: str) -> str:
+    """Black or white, whichever is read better on a shade "#rrggbb"."""
+    return max(("#000000", "#ffffff"), key=lambda ink: contrast(ink, shade))
 
 
 def _luminance(colour: str) -> float:

@@ -56,13 +56,13 @@ class LearningCurves:
     """How agents learned, and what they are measured against."""
 
     curves: Mapping[str, Array]
-    """(k, 3) each: training time in s, steps, cost relative to no control, running or on validation seeds."""
+    """(k, 3) each: training time in s, steps, cost relative to no control on validation seeds, or as its name says."""
     levels: Mapping[str, float] = field(default_factory=dict)
     """Relative cost of controllers that do not learn: LQG's line."""
 
 
 def learning_panel(learned: LearningCurves) -> Panel:
-    """Running cost of each agent over its training time, and a line for each controller that does not learn."""
+    """Cost of each agent over its training time, and a line for each controller that does not learn."""
     curves = []
     for index, (name, curve) in enumerate(learned.curves.items()):
         steps = f" ({curve[-1, 1] / 1e6:.1f} million steps)" if len(curve) else ""
@@ -70,7 +70,7 @@ def learning_panel(learned: LearningCurves) -> Panel:
     reported = [curve for curve in learned.curves.values() if len(curve)]
     end = max([1.0, *(float(curve[-1, 0]) for curve in reported)])
     for index, (name, level) in enumerate(learned.levels.items()):
-        look, line = Look(colour(len(learned.curves) + index)), LINES[1 + index % (len(LINES) - 1)]
+        look, line = Look(colour(len(learned.curves) + index)), LINES[(len(learned.curves) + index) % len(LINES)]
         curves.append(Curve(np.array([0.0, end]), np.full(2, level), f"{name}: {level:.3f}", line, look))
     highest = max([1.05, *(float(np.nanmedian(curve[:3, 2])) for curve in reported)])
     limits = (0.0, min(highest, 2.0))

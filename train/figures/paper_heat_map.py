@@ -6,31 +6,28 @@ from typing import Any
 
 import numpy as np
 
-from train.figures.heat_map import HeatMap
-from train.figures.palette import DARK_IS_BAD
-from train.figures.paper import STYLE, plain
-from train.shared.columns import number, share
+from train.figures.heat_map import QUANTITY, RANGE, SCALE, TICKS, WAY, HeatMap
+from train.figures.palette import ink_on
+from train.figures.paper import plain, styled
 
-RANGE = (0.35, 2.0)
-"""J / J without control between which shades differ, on a logarithmic scale: twice no control and worse is all the same dark."""
-TICKS = (0.35, 0.5, 0.7, 1.0, 1.4, 2.0)
-LEGEND = "bold: least J of all controllers, tier 3 aside    ▲ share of unstable episodes    ✕ not measured    – nothing to do there"
-CAPPED = "J / J without control; shades end at 0.35 and 2"
-
-CELL = (0.5, 0.27)
-"""Inches: a page of text is some 7.5 wide, and holds a dozen."""
-MARGIN = (1.7, 1.9)
-"""Inches beside and above the cells."""
+CELL = 0.29
+"""Inches: the height of a cell, which holds two lines."""
+WIDTH, LABELS, NARROWEST = 8.4, 2.3, 0.5
+"""Inches: of the picture, of what stands beside the cells, and of a cell where there are so many that the picture must be wider."""
+ABOVE, BETWEEN = 2.2, 0.12
+"""Inches: above and below all cells, and between panels."""
+SIZES = {"name": 9.5, "number": 9.5, "share": 7.5, "key": 9.0}
+"""Points, at 100 of the picture's dots an inch."""
 
 
-def heat_map(content: HeatMap) -> Any:
+def heat_map(content: HeatMap, theme: str = "light") -> Any:
     """A Matplotlib figure, a panel for each group of scenarios below the other; the best number of each scenario is bold."""
     import matplotlib.pyplot as plt
 
     lines = _panels(content)
-    with plt.rc_context(STYLE):
-        height = MARGIN[1] + CELL[1] * len(content.scenarios) + 0.3 * len(lines)
-        width = max(MARGIN[0] + CELL[0] * len(content.controllers), 5.5)
+    with styled(theme):
+        height = ABOVE + CELL * len(content.scenarios) + BETWEEN * (len(lines) - 1)
+        width = max(WIDTH, LABELS + NARROWEST * len(content.controllers))
         figure, axes = plt.subplots(
             len(lines),
             1,
@@ -42,13 +39,15 @@ def heat_map(content: HeatMap) -> Any:
         image = None
         for index, (axis, (group, places)) in enumerate(zip(axes[:, 0], lines.items(), strict=True)):
             image = _panel(axis, content, places)
-            axis.set_ylabel(plain(group), fontsize=8, style="italic")
+            axis.set_ylabel(plain(group), fontsize=SIZES["name"], style="italic")
             _label(axis, content, places, first=index == 0, last=index == len(lines) - 1)
         figure.align_ylabels(axes)
         bar = figure.colorbar(image, ax=axes, extend="both", ticks=TICKS, location="bottom", fraction=0.025, aspect=50, pad=0.02)
         bar.ax.minorticks_off()
         bar.ax.set_xticklabels([f"{tick:g}" for tick in TICKS])
-        bar.set_label(f"{CAPPED}\n{LEGEND}", fontsize=7.5)
+        bar.set_label(content.key, fontsize=SIZES["key"])
+        figure.text(0.012, 0.988, QUANTITY, ha="left", va="top", fontsize=11, weight="bold")
+        figure.text(0.012, 0.988 - 0.22 / height, WAY, ha="left", va="top", fontsize=11)
     return figure
 
 
@@ -63,44 +62,41 @@ def _panel(axis: Any, content: HeatMap, places: list[int]) -> Any:
     import matplotlib.pyplot as plt
     from matplotlib.colors import LogNorm
 
-    shades = plt.get_cmap(DARK_IS_BAD).with_extremes(bad="white")
+    shades = plt.get_cmap(SCALE).with_extremes(bad=(0.0, 0.0, 0.0, 0.0))
     shown = np.clip(content.relative_cost[places], *RANGE)
     image = axis.imshow(shown, norm=LogNorm(*RANGE), cmap=shades, aspect="auto")
     for line, column in np.ndindex(shown.shape):
-        _write(axis, content, (line, places[line]), column)
+        _write(axis, content, (line, places[line]), column, image)
     return image
 
 
-def _write(axis: Any, content: HeatMap, lines: tuple[int, int], column: int) -> None:
+def _write(axis: Any, content: HeatMap, lines: tuple[int, int], column: int, image: Any) -> None:
     """The number in a cell, and below it the share of unstable episodes where there are any; ``lines`` of panel and content."""
+    from matplotlib.colors import to_hex
+
     shown, line = lines
-    scenario, controller = content.scenarios[line], content.controllers[column]
-    cost, unstable = content.relative_cost[line, column], content.failed[line, column]
-    middle = {"ha": "center", "va": "center", "fontsize": 7.5}
-    if np.isnan(cost):
-        lost = (scenario, controller) in content.lost
-        axis.text(column, shown, "✕" if lost else "–", color="black" if lost else "0.5", **middle)
-        return
-    middle["color"] = "white" if cost > 0.85 else "black"
-    weight = "bold" if content.best and content.best[line] == controller else "normal"
-    axis.text(
-        column, shown - (0.2 if unstable else 0.0), number(cost, "{:.2f}" if cost < 10.0 else "{:.0f}"), weight=weight, **middle
-    )
+    value, (cost, unstable) = content.relative_cost[line, column], content.text(line, column)
+    middle = {"ha": "center", "va": "center", "fontsize": SIZES["number"]}
+    if not np.isnan(value):
+        middle["color"] = ink_on(to_hex(image.to_rgba(np.clip(value, *RANGE))))
+    weight = "bold" if content.is_best(line, column) else "normal"
+    axis.text(column, shown - (0.19 if unstable else 0.0), cost, weight=weight, **middle)
     if unstable:
-        axis.text(column, shown + 0.24, f"▲ {share(unstable)}", **{**middle, "fontsize": 6})
+        axis.text(column, shown + 0.26, unstable, **{**middle, "fontsize": SIZES["share"]})
 
 
 def _label(axis: Any, content: HeatMap, places: list[int], first: bool, last: bool) -> None:
     """Names of scenarios; of controllers above the first panel, and of kinds, with lines between, below the last."""
     axis.set_yticks(range(len(places)), [plain(content.scenarios[line]) for line in places])
     names = [plain(name) for name in content.controllers] if first else []
-    axis.set_xticks(range(len(content.controllers)) if first else [], names, rotation=40, ha="left", rotation_mode="anchor")
-    axis.tick_params(length=0, labeltop=first, labelbottom=False, labelsize=8)
+    axis.set_xticks(range(len(content.controllers)) if first else [], names, rotation=35, ha="left", rotation_mode="anchor")
+    axis.tick_params(length=0, labeltop=first, labelbottom=False, labelsize=SIZES["name"])
     for side in axis.spines.values():
         side.set_visible(False)
+    below = {"ha": "center", "va": "top", "fontsize": SIZES["name"], "style": "italic"}
     for kind in dict.fromkeys(content.kinds):
         columns = [index for index, each in enumerate(content.kinds) if each == kind]
         if columns[0]:
-            axis.axvline(columns[0] - 0.5, color="white", linewidth=3.0)
+            axis.axvline(columns[0] - 0.5, color=axis.get_figure().get_facecolor(), linewidth=4.0)
         if last:
-            axis.text(np.mean(columns), len(places) - 0.4, plain(kind), ha="center", va="top", fontsize=8, style="italic")
+            axis.text(np.mean(columns), len(places) - 0.4, plain(kind), **below)

@@ -15,11 +15,11 @@ from train.shared.files import on_one_line
 
 Array = NDArray[np.float64]
 
-DASHES = {"solid": "solid", "dashed": "dash", "dotted": "dot", "dashdot": "dashdot"}
+DASHES = {"solid": "solid", "dashed": "dash", "dotted": "dot", "dashdot": "dashdot", "bars": "solid"}
 SHAPES = {"straight": "linear", "smooth": "spline", "ends": "vh", "begins": "hv"}
 LEGEND = {"orientation": "h", "x": 0.0, "y": 1.02, "xanchor": "left", "yanchor": "bottom"}
 MARGIN = {"l": 62, "r": 16, "t": 16, "b": 48}
-WIDTH, SIGN_SIZE = 1.5, 9.0
+WIDTH, BAR, SIGN_SIZE = 1.5, 5.0, 9.0
 TICKS = np.array([-10000.0, -1000.0, -100.0, -10.0, 0.0, 10.0, 100.0, 1000.0])
 """Of an axis that is logarithmic on both sides."""
 
@@ -82,8 +82,8 @@ def trace(curve: Curve, panel: Panel, row: int, compact: bool = False) -> dict[s
         "showlegend": bool(curve.label) and curve.listed,
     }
     if curve.line != "points":
-        shape = SHAPES[curve.joined]
-        drawn["line"] = {"color": look.colour, "dash": DASHES[curve.line], "width": look.width or WIDTH, "shape": shape}
+        width = look.width or (BAR if curve.line == "bars" else WIDTH)
+        drawn["line"] = {"color": look.colour, "dash": DASHES[curve.line], "width": width, "shape": SHAPES[curve.joined]}
     if look.marker is not None:
         drawn["marker"] = _marker(curve)
     if not curve.label:
@@ -113,6 +113,8 @@ def _marker(curve: Curve) -> dict[str, Any]:
 def x_axis(panel: Panel) -> dict[str, Any]:
     """With label, limits and, where it is logarithmic on both sides, its ticks."""
     axis: dict[str, Any] = {"title": {"text": plain(panel.x_label)}, **_range(panel.x_limits)}
+    if panel.x_logarithmic:
+        axis |= {"type": "log"}
     if panel.x_linear_within is not None:
         names = [f"{tick:g}".replace("-", "−") for tick in TICKS]
         axis |= {"tickvals": symmetric_logarithm(TICKS, panel.x_linear_within), "ticktext": names, "zeroline": False}
@@ -122,7 +124,8 @@ def x_axis(panel: Panel) -> dict[str, Any]:
 def y_axis(panel: Panel) -> dict[str, Any]:
     """With label, limits and scale."""
     scale = {"type": "log", "exponentformat": "power"} if panel.logarithmic else {}
-    return {"title": {"text": plain(panel.y_label)}, **_range(panel.y_limits), **scale}
+    names = {"tickvals": [*range(1, len(panel.y_names) + 1)], "ticktext": [plain(name) for name in panel.y_names]}
+    return {"title": {"text": plain(panel.y_label)}, **_range(panel.y_limits), **scale, **(names if panel.y_names else {})}
 
 
 def _range(limits: Limits) -> dict[str, Any]:

@@ -1,28 +1,22 @@
-"""A heat map for plotly: relative cost by colour and number, failures by a cross."""
+"""A heat map for plotly, in the shades and with the signs that it has on paper."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from plotly.colors import sample_colorscale
 
-from train.figures.heat_map import HeatMap
-from train.figures.palette import BETTER_OR_WORSE
+from train.figures.heat_map import LOST, QUANTITY, RANGE, SCALE, TICKS, WAY, HeatMap
+from train.figures.palette import ink_on
 from train.figures.screen import plain
-from train.shared.columns import share
 
-Array = NDArray[np.float64]
-
-COLOURED = (0.3, 1.0)
-"""log₁₀ J / J without control at which colours end, at least and at most: one that does very badly must not bleach the others."""
-TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
+LETTERS = 12
+"""Pixels: plotly itself takes markup for letters, and makes them too small."""
 
 
 def heat_map(content: HeatMap) -> dict[str, Any]:
-    """Blue is better than no control, red worse, in the logarithm; every cell says its number, or ✕ and the share of failures."""
-    cost = np.where((content.relative_cost > 0.0) & np.isfinite(content.relative_cost), content.relative_cost, np.nan)
-    reach = float(np.clip(np.nanmax(np.abs(np.log10(cost)), initial=0.0), *COLOURED))
+    """Relative cost by shade and number, the share of unstable episodes below it; the best number of each scenario is bold."""
     axis = {"type": "category", "automargin": True, "showgrid": False}
     layout = {
         "xaxis": {"title": {"text": "controller"}, "tickangle": -35, **axis},
@@ -30,60 +24,72 @@ def heat_map(content: HeatMap) -> dict[str, Any]:
         "margin": {"l": 20, "r": 10, "t": 40, "b": 20},
         "showlegend": False,
     }
-    return {"data": [_coloured(content, cost, reach), _lost(content)], "layout": layout}
+    return {"data": [_shaded(content), _missing(content)], "layout": layout}
 
 
-def _coloured(content: HeatMap, cost: Array, reach: float) -> dict[str, Any]:
-    """Cells with a finite cost."""
+def _shaded(content: HeatMap) -> dict[str, Any]:
+    """Cells with a cost; those that are infinite have the darkest shade."""
+    cost = content.relative_cost
     return {
         "type": "heatmap",
         "x": [plain(name) for name in content.controllers],
         "y": [plain(name) for name in content.scenarios],
-        "z": np.log10(cost),
-        "text": _texts(cost, content.failed),
-        "customdata": cost,
+        "z": np.log10(np.clip(cost, *RANGE)),
+        "text": [[_text(content, line, column) for column in range(cost.shape[1])] for line in range(cost.shape[0])],
+        "customdata": [[text if text != "∞" else "∞: the blade fails" for text in row] for row in _numbers(content)],
         "texttemplate": "%{text}",
-        "hovertemplate": "%{y}<br>%{x}<br>J / J without control: %{customdata:.3f}<extra></extra>",
+        "textfont": {"size": LETTERS},
+        "hovertemplate": f"%{{y}}<br>%{{x}}<br>{QUANTITY}: %{{customdata}}<extra></extra>",
         "hoverongaps": False,
-        "colorscale": BETTER_OR_WORSE,
-        "reversescale": True,
-        "zmid": 0.0,
-        "zmin": -reach,
-        "zmax": reach,
+        "colorscale": SCALE,
+        "zmin": float(np.log10(RANGE[0])),
+        "zmax": float(np.log10(RANGE[1])),
         "xgap": 2,
         "ygap": 2,
-        "colorbar": _bar(reach),
+        "colorbar": _bar(),
     }
 
 
-def _bar(reach: float) -> dict[str, Any]:
-    """The key to the colours, which stand for −reach to reach of log₁₀ J / J without control."""
-    ticks = [tick for tick in TICKS if abs(np.log10(tick)) <= reach]
-    title = {"text": "J / J without control", "side": "right"}
-    return {"title": title, "tickvals": np.log10(ticks), "ticktext": ticks, "thickness": 12}
+def _bar() -> dict[str, Any]:
+    """The key to the shades."""
+    names = [f"≤ {TICKS[0]:g}", *(f"{tick:g}" for tick in TICKS[1:-1]), f"≥ {TICKS[-1]:g}"]
+    title = {"text": f"{QUANTITY}: {WAY}", "side": "right"}
+    return {"title": title, "tickvals": np.log10(TICKS), "ticktext": names, "thickness": 12}
 
 
-def _texts(cost: Array, failed: Array) -> list[list[str]]:
-    """The cost of each cell that has one, and the share of failures below it where there are any."""
-
-    def text(value: float, part: float) -> str:
-        if np.isnan(value):
-            return ""
-        return f"{value:.2f}<br>✕ {share(part)}" if part > 0.0 else f"{value:.2f}"
-
-    return [[text(*cell) for cell in zip(*row, strict=True)] for row in zip(cost, failed, strict=True)]
+def _numbers(content: HeatMap) -> list[list[str]]:
+    """Costs with three decimals."""
+    return [[f"{value:.3f}" if np.isfinite(value) else "∞" for value in row] for row in content.relative_cost]
 
 
-def _lost(content: HeatMap) -> dict[str, Any]:
-    """✕ and the share of failures in cells that have no finite cost, hence no colour."""
-    places = np.argwhere((content.failed > 0.0) & ~np.isfinite(content.relative_cost))
-    shares = [float(content.failed[tuple(place)]) for place in places]
+def _text(content: HeatMap, line: int, column: int) -> str:
+    """The cost of a cell that has one, bold if it is the best, and the share of unstable episodes below it, as its shade allows."""
+    value = content.relative_cost[line, column]
+    if np.isnan(value):
+        return ""
+    cost, unstable = content.text(line, column)
+    both = "<br>".join([f"<b>{cost}</b>" if content.is_best(line, column) else cost, *([unstable] if unstable else [])])
+    return f'<span style="color:{ink_on(_shade(value))}">{both}</span>'
+
+
+def _shade(value: float) -> str:
+    """Of a cost, "#rrggbb"."""
+    low, high = np.log(RANGE)
+    share = (np.log(np.clip(value, *RANGE)) - low) / (high - low)
+    (shade,) = sample_colorscale(SCALE, [share], colortype="tuple")
+    return "#" + "".join(f"{round(255 * part):02x}" for part in shade)
+
+
+def _missing(content: HeatMap) -> dict[str, Any]:
+    """Signs in cells that have no cost, hence no shade."""
+    places = [(int(line), int(column)) for line, column in np.argwhere(np.isnan(content.relative_cost))]
+    signs = [content.text(*place)[0] for place in places]
     return {
         "type": "scatter",
         "mode": "text",
         "x": [plain(content.controllers[column]) for _, column in places],
-        "y": [plain(content.scenarios[row]) for row, _ in places],
-        "text": [f"✕ {share(each)}" for each in shares],
-        "customdata": shares,
-        "hovertemplate": "%{y}<br>%{x}<br>blade failed in %{customdata:.1%} of episodes<extra></extra>",
+        "y": [plain(content.scenarios[line]) for line, _ in places],
+        "text": signs,
+        "customdata": ["not measured" if sign == LOST else "nothing to do there" for sign in signs],
+        "hovertemplate": "%{y}<br>%{x}<br>%{customdata}<extra></extra>",
     }

@@ -10,15 +10,16 @@ from numpy.typing import NDArray
 
 from beamenv.blade.build import build_beam
 from beamenv.blade.config import BladeConfig
+from beamenv.patches.layout import SIDES
 from beamenv.structure.section.mesh import Mesh, mesh
 from beamenv.structure.section.properties import SectionProperties
 from beamenv.structure.walls.inlay import Inlay
-from train.figures.palette import INK, PALETTE
-from train.figures.paper import STYLE, save
+from train.figures.palette import PALETTE
+from train.figures.paper import THEMES, save, styled
 
 Array = NDArray[np.float64]
 
-WALL = "0.80"
+LEGEND = {"ncols": 5, "handlelength": 1.2, "columnspacing": 1.2}
 WIDTH = 7.0
 """Inches; the height follows the section's shape, within limits."""
 THINNEST = 0.012
@@ -34,36 +35,43 @@ def section_figure(config: BladeConfig, found: SectionProperties, at: float) -> 
     """Walls in grey, actuators and sensors in colours, centres by their signs."""
     import matplotlib.pyplot as plt
 
+    elements = elements_of(config, at)
+    with styled():
+        figure, axis = plt.subplots(figsize=_shape(elements), layout="constrained")
+        draw_on(axis, config, found, elements)
+        axis.set_title(f"section at {at:g} of the span, patches of every station")
+        axis.margins(0.06, 0.15)
+        figure.legend(handles=axis.get_legend_handles_labels()[0], loc="outside lower center", **LEGEND)
+    return figure
+
+
+def elements_of(config: BladeConfig, at: float) -> Mesh:
+    """The walls of a blade's section at a share of the span, cut where patches begin and end."""
     beam = build_beam(config)
     size = beam.planform.scale(np.array([at * beam.length]))
-    sides = [(side, [group.inlay(0.0, 1.0) for group in config.patches.groups(side)]) for side in ("actuators", "sensors")]
-    strips = {inlay.strip for _, inlays in sides for inlay in inlays}
-    elements = mesh(beam.section.chains, size, sorted(strips, key=lambda strip: (strip.wall, strip.width, strip.offset)))
-    extent = float(np.ptp(elements.points[0], axis=0).max())
-    with plt.rc_context(STYLE):
-        figure, axis = plt.subplots(figsize=_shape(elements), layout="constrained")
-        for k in range(len(elements.edges)):
-            half = 0.5 * elements.thickness[k]
-            axis.fill(*(1e3 * _piece(elements, k, -half, half)).T, facecolor=WALL, edgecolor=WALL, linewidth=0.3)
-        beneath: list[Inlay] = []
-        for (side, inlays), colour in zip(sides, PALETTE[:2], strict=True):
-            _draw_patches(axis, elements, side, inlays, colour, extent, beneath)
-            beneath = inlays
-        for name, (x, y), sign in (
-            ("tension centre", found.tension_centre, "+"),
-            ("shear centre", found.shear_centre, "x"),
-            ("mass centre", found.mass_centre, "o"),
-        ):
-            axis.plot(1e3 * x, 1e3 * y, sign, color=INK, markerfacecolor="none", markersize=7, label=name)
-        axis.set(
-            xlabel="x, along the chord, mm",
-            ylabel="y, mm",
-            aspect="equal",
-            title=f"section at {at:g} of the span, patches of every station",
-        )
-        axis.margins(0.06, 0.15)
-        figure.legend(loc="outside lower center", ncols=5, handlelength=1.2, columnspacing=1.2)
-    return figure
+    inlays = [group.inlay(0.0, 1.0) for side in SIDES for group in config.patches.groups(side)]
+    strips = {inlay.strip for inlay in inlays}
+    return mesh(beam.section.chains, size, sorted(strips, key=lambda strip: (strip.wall, strip.width, strip.offset)))
+
+
+def draw_on(axis: Any, config: BladeConfig, found: SectionProperties, elements: Mesh, theme: str = "light") -> None:
+    """A section on a pair of axes, with labels for a legend."""
+    extent, wall = float(np.ptp(elements.points[0], axis=0).max()), THEMES[theme]["wall"]
+    for k in range(len(elements.edges)):
+        half = 0.5 * elements.thickness[k]
+        axis.fill(*(1e3 * _piece(elements, k, -half, half)).T, facecolor=wall, edgecolor=wall, linewidth=0.3)
+    beneath: list[Inlay] = []
+    for side, colour in zip(SIDES, PALETTE[:2], strict=True):
+        inlays = [group.inlay(0.0, 1.0) for group in config.patches.groups(side)]
+        _draw_patches(axis, elements, side, inlays, colour, extent, beneath)
+        beneath = inlays
+    for name, (x, y), sign in (
+        ("tension centre", found.tension_centre, "+"),
+        ("shear centre", found.shear_centre, "x"),
+        ("mass centre", found.mass_centre, "o"),
+    ):
+        axis.plot(1e3 * x, 1e3 * y, sign, color=THEMES[theme]["ink"], markerfacecolor="none", markersize=7, label=name)
+    axis.set(xlabel="x, along the chord, mm", ylabel="y, mm", aspect="equal")
 
 
 def _draw_patches(

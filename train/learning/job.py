@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -27,8 +27,9 @@ from train.learning.recipe import Recipe
 from train.learning.scalars import Scalars
 from train.learning.session import Budget, follow
 from train.learning.training import Progress, Report, Training
+from train.learning.validation import Validation
+from train.shared.curve import LOOKED, VALIDATION, write_curve
 from train.shared.curve import NAME as CURVE
-from train.shared.curve import write_curve
 from train.shared.held_models import told_models
 from train.shared.interruption import Interrupted, ending_as_interrupted
 from train.shared.lock import alone_in
@@ -62,6 +63,8 @@ class Job:
     """Folder of a trained policy to start from; of several runs in it, the one that ended its training at the least cost."""
     content: Scenario | None = None
     """What the scenario's file says, for where it is not."""
+    looks: int = 0
+    """How many times a training that never looks at its policy on validation seeds is looked at, for its learning curve alone."""
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario; of a model of one's own a generalist has those that can be of it."""
@@ -148,7 +151,9 @@ def _run(job: Job, folder: Path, report: Report, before: Mapping[str, Any] | Non
     with one_torch_thread():
         start = AGENTS[job.recipe.agent].training
         training = start(list(tasks.values()), job.recipe.settings, job.seed, teacher_for(job.teacher, tasks))
-        journal = Journal(folder, job.budget, training, job.told(tasks), report)
+        looks = 0 if getattr(job.recipe.settings, "validation", 0) else job.looks
+        validation = Validation(list(tasks.values())) if looks else None
+        journal = Journal(folder, job.budget, training, job.told(tasks), report, validation, looks)
         try:
             elapsed = journal.begin() if before is None else journal.resume(before)
             policies = follow(training, job.budget, journal.note, journal.keep, elapsed)
@@ -179,9 +184,19 @@ def teacher_for(folder: Path | None, tasks: Mapping[str, Task]) -> Policy | None
 class Journal:
     """The learning curve, the checkpoints and TensorBoard's files of a training."""
 
-    def __init__(self, folder: Path, budget: Budget, training: Training, identity: str, report: Report) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        budget: Budget,
+        training: Training,
+        identity: str,
+        report: Report,
+        validation: Validation | None = None,
+        looks: int = 0,
+    ) -> None:
         self.curve: list[Progress] = []
         self.seconds = 0.0
+        self._validation, self._looks = validation, looks
         self.scalars = Scalars(folder / "tensorboard")
         self._folder, self._budget, self._training, self._identity, self._report = folder, budget, training, identity, report
 
@@ -197,8 +212,8 @@ class Journal:
         try:
             self._training.load_state_dict(before["training"])
             self.curve = [
-                Progress(elapsed, steps, cost, updates, tuple(costs), validated)
-                for elapsed, steps, cost, updates, costs, validated in before["curve"]
+                Progress(elapsed, steps, cost, updates, tuple(costs), validated, tuple(*looked))
+                for elapsed, steps, cost, updates, costs, validated, *looked in before["curve"]
             ]
             self.seconds = float(before["seconds"])
         except Exception as error:  # noqa: BLE001 - torch, NumPy and SB3 each complain of a state in ways of their own
@@ -213,15 +228,21 @@ class Journal:
     def note(self, progress: Progress) -> None:
         """A point of the curve where it is time, and report."""
         self.seconds = progress.elapsed
-        due = self._budget.share(progress.updates, progress.elapsed) * CURVE_POINTS >= len(self.curve) + 1
-        if due or np.isfinite(progress.validated):
+        share = self._budget.share(progress.updates, progress.elapsed)
+        if share * self._looks >= sum(bool(each.looked) for each in self.curve) + 1 and self._validation is not None:
+            costs = tuple(self._validation.cost(policy) for policy in self._training.policies())
+            progress = replace(progress, looked=costs)
+        if share * CURVE_POINTS >= len(self.curve) + 1 or progress.looked or np.isfinite(progress.validated):
             self.curve.append(progress)
             self.scalars.write(progress, self._training.losses)
         self._report(progress)
 
     def keep(self, elapsed: float) -> None:
         """Write a checkpoint."""
-        curve = [[each.elapsed, each.steps, each.cost, each.updates, list(each.costs), each.validated] for each in self.curve]
+        curve = [
+            [each.elapsed, each.steps, each.cost, each.updates, list(each.costs), each.validated, list(each.looked)]
+            for each in self.curve
+        ]
         training = self._training.state_dict()
         if self.finished:
             training.pop("memory", None)  # of experience, which is large: nothing will be learnt from it any more
@@ -230,8 +251,9 @@ class Journal:
 
     def write_curve(self, folder: Path, run: int) -> None:
         """``learning.csv`` of one of the runs."""
-        rows = [(each.elapsed, each.steps, each.updates, each.costs[run], each.validated) for each in self.curve]
-        write_curve(folder, rows)
+        seen = [each.looked[run] if each.looked else each.validated for each in self.curve]
+        rows = [(each.elapsed, each.steps, each.updates, each.costs[run], one) for each, one in zip(self.curve, seen, strict=True)]
+        write_curve(folder, rows, LOOKED if any(each.looked for each in self.curve) else VALIDATION)
 
 
 def save_all(

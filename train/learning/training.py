@@ -31,6 +31,8 @@ class Progress:
     """``cost`` of each of the runs side by side, of which it is the mean."""
     validated: float = math.nan
     """J relative to no control without exploration, on validation seeds; NaN unless a look at the policy followed this update."""
+    looked: tuple[float, ...] = ()
+    """The same of each run where the training itself does not look: nothing is chosen by it. Empty unless one followed."""
 
 
 Report = Callable[[Progress], None]

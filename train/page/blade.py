@@ -15,8 +15,8 @@ from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import drive_limit
 from beamenv.rendering import scene
 from beamenv.rendering.deformation import Deformation
-from beamenv.rendering.palette import INK, OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
-from beamenv.rendering.solid import BladeSolid
+from beamenv.rendering.palette import INK, LIGHT, OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
+from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid
 from train.figures.themes import THEMES, Theme
 from train.page.recording import RecordedEpisode, Recording
 
@@ -25,8 +25,6 @@ Array = NDArray[np.float64]
 FRAME_INTERVAL = 4e-3
 """s between frames: some nine a period of the slowest mode."""
 MOST_FRAMES = 500
-SHOWN_DEFLECTION = 0.15
-"""Share of the span that the largest deflection is drawn as, at most."""
 COLOURS = 17
 """Of a scale, evenly spaced; between them the script interpolates."""
 NEGLIGIBLE = 1e-7
@@ -163,7 +161,7 @@ def _view(blade: Blade) -> dict[str, Any]:
     side = np.array([-1.0 if np.sin(middle) < 0.0 else 1.0, 1.0, 1.0])
     return {
         "towards": (side * scene.TOWARDS).tolist(),
-        "light": (side * scene.LIGHT / np.linalg.norm(scene.LIGHT)).tolist(),
+        "light": (side * scene.SUN / np.linalg.norm(scene.SUN)).tolist(),
         "distance": scene.DISTANCE * beam.length,
         "drop": scene.SENSOR_DROP * beam.length,
         "ribs": scene.RIBS,
@@ -173,7 +171,7 @@ def _view(blade: Blade) -> dict[str, Any]:
 
 def _colours(theme: Theme) -> dict[str, Any]:
     """Of what stands for no value."""
-    body, hub = ([shade.tolist() for shade in shades] for shades in (scene.BODY, scene.HUB))
+    body, hub = ([list(shade) for shade in shades] for shades in (LIGHT.body, LIGHT.hub))
     return {"ink": theme.ink, "rest": theme.faint, "outline": INK, "body": body, "hub": hub}
 
 

@@ -16,7 +16,7 @@ from plotly.offline import get_plotlyjs, get_plotlyjs_version
 from beamenv.configuration.writing import write_whole
 from train.figures import screen
 from train.figures.figure import Panel
-from train.figures.heat_map import HeatMap
+from train.figures.heat_map import QUANTITY, WAY, HeatMap
 from train.figures.panels import LearningCurves, learning_panel, pole_panel
 from train.figures.screen_heat_map import heat_map
 from train.figures.themes import THEMES
@@ -157,7 +157,7 @@ def plots(content: PageContent) -> list[Plot]:
         )
     if content.learning is not None and any(len(curve) for curve in content.learning.curves.values()):
         note = (
-            "Agents: running cost in training, or, of those that explore, the policy without exploration where validation looked. "
+            "Agents: the policy without exploration on validation episodes; where it says so, the running cost in training. "
             "Level lines: controllers that do not learn, on the held-out episodes."
         )
         found.append(
@@ -194,6 +194,6 @@ def _plotted(panel: Panel, **layout: Any) -> go.Figure:
 
 
 def _heat_map(content: HeatMap) -> Plot:
-    note = "Blue: better than no control. ✕: share of episodes in which the blade failed or the loop was unstable. Empty: not run."
+    note = "; ".join([f"{QUANTITY}: {WAY}, dark is bad", *content.key.split("    ")]).rstrip("; ") + "."
     height, width = max(320, 180 + 44 * len(content.scenarios)), 260 + 62 * len(content.controllers)
     return Plot("heat-map", "Scenarios", note, go.Figure(heat_map(content)), height, width, instead.HEAT_MAP)

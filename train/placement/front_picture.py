@@ -19,7 +19,6 @@ Array = NDArray[np.float64]
 def draw_front(sized: SizedFront, path: Path) -> None:
     """Write the picture."""
     import matplotlib.pyplot as plt
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     panels = front_panels(sized)
     with plt.rc_context(STYLE):
@@ -27,11 +26,6 @@ def draw_front(sized: SizedFront, path: Path) -> None:
         for axis, panel in zip(axes, panels, strict=True):
             draw_panel(axis, panel)
             axis.legend(handles=handles([panel]), loc="best")
-        axes[0].set_xscale("log")
-        for each in (axes[0].xaxis, axes[0].yaxis):
-            each.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            each.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            each.set_minor_formatter(NullFormatter())
         save(figure, path)
 
 
@@ -58,4 +52,4 @@ def cost_panel(sized: SizedFront) -> Panel:
         look = Look(PALETTE[k + 1], marker=Marker(SIGNS[2 + k], size=6, fill="none"), above=True)
         curves.append(Curve(np.array([1e3 * each.mass]), np.array([1e6 * each.cost]), f"own size, {each.name}", "points", look))
     title = f"Patches of a blade at {sized.problem.config.speed:g} rad/s"
-    return Panel(title, "mass of piezo sheet, g", "stationary cost of LQG, µJ", curves, logarithmic=True)
+    return Panel(title, "mass of piezo sheet, g", "stationary cost of LQG, µJ", curves, logarithmic=True, x_logarithmic=True)

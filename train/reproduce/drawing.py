@@ -22,6 +22,9 @@ SIGNS = (
 PALE = replace(PLAIN, width=2.6, opacity=0.5)
 NOTHING = np.empty(0)
 Looks = dict[str, Look]
+MATERIALS = {"MFC": (0.0, "circle"), "PZT": (0.4, "square")}
+"""Lightness and sign of patches of a material, the same in all figures."""
+LIGHTEST = 0.78
 PAGE_WIDTH, SINGLE_WIDTH, PANEL_HEIGHT, LOW_PANEL_HEIGHT, LEGEND_ROW = 8.6, 6.2, 2.7, 1.9, 0.22
 """Inches."""
 
@@ -46,7 +49,8 @@ def draw(outcome: Outcome, title: str) -> bytes:
             if isinstance(panel, Grid):
                 draw_grid(axis, panel)
             else:
-                draw_panel(axis, dressed(panel, looks, in_pairs="dotted" in outcome.lines))
+                dotted = any(curve.line == "dotted" for curve in panel.curves)
+                draw_panel(axis, dressed(panel, looks, in_pairs=dotted and "dotted" in outcome.lines))
         for axis in axes.flat[len(outcome.panels) :]:
             axis.set_visible(False)
         figure.suptitle(title, fontsize=10, x=0.01, ha="left")
@@ -88,13 +92,32 @@ def appearances(outcome: Outcome) -> Looks:
     labels = labels_of(outcome.panels)
     if not labels or len(labels) + len(printed_entries(outcome.panels)) < 2:
         return {}
+    own = {curve.label: curve.look.marker for curve in reversed(curves_of(outcome.panels)) if curve.look.marker}
     looks: Looks = {}
     for together in shared_labels(outcome.panels):
-        for place, label in enumerate(together):
-            lightness = 0.78 * place / max(1, len(together) - 1)
-            marker = Marker(SIGNS[labels.index(label) % len(SIGNS)])
+        for label, lightness in zip(together, lightnesses(together), strict=True):
+            marker = replace(own.get(label, Marker()), sign=sign_of(label, labels))
             looks[label] = Look(to_hex(colormaps["viridis"](lightness)), marker=marker)
     return looks
+
+
+def lightnesses(labels: Sequence[str]) -> list[float]:
+    """From dark to light; materials have their own, and others beside them lighter ones."""
+    others = [label for label in labels if label not in MATERIALS]
+    if len(others) == len(labels):
+        return [LIGHTEST * place / max(1, len(labels) - 1) for place in range(len(labels))]
+    darkest = max(lightness for lightness, _ in MATERIALS.values())
+    step = (LIGHTEST - darkest) / max(1, len(others))
+    return [MATERIALS[label][0] if label in MATERIALS else darkest + step * (others.index(label) + 1) for label in labels]
+
+
+def sign_of(label: str, labels: Sequence[str]) -> str:
+    """By its place among all labels; where there are materials, those that are none have the signs after theirs."""
+    if label in MATERIALS:
+        return MATERIALS[label][1]
+    others = [each for each in labels if each not in MATERIALS]
+    first = len(MATERIALS) if len(others) < len(labels) else 0
+    return SIGNS[(first + others.index(label)) % len(SIGNS)]
 
 
 def shared_labels(panels: Sequence[Panel | Grid]) -> list[list[str]]:
@@ -140,7 +163,7 @@ def signed_labels(panels: Sequence[Panel | Grid]) -> set[str]:
     for panel in panels:
         curves = curves_of([panel])
         points = {curve.label for curve in curves if curve.line == "points"}
-        signed |= points or {curve.label for curve in curves}
+        signed |= points or {curve.label for curve in curves if curve.line != "bars"}
     return signed
 
 
@@ -174,7 +197,7 @@ def line_look(curve: Curve, looks: Looks, in_pairs: bool, marked: bool) -> Look:
     Where points of the same label mean something (not ``marked``) the line goes without signs.
     """
     look = looks.get(curve.label, PLAIN)
-    if curve.look.opacity < 1.0:
+    if curve.look.opacity < 1.0 or curve.line == "bars":
         return replace(look, width=curve.look.width, opacity=curve.look.opacity, marker=None)
     if look.marker is not None:
         place, points = list(looks).index(curve.label), len(curve.x)

@@ -19,13 +19,16 @@ COLUMNS = ("elapsed", "steps", "updates", "cost")
 """s, control intervals, updates of the policy, J relative to no control in training, exploration included."""
 
 VALIDATION = "validation"
-"""A further column, where a training looked: J relative to no control on validation seeds, without exploration."""
+"""A further column, where a training looked and kept the best: J over no control on validation seeds, without exploration."""
+
+LOOKED = "looked"
+"""The same where a training was looked at, and kept the last."""
 
 
-def write_curve(folder: Path, points: Sequence[Sequence[float]]) -> None:
-    """``learning.csv`` of a training, a row of ``COLUMNS`` and ``VALIDATION`` for each point; NaN is where nobody looked."""
+def write_curve(folder: Path, points: Sequence[Sequence[float]], further: str = VALIDATION) -> None:
+    """``learning.csv`` of a training, a row of ``COLUMNS`` and the ``further`` one for each point; NaN is where nobody looked."""
     looked = any(np.isfinite(point[len(COLUMNS)]) for point in points)
-    columns = (*COLUMNS, VALIDATION) if looked else COLUMNS
+    columns = (*COLUMNS, further) if looked else COLUMNS
     write_csv(folder / NAME, [dict(zip(columns, point, strict=False)) for point in points], columns)
 
 
@@ -36,22 +39,33 @@ def read_curve(folder: Path) -> Array:
     """
     path = folder / NAME
     rows = read_rows(path, "a learning curve")
-    columns = (*COLUMNS, VALIDATION) if rows and VALIDATION in rows[0][1] else COLUMNS
+    further = tuple(name for name in (VALIDATION, LOOKED) if rows and name in rows[0][1])[:1]
+    columns = (*COLUMNS, *further)
     if not rows or tuple(rows[0][1]) != columns:
         first = shown(",".join(rows[0][1]) if rows else "")
         raise ValueError(f"file {str(path)!r} has in line 1 {first}, but must have the columns {','.join(COLUMNS)}.")
     points = np.array([_numbers(path, line, row, columns) for line, row in rows[1:]], dtype=np.float64).reshape(-1, len(columns))
-    seen = points if columns == COLUMNS else points[np.isfinite(points[:, -1])]
+    seen = points[np.isfinite(points[:, -1])] if further else points
     return np.ascontiguousarray(seen[:, [0, 1, -1]])
+
+
+def drawn_as(name: str, folder: Path) -> str:
+    """An agent's name beside its curve, which is of training episodes where nobody looked on validation seeds."""
+    return name if _further(folder) else f"{name}, in training"
 
 
 def kept_cost(folder: Path) -> float:
     """Cost of the policy that a training kept: the least that validation saw, or the last; infinite if the last is no number."""
-    path = folder / NAME
-    costs = read_curve(folder)[:, 2].tolist() if path.exists() else []
-    with_validation = bool(costs) and path.read_text(encoding="utf-8").partition("\n")[0].endswith(VALIDATION)
-    kept = min(costs) if with_validation else costs[-1] if costs else float("nan")
+    costs = read_curve(folder)[:, 2].tolist() if (folder / NAME).exists() else []
+    best_is_kept = bool(costs) and _further(folder) == VALIDATION
+    kept = min(costs) if best_is_kept else costs[-1] if costs else float("nan")
     return float(kept) if kept == kept else float("inf")
+
+
+def _further(folder: Path) -> str:
+    """The column beside ``COLUMNS``; empty without one."""
+    last = (folder / NAME).read_text(encoding="utf-8").partition("\n")[0].strip().rpartition(",")[2]
+    return last if last in (VALIDATION, LOOKED) else ""
 
 
 def _numbers(path: Path, line: int, row: Sequence[str], columns: Sequence[str]) -> list[float]:

@@ -14,7 +14,7 @@ from train.benchmark.showing.legend import details, terms
 from train.benchmark.showing.report import overview, scenario_table
 from train.benchmark.showing.scores import headroom, scores
 from train.benchmark.table import BenchmarkTable
-from train.figures.paper import save
+from train.figures.paper import save_themes
 from train.figures.paper_heat_map import heat_map as drawn
 from train.shared.markdown import escaped, folded
 from train.shared.markdown import table as markdown_table
@@ -35,13 +35,17 @@ does not, is told beside the agents.
 - **Yours**: a further file in either folder adds a row or a column. `beamenv benchmark --submit mine` puts a trained agent of
   yours through every scenario and enters it on the [leaderboard](leaderboard.md).
 """
-PICTURE = "![J / J₀ of controllers in every scenario; lower is better](images/benchmark.png)"
+PICTURE = (
+    "![J / J₀ of controllers in every scenario; lower is better](images/benchmark.png#only-light)\n"
+    "![The same on dark ground](images/benchmark-dark.png#only-dark)"
+)
 FOLDED = "The tables are folded: a click opens one. An agent has a row for all its training runs together."
 
 
 def write_docs(folder: Path, table: BenchmarkTable, command: str) -> None:
-    """``benchmark.md`` with its heat map in ``images/``."""
-    save(drawn(heat_map(table)), folder / "images" / "benchmark.png")
+    """``benchmark.md`` with its heat map in ``images/``, for light and for dark pages."""
+    content = heat_map(table)
+    save_themes(lambda theme: drawn(content, theme), folder / "images" / "benchmark.png")
     write_whole(folder / "benchmark.md", page(table, command))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from beamenv.knowledge import TIERS
+from beamenv.titles import TIERS
 from train.benchmark.contests import AHEAD, BEHIND, contests
 from train.benchmark.score import by_split, split_of
 from train.benchmark.showing.section import Entry, Section, words

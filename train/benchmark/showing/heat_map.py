@@ -1,4 +1,4 @@
-"""Scenarios against the controllers that matter as a heat map."""
+"""Scenarios against the controllers that matter, as a heat map."""
 
 from __future__ import annotations
 
@@ -14,16 +14,14 @@ from train.benchmark.table import CLAIRVOYANT, RIVAL, BenchmarkTable
 from train.benchmark.targets import best
 from train.figures.heat_map import HeatMap
 
-MOST = 13
-"""Controllers that a page's width holds."""
-
-REFERENCE = "truth"
-"""The group of those that are told the truth."""
+MOST = 9
+"""Controllers that a page's width holds in letters that are easy to read."""
 
 RULE = (
-    f"The picture has all controllers where there are {MOST} at most, and else LQG, of each kind in tiers 0 to 2 and of the "
-    "specialists who was measured in most scenarios and has the least interquartile mean of J / J₀ over them, the clairvoyant law, "
-    "and the best generalists and the caller's own as far as there is room. The tables have all."
+    f"The picture has all controllers where there are {MOST} at most, and else lqg, clairvoyant, the caller's own and, of tiers 0 "
+    "to 2, the best classical controller and the best agent; then the best of the other generalists and classical controllers as "
+    "far as there is room. The better was measured in more scenarios or has the lower interquartile mean of J / J₀ over as many. "
+    "The tables have all."
 )
 """Who is shown, for whoever shows it."""
 
@@ -31,7 +29,7 @@ RULE = (
 def heat_map(table: BenchmarkTable) -> HeatMap:
     """Scenarios split by split, controllers tier by tier but for no control, which is 1 everywhere.
 
-    The best of a scenario is not told the truth, and need not be among those shown.
+    The best of a scenario is the best of those shown who are not told the truth.
     """
     names, scenarios = shown(table), by_split(table)
     tiers = {row.controller: f"tier {row.tier}" for row in table.rows}
@@ -41,7 +39,7 @@ def heat_map(table: BenchmarkTable) -> HeatMap:
         relative_cost=_estimates(table, scenarios, names, "relative_cost"),
         failed=_estimates(table, scenarios, names, "unstable"),
         kinds=tuple(tiers[name] for name in names),
-        best=tuple(_best(table, scenario) for scenario in scenarios),
+        best=tuple(_best(table, scenario, names) for scenario in scenarios),
         lost=frozenset((row.scenario, row.controller) for row in table.rows if not row.measured),
         groups=tuple(scenarios.values()),
     )
@@ -53,21 +51,15 @@ def shown(table: BenchmarkTable) -> tuple[str, ...]:
     if len(names) <= MOST:
         return tuple(names)
     ranked = sorted(names, key=lambda name: _rank(table, name))
-    groups = {name: _group(table, name) for name in ranked}
-    firsts = {group: next(name for name in ranked if groups[name] == group) for group in groups.values() if group}
-    if CLAIRVOYANT in names:
-        firsts[REFERENCE] = CLAIRVOYANT
-    chosen = dict.fromkeys([RIVAL, *firsts.values(), *(name for name in ranked if not groups[name])])
-    kept = list(chosen)[:MOST]
+    rows = {row.controller: row for row in table.rows}
+    told_less = [name for name in ranked if rows[name].tier < TRUTH]
+    own = [name for name in ranked if rows[name].kind == "own"]
+    firsts = {(rows[name].tier, rows[name].kind == "learned"): name for name in reversed(told_less)}
+    generalists = [name for name in told_less if name.endswith(GENERALIST)]
+    laws = [name for name in told_less if rows[name].kind != "learned"]
+    wanted = dict.fromkeys(name for name in [RIVAL, CLAIRVOYANT, *own, *firsts.values(), *generalists, *laws] if name in names)
+    kept = list(wanted)[:MOST]
     return tuple(name for name in names if name in kept)
-
-
-def _group(table: BenchmarkTable, name: str) -> str:
-    """Of which one is shown; empty for those that are all shown as far as there is room."""
-    row = next(row for row in table.rows if row.controller == name)
-    if row.kind == "own" or name.endswith(GENERALIST):
-        return ""
-    return REFERENCE if row.tier == TRUTH else f"{row.tier} {row.kind}"
 
 
 def _rank(table: BenchmarkTable, name: str) -> tuple[int, float]:
@@ -84,6 +76,6 @@ def _estimates(
     return np.array([[row.estimates[estimate].value if row and row.measured else np.nan for row in line] for line in rows])
 
 
-def _best(table: BenchmarkTable, scenario: str) -> str:
-    first = best(row for row in table.within(scenario) if row.tier < TRUTH)
+def _best(table: BenchmarkTable, scenario: str, names: tuple[str, ...]) -> str:
+    first = best(row for row in table.within(scenario) if row.tier < TRUTH and row.controller in names)
     return first.controller if first else ""

@@ -16,7 +16,7 @@ from train.benchmark.targets import findings
 from train.controllers.shipped import shipped_agents
 from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
 from train.page.lead import COST, blade_in_words, counted, load_in_words
-from train.shared.curve import read_curve
+from train.shared.curve import drawn_as, read_curve
 
 COLUMN = next(column for column in COLUMNS if column.name == "relative_cost")
 
@@ -81,7 +81,8 @@ def learning_curves(table: BenchmarkTable) -> LearningCurves | None:
     level = next((row for row in table.rows if (row.scenario, row.controller) == ("nominal", "lqg") and row.measured), None)
     own = {row.controller for row in table.rows if row.scenario == "nominal" and row.kind == "learned"}
     runs = {name: each.only_in["nominal"] for name, each in shipped_agents().items() if name in own and "nominal" in each.only_in}
-    curves = {name: read_curve(next(iter(each.values())).folder) for name, each in runs.items()}
+    firsts = {name: next(iter(each.values())).folder for name, each in runs.items()}
+    curves = {drawn_as(name, folder): read_curve(folder) for name, folder in firsts.items()}
     if level is None or not curves:
         return None
     return LearningCurves(curves, {level.controller: level.estimates["relative_cost"].value})

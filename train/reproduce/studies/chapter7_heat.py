@@ -158,14 +158,14 @@ def controlled(model: Model) -> Outcome:
         if celsius in DRAWN:
             shown = responses[0].times <= SHOWN
             for response, line in zip(responses, ("dotted", "solid"), strict=True):
-                curves.append(Curve(response.times[shown], 1e3 * response.tip[shown], f"{celsius:.0f} °C", line))
+                curves.append(Curve(response.times[shown], 1e3 * response.tip[shown], f"{celsius:.0f} °C".replace("-", "−"), line))
     table = np.array(rows)
     alone, plain, robust, told = table[:, 3:].T
     x, stable = np.array(CELSIUS), np.isfinite(plain)
     shares = [
         Curve(x[stable], (plain / alone)[stable], "LQG of 27 °C"),
-        Curve(x, robust / alone, "robust LQG of 27 °C", "dashed"),
-        Curve(x, told / alone, "LQG told the blade", "dotted"),
+        Curve(x, robust / alone, "robust LQG of 27 °C"),
+        Curve(x, told / alone, "LQG told the blade"),
     ]
     panels = [
         Panel("step in flap", "time (s)", "tip displacement (mm)", curves),
@@ -185,7 +185,7 @@ def controlled(model: Model) -> Outcome:
     notes = [
         f"Robust LQG, not told the temperature, costs up to {100.0 * (robust / told - 1.0).max():.2g} % more than LQG that is."
     ]
-    styles = {"solid": "controlled, by the robust law", "dotted": "no control"}
+    styles = {"solid": "left: under robust LQG of 27 °C", "dotted": "left: no control"}
     return Outcome(evidence, panels, styles, header=header, rows=listed, notes=notes)
 
 

@@ -20,8 +20,7 @@ from baselines.placement.sizing.own_layouts import layouts_of
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import blade_config
 from train.figures.figure import Curve, Look, Marker, Panel
-from train.figures.palette import PALETTE
-from train.figures.patches import ASIDE, patches_panel, rows_of
+from train.figures.patches import patches_panel, rows_of
 from train.reproduce.judging.study import Outcome, Statement, Study
 from train.reproduce.judging.verdicts import Changes, Marginal, Matches, Small, Substantial
 from train.reproduce.thesis import Model
@@ -33,6 +32,7 @@ STEP = 5e-5
 APART = (0.1, 0.45, 0.8, 1.2, 0.05, 0.3, 0.6, 1.0)
 LENGTHS = (0.1, 0.06, 0.12, 0.08, 0.07, 0.09, 0.05, 0.1)
 """m: a design none of whose edges meet, where the cost has slopes."""
+FROM_THE_ROOT = "from the root (m)"
 NODE = 0.216575
 """Of a cantilever's span: where its second mode has no curvature."""
 BETA = (1.8751040687, 4.6940911330)
@@ -54,7 +54,7 @@ def designs_of(rows: list[list[float]]) -> Designs:
 def front(model: Model) -> Outcome:
     """The trade-off, evaluated anew, beside the thesis' layout and the best of its patches."""
     config = BladeConfig()
-    problem, designs = SizingProblem.of(config), designs_of(kept()["front"])
+    problem, designs, span = SizingProblem.of(config), designs_of(kept()["front"]), config.beam.length
     mass, cost = problem.mass(designs), problem.cost(designs)
     layouts = layouts_of(problem, config, placed=False)
     thesis = layouts[-1]
@@ -69,20 +69,14 @@ def front(model: Model) -> Outcome:
         "slopes": (exact - numeric) / np.abs(exact).max(),
         "made": [0.0 if feasible(problem, designs) else 1.0],
     }
-    curves = [Curve(1e3 * mass, 1e6 * cost, "sized and placed", look=Look(marker=Marker("circle", size=3.5)))]
-    for k, each in enumerate(layouts):
-        look = Look(PALETTE[k + 1], marker=Marker("diamond", size=6), above=True)
+    curves = [Curve(1e3 * mass, 1e6 * cost, "sized and placed", look=Look(marker=Marker(size=3.5)), joined="begins")]
+    for each, marker in zip(layouts, (Marker(size=8, fill="none"), Marker(size=3.5)), strict=True):  # one lies upon the other
+        look = Look(marker=marker, above=True)
         curves.append(Curve(np.array([1e3 * each.mass]), np.array([1e6 * each.cost]), f"own size, {each.name}", "points", look))
+    quantities = "mass of piezo sheet (g)", "stationary cost of LQG (µJ)"
     panels = [
-        Panel(
-            "damping against mass",
-            "mass of piezo sheet (g)",
-            "stationary cost of LQG (µJ)",
-            curves,
-            logarithmic=True,
-            x_linear_within=1.0,
-        ),
-        patches_panel([point(problem, designs[[k]], 0.0) for k in range(len(designs))], config.beam.length),
+        Panel("cost against mass", *quantities, curves, logarithmic=True, x_logarithmic=True),
+        replace(patches_panel([point(problem, designs[[k]], 0.0) for k in range(len(designs))], span), x_label=FROM_THE_ROOT),
     ]
     return Outcome(evidence, panels)
 
@@ -99,19 +93,18 @@ def slopes_both_ways(problem: SizingProblem, design: Designs) -> tuple[Array, Ar
 def together(model: Model) -> Outcome:
     """Both sides at once over one after the other, on two blades."""
     gains, rows, curves = [], [], []
-    for number, (name, layouts) in enumerate(kept()["together"].items()):
+    for name, layouts in kept()["together"].items():
         problem = JointProblem.of(blade_config(name))
         half, length = problem.bounds[0].count, problem.bounds[0].length
         costs = problem.cost(np.array([layouts["in turn"], layouts["at once"]]))
         gains.append(costs[1] / costs[0] - 1.0)
-        for k, (how, cost) in enumerate(zip(("in turn", "at once"), costs, strict=True)):
+        for how, cost in zip(("in turn", "at once"), costs, strict=True):
             above, below = layouts[how][:half], layouts[how][half:]
             rows.append([name, how, *(" ".join(f"{each:.3f}" for each in side) for side in (above, below)), f"{1e6 * cost:.2f}"])
-            for label, side, shift in (("actuators", above, ASIDE), ("sensors", below, -ASIDE)):
-                patches = [Patch(start, length) for start in side]
-                curves.append(rows_of(patches, 2.0 * number + k + 1.0 + shift, label, Look()))
-    names = ", ".join(f"{2 * k + 1} and {2 * k + 2}: {name}" for k, name in enumerate(kept()["together"]))
-    panel = Panel(f"in turn, then at once ({names})", "from the root (m)", "layout", curves, whole=True)
+            actuators, sensors = ([Patch(start, length) for start in side] for side in (above, below))
+            curves += rows_of(actuators, sensors, len(rows), problem.config.beam.length)
+    names = [f"{blade}, placed {how}" for blade, how, *_ in rows]
+    panel = Panel("patches along the span", FROM_THE_ROOT, "", curves, y_names=names)
     return Outcome({"gain": gains}, [panel], header=["blade", "placed", "actuators (m)", "sensors (m)", "cost (µJ)"], rows=rows)
 
 
