@@ -16,6 +16,8 @@ from train.figures.panels import pole_panel
 
 ACROSS = "frequency, rad/s"
 HALF_A_TURN = 180.0
+MOST_TICKS = 4
+"""Of a logarithmic axis, about."""
 BY_CONTROLLER = ((Look(NEUTRAL, 1.2), "solid"), (Look(PALETTE[0], 2.2), "dashed"))
 """Look and line without control and under LQG: told apart by their dashes and width too."""
 
@@ -72,10 +74,15 @@ def over_frequency(panels: Sequence[Panel], loop: Loop) -> Figure:
     decades = {"type": "log", "dtick": 1, "minor": {"showgrid": True}, "exponentformat": "none"}
     layout["xaxis"] |= {**decades, "range": [float(np.log10(low)), float(np.log10(high))]}
     layout["xaxis2"] = {**beside("x", low, high, logarithmic=True), "anchor": "y"}
-    for name in ("yaxis", "yaxis2"):
-        layout[name] |= {"automargin": True} | ({"dtick": 1} if layout[name].get("type") == "log" else {})
+    for name, panel in zip(("yaxis", "yaxis2"), panels, strict=True):
+        layout[name] |= {"automargin": True} | ({"dtick": _decades_a_tick(panel)} if panel.logarithmic else {})
     layout["margin"] = {**layout["margin"], "t": 76}
     layout["legend"] = {**layout["legend"], "yref": "container", "y": 1.0, "yanchor": "top"}
     first = panels[0].curves[0].y
     figure["data"].append(carrier("x", low, float(first[0])))
     return figure
+
+
+def _decades_a_tick(panel: Panel) -> int:
+    values = np.concatenate([curve.y[curve.y > 0.0] for curve in panel.curves])
+    return max(1, round(float(np.ptp(np.log10(values))) / MOST_TICKS)) if len(values) else 1
