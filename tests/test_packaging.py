@@ -84,7 +84,7 @@ WITH_TRAIN_ALONE = ("torch", "stable_baselines3", "sb3_contrib", "tensorboard", 
 WITHOUT_TRAINING = (
     ["frequencies", "--json"],
     ["place", "--sensors", "1", "--method", "grid", "--picture", "p.png"],
-    ["evaluate", "none", "--seeds", "2", "--json"],
+    ["evaluate", "none", "--episodes", "2", "--json"],
     ["record", "none", "--episodes", "1", "--folder", "sets"],
 )
 

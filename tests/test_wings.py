@@ -142,7 +142,7 @@ def test_everything_shown_works_from_the_wheel(installed, name, other, tmp_path)
         (site / "__init__.py").write_text(OTHERS[other])
     try:
         run([installed, script_of_a_user(name, tmp_path, IN_PROCESSES)], tmp_path)
-        command = [installed.with_name("beamenv"), "evaluate", "none", "--seeds", "2", "--json"]
+        command = [installed.with_name("beamenv"), "evaluate", "none", "--episodes", "2", "--json"]
         assert json.loads(run(command, tmp_path, PYTHONPATH=str(tmp_path)))["controller"] == "none"
     finally:
         shutil.rmtree(site, ignore_errors=True)

@@ -119,7 +119,7 @@ def invoked(command):
         **{f"argument {k}": WORD for k in range(len(positional))},
         **dict.fromkeys(options, WORD),
         **dict.fromkeys(flags, Kind("flag", bool, st.booleans())),
-        "more": Kind("more", lambda value: value, st.sampled_from(["--colour", "--", "x", "-x", "--json=3", "--seeds"])),
+        "more": Kind("more", lambda value: value, st.sampled_from(["--colour", "--", "x", "-x", "--json=3", "--episodes"])),
     }
     valid = {**{f"argument {k}": word for k, word in enumerate(positional)}, **options, **dict.fromkeys(flags, False), "more": None}
     return Door(f"beamenv {command}", call, kinds, lambda: dict(valid), junk=st.nothing(), plain=False, told=OTHER_NAMES)

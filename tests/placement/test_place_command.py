@@ -49,7 +49,7 @@ def test_speed_blade_and_passive_effect_are_options(tmp_path):
     (told,) = json.loads(run("--sensors", "1", "--method", "sqp", "--blade", str(blade), "--speed", "100", "--json").stdout)
     problem = PlacementProblem.of(blade_config(overrides={"patches": {"sensors": 1}}, speed=100.0), "sensors")
     assert told["cost"] == pytest.approx(place(problem, "sqp").cost)
-    (other,) = json.loads(run("--sensors", "1", "--method", "sqp", "--no-passive", "--json").stdout)
+    (other,) = json.loads(run("--sensors", "1", "--method", "sqp", "--no-patches", "--json").stdout)
     assert other["cost"] != told["cost"]
 
 
@@ -58,7 +58,7 @@ def test_the_screen_shows_both_sides_and_a_picture_is_drawn(tmp_path):
     picture = tmp_path / "blade.png"
     result = run("--method", "sqp", "--picture", str(picture))
     assert result.exit_code == 0
-    for word in ("tr(P), s", "tr(S), J", "of uniform", "damping ratios of the regulator", "damping ratios of the filter"):
+    for word in ("tr(P), s", "tr(S), J", "of uniform", "Damping ratios of the regulator", "Damping ratios of the filter"):
         assert word in result.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")
 

@@ -31,7 +31,7 @@ def quick(monkeypatch):
 
 def test_json_tells_the_front_and_the_saved_blade_is_the_chosen_point(quick, tmp_path):
     saved = tmp_path / "blade.json"
-    result = run("--size", *TWO, "--mass", "0.03", "--json", "--save", str(saved))
+    result = run("--size", *TWO, "--mass", "0.03", "--json", "--output", str(saved))
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
     chosen = told["points"][told["chosen"]]
@@ -103,7 +103,7 @@ def test_together_tells_both_sides_and_the_gain():
         (["--size", "--mass", "0.0001"], "budget.mass is 0.0001, but must be at least 0.001977 kg"),
         (["--size", "--power", "nan"], "budget.power is nan, but must be"),
         (["--size", "--actuators", "9"], "sizes.actuators is 9, but must be"),
-        (["--size", "--save", "blade.txt"], "save is 'blade.txt', but must"),
+        (["--size", "--output", "blade.txt"], "output is 'blade.txt', but must"),
     ],
 )
 def test_bad_input_is_one_sentence(arguments, sentence):

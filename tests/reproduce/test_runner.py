@@ -174,17 +174,22 @@ def test_records_survive_their_file(tmp_path):
 
 def test_command_writes_the_page_and_the_documentation(tmp_path):
     result = CliRunner().invoke(
-        app, ["reproduce", "table-3.4", "figure-3.3", "--output", str(tmp_path / "out"), "--docs", str(tmp_path / "docs")]
+        app, ["reproduce", "table-3.4", "figure-3.3", "--folder", str(tmp_path / "out"), "--docs", str(tmp_path / "docs")]
     )
     assert result.exit_code == 0, result.output
     index, page = ((tmp_path / "docs" / name).read_text() for name in ("thesis.md", "thesis-chapter-3.md"))
     assert "](figures/figure-3.3.png)" in page and (tmp_path / "docs" / "figures" / "figure-3.3.png").exists()
     assert "not run" in index and "Chapter 6: " not in index and not (tmp_path / "docs" / "thesis-chapter-6.md").exists()
     assert (tmp_path / "out" / "report.html").exists() and (tmp_path / "out" / "report.md").exists()
+    assert "resumed" not in result.stderr
+    again = CliRunner().invoke(app, ["reproduce", "table-3.4", "--folder", str(tmp_path / "out"), "--json"])
+    assert again.stderr.splitlines()[0] == "beamenv: resumed: 1 of 1 are kept from an earlier run."
+    (study,) = json.loads(again.stdout)["studies"]
+    assert study["name"] == "table-3.4" and study["in_nature"]["thesis"] == "reproduced" and study["error"] is None
 
 
 def test_command_lists_the_known_names_for_an_unknown_one(tmp_path):
-    result = CliRunner().invoke(app, ["reproduce", "table-9", "--output", str(tmp_path)])
+    result = CliRunner().invoke(app, ["reproduce", "table-9", "--folder", str(tmp_path)])
     assert result.exit_code == 2
     assert "table-9" in result.output and "figure-5.17" in result.output
 
@@ -204,7 +209,7 @@ def test_a_damaged_record_is_told_with_its_name_and_run_again_when_asked(content
     assert load(tmp_path, "figure-3.2", whole.fingerprint) is not None
 
 
-@pytest.mark.parametrize("arguments", [("--output", "note"), ("--docs", "note"), ("--output", "note/deeper")])
+@pytest.mark.parametrize("arguments", [("--folder", "note"), ("--docs", "note"), ("--folder", "note/deeper")])
 def test_an_output_that_cannot_be_written_is_told_before_anything_is_computed(arguments, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "note").write_text("kept")
@@ -234,7 +239,7 @@ def test_ctrl_c_writes_the_page_of_what_is_finished_and_says_how_to_go_on(tmp_pa
 
     (first,), (second,) = chosen(["table-3.4"]), chosen(["figure-3.3"])
     monkeypatch.setattr("train.cli.reproduce.chosen", lambda names: (first, replace(second, outcome=interrupted)))
-    result = CliRunner().invoke(app, ["reproduce", "--output", str(tmp_path), "--jobs", "1"])
+    result = CliRunner().invoke(app, ["reproduce", "--folder", str(tmp_path), "--jobs", "1"])
     assert result.exit_code == 130
     assert "beamenv: interrupted: what was finished is kept, and the same command resumes." in result.output
     names = sorted(path.name for path in tmp_path.iterdir())

@@ -12,13 +12,13 @@ from beamenv.scenarios.named import GROUPS
 from beamenv.task import resolve_task
 from train.benchmark.table import BenchmarkTable, Row
 from train.cli.app import app
-from train.cli.benchmark_table import blocks, print_costs
+from train.cli.benchmark_table import print_costs
 from train.cli.quick import QUICK_LAWS, QUICK_RUNS, QUICK_SCENARIOS, QUICK_SEEDS
 from train.controllers.named import named
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
 
-SMALL = ("benchmark", "--scenario", "deflection", "--controller", "lqg", "--seeds", "2", "--jobs", "1")
+SMALL = ("benchmark", "--scenario", "deflection", "--controller", "lqg", "--episodes", "2", "--jobs", "1")
 
 
 def run(*arguments):
@@ -35,6 +35,14 @@ def test_json_alone_is_printed_and_the_documentation_written(tmp_path):
     assert "](images/benchmark.png#only-light)" in text and "](images/benchmark-dark.png#only-dark)" in text
     assert f"numpy {content['configuration']['versions']['numpy']}" in text
     assert all((tmp_path / "docs" / "images" / name).is_file() for name in ("benchmark.png", "benchmark-dark.png"))
+    assert "resumed" not in result.stderr
+    again = run(*SMALL, "--folder", str(tmp_path / "results"), "--json")
+    assert again.stdout == result.stdout
+    assert "beamenv: resumed: all cells are kept from an earlier run." in again.stderr.splitlines()
+    (tmp_path / "results" / "cells" / "deflection" / "lqg.json").unlink()
+    again = run(*SMALL, "--folder", str(tmp_path / "results"), "--json")
+    assert again.stdout == result.stdout
+    assert "beamenv: resumed: 1 of 2 cells are kept from an earlier run." in again.stderr.splitlines()
 
 
 def test_what_could_not_be_served_is_told_and_the_rest_shown(tmp_path):
@@ -51,7 +59,7 @@ def test_what_could_not_be_served_is_told_and_the_rest_shown(tmp_path):
         (("--model", "mine.zip"), "can run any code when it is loaded"),
         (("--scenario", "storm"), "storm"),
         (("--controller", "pid"), "pid"),
-        (("--seeds", "1"), "seeds"),
+        (("--episodes", "1"), "episodes"),
     ],
 )
 def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, monkeypatch):
@@ -80,7 +88,7 @@ def test_what_is_quick_is_a_dozen_rows_of_every_tier_in_a_folder_of_its_own(tmp_
     assert {named(name).tier for name in QUICK_LAWS} == {0, 1, 2, 3} and set(QUICK_LAWS) <= set(asked["controllers"])
     assert set(QUICK_SCENARIOS) <= set(GROUPS["all"])
     assert re.search("2 episodes a cell: intervals are wide, ±[0-9]+ % of J / J₀", " ".join(result.stdout.split()))
-    run("benchmark", "--quick", "--scenario", "open", "--seeds", "5", "--runs", "3")
+    run("benchmark", "--quick", "--scenario", "open", "--episodes", "5", "--runs", "3")
     assert (asked["scenarios"], asked["seeds"], asked["runs"], asked["folder"].name) == (
         ["open"],
         5,
@@ -99,13 +107,14 @@ def test_a_terminal_shows_as_many_scenarios_side_by_side_as_it_has_room_for(monk
     names = ("nominal", "two-dead-actuators", "off-speed-failure", "delay")
     rows = [Row(name, law, law, "fixed", 0, 1, 2) for name in names for law in ("none", "positive-position-feedback")]
     table = BenchmarkTable(tuple(rows), {}, {})
-    assert list(blocks(table, 200)) == [names]
-    assert list(blocks(table, 80)) == [names[:2], names[2:]]
-    assert list(blocks(table, 20)) == [(name,) for name in names]
-    for width in (80, 120):
+    for width, times in ((120, 1), (80, 1), (60, 2), (20, 5)):
         monkeypatch.setenv("COLUMNS", str(width))
         print_costs(table)
-        assert max(map(len, capsys.readouterr().out.splitlines())) <= width
+        text = capsys.readouterr().out
+        assert text.count("positive-position-feedback") == times
+        assert max(map(len, text.splitlines())) <= max(width, 40)
+        assert text.count("nominal") == text.count("actuators") == 1
+        assert text.splitlines()[-1] == "✕ not measured."
 
 
 def idle(folder, **about):

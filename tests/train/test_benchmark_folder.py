@@ -2,7 +2,6 @@
 
 import csv
 import hashlib
-import io
 import json
 import shutil
 
@@ -148,7 +147,7 @@ def test_a_cell_of_the_wrong_kind_is_named_with_its_file(change, words, plain, t
 def test_each_choice_of_the_command_has_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     small = ("benchmark", "--controller", "none", "--jobs", "1", "--json")
-    for arguments in (("--seeds", "2", "--scenario", "white"), ("--seeds", "3", "--scenario", "white")):
+    for arguments in (("--episodes", "2", "--scenario", "white"), ("--episodes", "3", "--scenario", "white")):
         result = CliRunner().invoke(app, [*small, *arguments])
         assert result.exit_code == 0, result.stderr
     homes = sorted(path.name for path in (tmp_path / "results").iterdir())
@@ -157,7 +156,7 @@ def test_each_choice_of_the_command_has_a_folder_of_its_own(tmp_path, monkeypatc
         2,
         3,
     ]
-    refused = CliRunner().invoke(app, [*small, "--seeds", "2", "--scenario", "nominal", "--folder", f"results/{homes[0]}"])
+    refused = CliRunner().invoke(app, [*small, "--episodes", "2", "--scenario", "nominal", "--folder", f"results/{homes[0]}"])
     assert refused.exit_code == 2
     assert refused.stderr.startswith("beamenv: folder = ") and len(refused.stderr.splitlines()) == 1
 
@@ -257,11 +256,9 @@ class Odd:
         return np.zeros((len(observation), 4)), state
 
 
-def test_a_controller_s_odd_title_stays_text_in_every_table(tmp_path):
-    from rich.console import Console
-
+def test_a_controller_s_odd_title_stays_text_in_every_table(tmp_path, capsys):
     from baselines import evaluate
-    from train.cli.evaluations import screen_table
+    from train.cli.evaluations import show_compared
     from train.comparison.table import write_tables
 
     evaluation = evaluate(Odd(), beamenv.ENV_ID, range(2))
@@ -271,9 +268,8 @@ def test_a_controller_s_odd_title_stays_text_in_every_table(tmp_path):
     assert text[2].replace(r"\|", "").count("|") == text[0].count("|")
     with (tmp_path / "table.csv").open(newline="") as file:
         assert next(csv.DictReader(file))["controller"] == "'=cmd|x [/red] *b* `c` <i>"
-    console = Console(width=300, record=True, file=io.StringIO())
-    console.print(screen_table([evaluation]))
-    assert "[/red]" in console.export_text()
+    show_compared([evaluation])
+    assert "[/red]" in capsys.readouterr().out
     benchmark({"odd": Odd()}, folder=tmp_path / "out", **SMALL)
     with (tmp_path / "out" / "table.csv").open(newline="") as file:
         assert "'=cmd|x [/red] *b* `c` <i>" in [row["title"] for row in csv.DictReader(file)]

@@ -63,10 +63,10 @@ def test_frequencies_come_with_what_steady_rotation_does():
     assert "beyond" not in sound and "clamp" not in sound
 
 
-@pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--seeds", "2"), ("train", "gradient", "--folder")])
+@pytest.mark.parametrize("command", [("compare", "--minutes", "0", "--episodes", "2"), ("train", "gradient")])
 def test_a_file_in_the_folder_s_place_is_told_at_once(command, tmp_path):
     (tmp_path / "note").write_text("kept")
-    result = run(*command, str(tmp_path / "note"))
+    result = run(*command, "--folder", str(tmp_path / "note"))
     assert result.exit_code == 2
     assert "must be a folder" in result.stderr
     assert (tmp_path / "note").read_text() == "kept"
@@ -75,7 +75,7 @@ def test_a_file_in_the_folder_s_place_is_told_at_once(command, tmp_path):
 def test_what_is_told_the_truth_is_evaluated_on_the_solid():
     costs = {}
     for controller in ("lqg", "lqg-truth"):
-        result = run("evaluate", controller, "--scenario", "solid-20", "--seeds", "2", "--json")
+        result = run("evaluate", controller, "--scenario", "solid-20", "--episodes", "2", "--json")
         assert result.exit_code == 0, result.stderr
         costs[controller] = json.loads(result.stdout)["estimates"]["relative_cost"]["value"]
     assert costs["lqg-truth"] < min(costs["lqg"], 0.8)
@@ -83,7 +83,7 @@ def test_what_is_told_the_truth_is_evaluated_on_the_solid():
 
 @pytest.mark.parametrize("controller", ["none", "lqg"])
 def test_a_classical_law_is_evaluated_by_name(controller):
-    result = run("evaluate", controller, "--seeds", "2", "--json")
+    result = run("evaluate", controller, "--episodes", "2", "--json")
     assert result.exit_code == 0
     content = json.loads(result.stdout)
     assert len(content["per_seed"]["cost"]) == 2
@@ -97,10 +97,10 @@ def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
     (tmp_path / "brief.toml").write_text(BRIEF)
     trained = run("train", "gradient", "--recipe", str(tmp_path / "brief.toml"), "--folder", str(tmp_path / "agent"))
     assert trained.exit_code == 0, trained.output
-    result = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--json")
+    result = run("evaluate", str(tmp_path / "agent"), "--episodes", "2", "--json")
     assert result.exit_code == 0
     assert json.loads(result.stdout)["controller"] == "agent"
-    refused = run("evaluate", str(tmp_path / "agent"), "--seeds", "2", "--scenario", "hysteresis")
+    refused = run("evaluate", str(tmp_path / "agent"), "--episodes", "2", "--scenario", "hysteresis")
     assert refused.exit_code == 2
     assert "is none of those the agent" in refused.stderr
 
@@ -115,7 +115,12 @@ def test_a_training_goes_on_where_it_stopped(tmp_path, monkeypatch):
     again = run(*arguments)
     assert again.exit_code == 2
     assert "holds a training already" in again.stderr
-    assert run(*arguments, "--resume").exit_code == 0
+    resumed = run(*arguments, "--resume")
+    assert resumed.exit_code == 0 and "gradient was finished already in " in resumed.stdout
+    told = json.loads(run(*arguments, "--resume", "--json").stdout)
+    home_of_it = "results/agents/gradient-white-7"
+    about = {"agent": "gradient", "scenario": "white", "seed": 7, "folder": home_of_it, "finished_before": True}
+    assert told == [{**about, "policies": [home_of_it], "failed": None}]
     assert (home / "weights.npz").read_bytes() == weights
     assert run(*arguments[:-1], "8").exit_code == 0
     other = run(*arguments[:-1], "8", "--folder", str(home))
@@ -126,7 +131,7 @@ def test_a_training_goes_on_where_it_stopped(tmp_path, monkeypatch):
 
 
 def test_a_comparison_prints_json_alone(tmp_path):
-    result = run("compare", str(tmp_path), "--minutes", "0", "--seeds", "2", "--scenario", "deflection", "--json")
+    result = run("compare", "--folder", str(tmp_path), "--minutes", "0", "--episodes", "2", "--scenario", "deflection", "--json")
     assert result.exit_code == 0
     rows = json.loads(result.stdout)
     assert {"controller", "relative_cost", "settling_time"} <= set(rows[0])
@@ -143,7 +148,7 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("evaluate", "pid"), "pid"),
         (("evaluate", "lqg", "--speed", "-3"), "-3"),
         (("evaluate", "lqg", "--scenario", "storm"), "storm"),
-        (("evaluate", "none", "--seeds", "2", "--scenario", "quiet"), "moves nothing"),
+        (("evaluate", "none", "--episodes", "2", "--scenario", "quiet"), "moves nothing"),
         (("train", "dreamer"), "dreamer"),
         (("train", "ppo", "--minutes", "0"), "minutes"),
         (("train", "ppo", "--updates", "0"), "updates"),
@@ -154,8 +159,8 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("train", "ppo", "--from", "nowhere"), "nowhere"),
         (("train", "ppo", "--resume"), "checkpoint"),
         (("evaluate", "lqg", "--preset", "wing"), "wing"),
-        (("compare", "folder", "--minutes", "-1"), "-"),
-        (("compare", "--seeds", "1"), "seeds"),
+        (("compare", "--minutes", "-1"), "minutes"),
+        (("compare", "--episodes", "1"), "episodes"),
     ],
 )
 def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, monkeypatch):
@@ -169,7 +174,7 @@ def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, mo
 
 
 def test_a_training_seed_of_what_has_none_is_refused_and_not_ignored():
-    refused = CliRunner().invoke(app, ["evaluate", "lqg", "--seeds", "2", "--trained-seed", "3"])
+    refused = CliRunner().invoke(app, ["evaluate", "lqg", "--episodes", "2", "--trained-seed", "3"])
     assert refused.exit_code == 2
     assert refused.stderr == "beamenv: trained_seed is 3, but must be left out, for 'lqg' is no agent that ships.\n"
 

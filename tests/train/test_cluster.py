@@ -123,7 +123,7 @@ def test_a_piece_that_follows_from_another_is_done_too(workers, ray):
 
 def test_a_table_of_the_thesis_made_on_a_cluster_is_the_one_made_here(ray, tmp_path):
     for name, options in {"here": ["--jobs", "1"], "there": ["--cluster", "local"]}.items():
-        result = CliRunner().invoke(app, ["reproduce", "table-3.4", "figure-3.3", "--output", str(tmp_path / name), *options])
+        result = CliRunner().invoke(app, ["reproduce", "table-3.4", "figure-3.3", "--folder", str(tmp_path / name), *options])
         assert result.exit_code == 0, result.output
     here, there = files(tmp_path / "here"), files(tmp_path / "there")
     records = [
@@ -173,7 +173,7 @@ def test_the_first_function_needs_nothing_of_ours(ray):
     assert run.stdout.startswith(b"(False, ValueError(") and b"beamenv" in run.stdout, run.stderr
 
 
-@pytest.mark.parametrize("command", [["benchmark", "--folder", "made"], ["reproduce", "--output", "made"]])
+@pytest.mark.parametrize("command", [["benchmark", "--folder", "made"], ["reproduce", "--folder", "made"]])
 @pytest.mark.parametrize("address", ["nowhere", "127.0.0.1:1", "ray://127.0.0.1:1"])
 def test_a_cluster_that_does_not_answer_is_told_before_anything_is_written(command, address, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -185,7 +185,7 @@ def test_a_cluster_that_does_not_answer_is_told_before_anything_is_written(comma
 
 def test_without_ray_the_extra_is_named(tmp_path):
     code = "import sys; sys.modules['ray'] = None; from train.cli.command import main; main()"
-    words = ["reproduce", "table-3.4", "--output", str(tmp_path), "--cluster", "local"]
+    words = ["reproduce", "table-3.4", "--folder", str(tmp_path), "--cluster", "local"]
     run = subprocess.run([sys.executable, "-c", code, *words], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 1
     assert (

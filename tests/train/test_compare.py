@@ -1,19 +1,17 @@
 """The comparison in small: what it writes, what it resumes from, what it refuses."""
 
 import csv
-import io
 import json
 import re
 
 import gymnasium
 import pytest
-from rich.console import Console
 
 import beamenv
 import train.comparison.compare
 import train.learning.job
 from beamenv.task import resolve_task
-from train.cli.evaluations import screen_table
+from train.cli.evaluations import show_compared
 from train.comparison.compare import CLASSICAL, Comparison, Listener, compare, tiers_of, trained
 from train.comparison.page import best_rival
 from train.controllers.named import named
@@ -30,7 +28,10 @@ class Notes(Listener):
     """Remembers what it was told."""
 
     def __init__(self):
-        self.trained, self.evaluated_names = [], []
+        self.trained, self.evaluated_names, self.from_before = [], [], []
+
+    def resumed(self, name, finished):
+        self.from_before.append((name, finished))
 
     def training(self, name, budget, progress):
         self.trained.append((name, progress))
@@ -68,7 +69,7 @@ def test_the_table_has_every_controller_on_the_same_seeds(finished):
     assert all(row["controller"] in markdown for row in rows)
 
 
-def test_every_table_shows_the_tiers_of_laws_and_agents(finished):
+def test_every_table_shows_the_tiers_of_laws_and_agents(finished, capsys):
     folder, evaluations, notes = finished
     with (folder / "table.csv").open() as file:
         tiers = {row["controller"]: row["tier"] for row in csv.DictReader(file)}
@@ -80,9 +81,8 @@ def test_every_table_shows_the_tiers_of_laws_and_agents(finished):
     told = "Tiers say what a controller is told and sees"
     assert markdown.count(told) == 1
     assert told in (folder / "report.html").read_text(encoding="utf-8")
-    console = Console(width=200, record=True, file=io.StringIO())
-    console.print(screen_table(evaluations, tiers_of(evaluations)))
-    assert told in " ".join(console.export_text().split())
+    show_compared(evaluations, tiers_of(evaluations))
+    assert told in capsys.readouterr().out
 
 
 def test_the_page_opens_beside_no_control_with_the_best_that_a_real_blade_offers_and_has_them_all(finished):
@@ -126,7 +126,9 @@ def test_a_second_run_takes_the_trained_agents(finished, monkeypatch):
         raise AssertionError("trained again")
 
     monkeypatch.setattr(train.comparison.compare, "run", refuse)
-    again = compare(SMALL, folder)
+    notes = Notes()
+    again = compare(SMALL, folder, notes)
+    assert notes.from_before == [("gradient", True), ("ppo", True)]
     assert [evaluation.relative_cost for evaluation in again] == [evaluation.relative_cost for evaluation in evaluations]
 
 
@@ -156,6 +158,7 @@ def test_a_training_that_was_cut_off_resumes_from_its_checkpoint(tmp_path, monke
             compare(comparison, tmp_path)
         compare(comparison, tmp_path, notes)
     assert notes.trained == []  # the checkpoint was that of its end
+    assert notes.from_before == [("gradient", False)]
     assert json.loads((tmp_path / "agents" / "gradient" / "agent.json").read_text())["seconds"] >= 10.0
 
 

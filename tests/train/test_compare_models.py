@@ -127,7 +127,7 @@ def test_a_folder_of_an_identification_is_compared_on(tmp_path):
     (tmp_path / "mine" / "ensemble").mkdir(parents=True)
     for name, factor in (("plant", 1.0), ("ensemble/000", 0.97), ("ensemble/001", 1.03)):
         write(tmp_path / "mine" / f"{name}.npz", factor)
-    words = ("compare", tmp_path / "results", "--plant", tmp_path / "mine", "--minutes", 0, "--seeds", 2)
+    words = ("compare", "--folder", tmp_path / "results", "--plant", tmp_path / "mine", "--minutes", 0, "--episodes", 2)
     result = CliRunner().invoke(app, [str(word) for word in words])
     assert result.exit_code == 0, result.output
     told = json.loads((tmp_path / "results" / "configuration.json").read_text())
@@ -141,6 +141,6 @@ def test_what_cannot_be_of_a_model_is_one_sentence_before_any_work(tmp_path):
         (("--scenario", "rotor"), "scenario.rotor.harmonics is "),
         (("--speed", "20"), "speed is 20.0, but must be left out with a plant of one's own"),
     ):
-        result = CliRunner().invoke(app, ["compare", str(tmp_path / "results"), "--plant", plant, *words])
+        result = CliRunner().invoke(app, ["compare", "--folder", str(tmp_path / "results"), "--plant", plant, *words])
         assert result.exit_code == 2 and result.stderr.startswith(f"beamenv: {sentence}")
     assert not (tmp_path / "results").exists()

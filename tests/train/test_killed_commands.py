@@ -132,13 +132,13 @@ def cells(folder):
 
 def commands(tmp_path):
     """By name: arguments for a folder, and what must be the same in the end."""
-    choice = ("--scenario", "nominal", "--scenario", "delay", "--controller", "lqr", "--seeds", "2")
+    choice = ("--scenario", "nominal", "--scenario", "delay", "--controller", "lqr", "--episodes", "2")
     return {
         "train-gradient": (train_of(GRADIENT, tmp_path / "gradient.toml"), weights),
         "train-ppo": (train_of(PPO, tmp_path / "ppo.toml"), weights),
-        "compare": (lambda folder: ("compare", folder, "--minutes", "0", "--seeds", "2"), tables),
+        "compare": (lambda folder: ("compare", "--folder", folder, "--minutes", "0", "--episodes", "2"), tables),
         "benchmark": (lambda folder: ("benchmark", *choice, "--jobs", "2", "--folder", folder), cells),
-        "reproduce": (lambda folder: ("reproduce", "table-3.4", "figure-3.3", "figure-3.2", "--output", folder), tables),
+        "reproduce": (lambda folder: ("reproduce", "table-3.4", "figure-3.3", "figure-3.2", "--folder", folder), tables),
         "place": (
             lambda folder: ("place", "--actuators", "2", "--method", "sqp", "--picture", folder / "placement.png"),
             lambda folder: (folder / "placement.png").read_bytes(),

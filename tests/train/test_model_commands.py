@@ -21,14 +21,14 @@ def run(*words):
 
 
 def test_a_controller_is_evaluated_on_a_model(file):
-    result = run("evaluate", "lqg", "--plant", file, "--seeds", 4, "--json")
+    result = run("evaluate", "lqg", "--plant", file, "--episodes", 4, "--json")
     estimates = json.loads(result.stdout)["estimates"]
     assert result.exit_code == 0
     assert estimates["relative_cost"]["value"] < 0.5 and estimates["peak_tip"]["value"] is None
 
 
 def test_a_benchmark_of_a_model_holds_the_model_in_its_configuration(file, tmp_path):
-    chosen = ("--scenario", "nominal", "--controller", "lqg", "--seeds", 2, "--jobs", 1)
+    chosen = ("--scenario", "nominal", "--controller", "lqg", "--episodes", 2, "--jobs", 1)
     result = run("benchmark", "--plant", file, *chosen, "--folder", tmp_path / "results")
     assert result.exit_code == 0, result.output
     told = json.loads((tmp_path / "results" / "configuration.json").read_text())
@@ -47,7 +47,7 @@ def _uneven(tmp_path):
 
 
 def test_a_benchmark_runs_what_can_be_had_of_a_model(uneven, tmp_path):
-    result = run("benchmark", "--plant", uneven, "--quick", "--seeds", 2, "--jobs", 1, "--folder", tmp_path / "quick")
+    result = run("benchmark", "--plant", uneven, "--quick", "--episodes", 2, "--jobs", 1, "--folder", tmp_path / "quick")
     assert result.exit_code == 0, result.output
     told = json.loads((tmp_path / "quick" / "benchmark.json").read_text())
     assert {row["controller"] for row in told["rows"]} >= {"none", "lqg", "lqg-load", "multiple-model", "clairvoyant"}
@@ -58,7 +58,7 @@ def test_a_benchmark_runs_what_can_be_had_of_a_model(uneven, tmp_path):
 
 
 def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_reason(uneven, tmp_path):
-    chosen = ("--scenario", "open", "--controller", "lqg", "--seeds", 2, "--jobs", 1)
+    chosen = ("--scenario", "open", "--controller", "lqg", "--episodes", 2, "--jobs", 1)
     result = run("benchmark", "--plant", uneven, *chosen, "--folder", tmp_path / "open")
     assert result.exit_code == 0, result.output
     told = json.loads((tmp_path / "open" / "benchmark.json").read_text())
@@ -86,7 +86,7 @@ def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_
     ],
 )
 def test_what_is_asked_for_by_name_and_cannot_be_of_a_model_is_refused_before_any_work(chosen, words, uneven, tmp_path):
-    result = run("benchmark", "--plant", uneven, *chosen, "--seeds", 2, "--folder", tmp_path / "none")
+    result = run("benchmark", "--plant", uneven, *chosen, "--episodes", 2, "--folder", tmp_path / "none")
     assert result.exit_code == 2
     (line,) = result.stderr.splitlines()
     assert line.startswith(f"beamenv: {words}")
@@ -120,7 +120,7 @@ def test_a_training_on_a_model_that_has_changed_is_not_resumed(file, tmp_path):
     words = ("train", "gradient", "--plant", file, "--updates", 1, "--folder", tmp_path / "agent")
     assert run(*words).exit_code == 0
     content = dict(np.load(file))
-    assert run("evaluate", tmp_path / "agent", "--plant", file, "--seeds", 2).exit_code == 0
+    assert run("evaluate", tmp_path / "agent", "--plant", file, "--episodes", 2).exit_code == 0
     moved = tmp_path / "elsewhere.npz"
     np.savez(moved, **content)  # where a file lies is not what it says
     assert run("train", "gradient", "--plant", moved, "--updates", 1, "--folder", tmp_path / "agent", "--resume").exit_code == 0
@@ -130,7 +130,7 @@ def test_a_training_on_a_model_that_has_changed_is_not_resumed(file, tmp_path):
 
 
 def test_what_asks_for_a_rotor_is_refused_in_one_sentence(file):
-    result = run("evaluate", "scheduled-lqg", "--plant", file, "--seeds", 2)
+    result = run("evaluate", "scheduled-lqg", "--plant", file, "--episodes", 2)
     assert result.exit_code == 2
     assert result.stderr.startswith("beamenv: plant is a model of one's own, but scheduled-lqg asks for a blade")
 

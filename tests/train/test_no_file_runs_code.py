@@ -135,13 +135,13 @@ DOORS = {
     "agent.json": agent_description,
     "checkpoint": checkpoint,
     "model": file_of("m.zip", model),
-    "evaluate FILE": file_of("m.zip", command("evaluate", "FILE", "--seeds", "2")),
-    "evaluate --blade": file_of("b.json", command("evaluate", "none", "--seeds", "2", "--blade", "FILE")),
+    "evaluate FILE": file_of("m.zip", command("evaluate", "FILE", "--episodes", "2")),
+    "evaluate --blade": file_of("b.json", command("evaluate", "none", "--episodes", "2", "--blade", "FILE")),
     "frequencies --blade": file_of("b.toml", command("frequencies", "--blade", "FILE")),
-    "evaluate --scenario": file_of("s.toml", command("evaluate", "none", "--seeds", "2", "--scenario", "FILE")),
+    "evaluate --scenario": file_of("s.toml", command("evaluate", "none", "--episodes", "2", "--scenario", "FILE")),
     "train --recipe": file_of("r.toml", command("train", "mine", "--recipe", "FILE")),
     "train --from": file_of("m.zip", command("train", "gradient", "--from", "FILE")),
-    "benchmark --model": file_of("m.zip", command("benchmark", "--model", "FILE", "--seeds", "2", "--controller", "none")),
+    "benchmark --model": file_of("m.zip", command("benchmark", "--model", "FILE", "--episodes", "2", "--controller", "none")),
 }
 
 

@@ -264,8 +264,8 @@ def test_the_lead_tells_result_subject_date_and_command(page):
 
 
 def test_the_command_is_the_one_that_was_typed(monkeypatch):
-    monkeypatch.setattr("sys.argv", ["/usr/bin/beamenv", "compare", "a folder", "--seeds", "4"])
-    assert Lead("", "").command == "beamenv compare 'a folder' --seeds 4"
+    monkeypatch.setattr("sys.argv", ["/usr/bin/beamenv", "compare", "--folder", "a folder", "--episodes", "4"])
+    assert Lead("", "").command == "beamenv compare --folder 'a folder' --episodes 4"
     monkeypatch.setattr("sys.argv", ["/tmp/mine.py", "compare"])
     assert Lead("", "").command == ""
 

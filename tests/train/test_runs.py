@@ -1,13 +1,11 @@
 """Folders of several training runs: evaluated together, and the best of them taught from."""
 
-import io
 import json
 import shutil
 
 import gymnasium
 import numpy as np
 import pytest
-from rich.console import Console
 from typer.testing import CliRunner
 
 import beamenv
@@ -18,7 +16,7 @@ from beamenv.plant.fingerprint import fingerprint
 from beamenv.task import resolve_task
 from train.benchmark.runs import Runs
 from train.cli.app import app
-from train.cli.evaluations import runs_table
+from train.cli.evaluations import show_one
 from train.controllers.choice import chosen, chosen_runs
 from train.controllers.policies import HistoryPolicy
 from train.controllers.policy_files import save_policy
@@ -76,18 +74,20 @@ def test_runs_have_a_mean_and_a_spread(together):
     assert {content["controller"], *(each["controller"] for each in content["runs"].values())} == {"mine"}
 
 
-def test_a_screen_shows_the_runs_together_and_one_by_one(together):
-    console = Console(width=200, file=io.StringIO(), record=True)
-    console.print(runs_table(together))
-    text = console.export_text()
-    assert "over 4 runs: mean" in text
-    assert text.index("mean of 4 runs") < text.index("run 0") < text.index("run 1 ") < text.index("run 2") < text.index("run 10")
+def test_a_screen_shows_the_runs_together_and_one_by_one(together, capsys):
+    show_one(together, "scenario nominal")
+    text = capsys.readouterr().out
+    mean, deviation = together.estimates()["relative_cost"].value, together.spread()["relative_cost"].deviation
+    first = next(line for line in text.splitlines() if line.startswith("J / J without control"))
+    assert "mean of 4 runs" in text and f"{mean:.3f}" in first and first.endswith(f"{deviation:.3f}")
+    rows = [line.split()[0] for line in text.splitlines() if line[:1].isdecimal()]
+    assert rows[:4] == list(GAINS)
 
 
 def test_the_command_evaluates_every_run_of_a_folder(folder, tmp_path):
     for name in ("0", "1"):
         shutil.copytree(folder / name, tmp_path / name)
-    result = run("evaluate", str(tmp_path), "--seeds", "2", "--json")
+    result = run("evaluate", str(tmp_path), "--episodes", "2", "--json")
     assert result.exit_code == 0, result.stderr
     content = json.loads(result.stdout)
     assert list(content["runs"]) == ["0", "1"]
@@ -119,7 +119,7 @@ def trainings(home, *kinds):
 def test_trainings_that_differ_in_their_seeds_alone_are_runs_of_one_agent(tmp_path):
     home = trainings(tmp_path / "mine", ("ppo", "nominal", 0, 1), ("ppo", "nominal", 7, 2))
     assert list(runs_in(home)) == ["ppo-nominal-0", "ppo-nominal-7-0", "ppo-nominal-7-1"]
-    result = run("evaluate", str(home), "--seeds", "2", "--json")
+    result = run("evaluate", str(home), "--episodes", "2", "--json")
     assert result.exit_code == 0, result.stderr
     content = json.loads(result.stdout)
     assert content["controller"] == "mine" and list(content["runs"]) == list(runs_in(home))
@@ -157,7 +157,7 @@ def test_the_run_that_ended_at_the_least_cost_teaches(folder, tmp_path):
 def test_a_run_that_does_not_fit_is_named(folder, tmp_path):
     for name in ("0", "1"):
         save_policy(agent(0.0), tmp_path / name, {"plants": {"elsewhere": "0" * 64}})
-    refused = run("evaluate", str(tmp_path), "--seeds", "2")
+    refused = run("evaluate", str(tmp_path), "--episodes", "2")
     assert refused.exit_code == 2
     assert "is none of those the agent in" in refused.stderr and len(refused.stderr.splitlines()) == 1
 

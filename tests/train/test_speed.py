@@ -39,14 +39,16 @@ def test_rates_must_reach_their_target_and_times_stay_below(name, value, verdict
     assert met(name, value) is verdict
 
 
-def test_the_table_names_every_measurement_once(capsys):
+def test_the_table_names_every_measurement_once_and_targets_where_they_are_asked_for(capsys):
     results = {name: 1.5 for name, _, _ in ROWS} | {"threads": 1}
     assert set(TARGETS) <= set(results)
     show(results)
     printed = capsys.readouterr().out
     assert "CartPole-v1, gym.make" in printed
-    assert "missed" in printed
-    assert "BLAS threads: 1" in printed and f"NumPy {np.__version__}" in printed
+    assert "target" not in printed and "missed" not in printed
+    show(results, check=True)
+    assert capsys.readouterr().out.count("missed") == sum(met(name, 1.5) is False for name in TARGETS) > 0
+    assert "threads of linear algebra: 1;" in printed and f"NumPy {np.__version__}" in printed
 
 
 def test_without_torch_its_batch_is_told_to_need_it(capsys, monkeypatch):

@@ -26,9 +26,8 @@ def test_a_terminal_that_lacks_a_letter_shows_a_question_mark(encoding, degrees)
 
 def test_no_number_is_cut_off_on_a_narrow_terminal():
     narrow, wide = (beamenv("frequencies", columns=columns).stdout.decode() for columns in ("20", "200"))
-    assert [word for word in narrow.split() if "." in word and word[0].isdigit()][:10] == [
-        word for word in wide.split() if "." in word and word[0].isdigit()
-    ][:10]
+    shown = [sorted(word for word in text.split() if word.replace(".", "").isdigit() and "." in word) for text in (narrow, wide)]
+    assert shown[0] == shown[1] and len(shown[0]) > 10
     assert "…" not in narrow
 
 

@@ -13,7 +13,7 @@ from baselines import Estimate, Evaluation
 from baselines.evaluation.metrics import finite
 from baselines.evaluation.statistics import CONFIDENCE
 from train.benchmark import statistics
-from train.shared.columns import EVALUATION
+from train.benchmark.table import UNSTABLE
 
 Array = NDArray[np.float64]
 
@@ -49,32 +49,22 @@ class Runs:
             for name in self.first.metrics.__dataclass_fields__
         }
         together = {"relative_cost": statistics.relative_cost(cost, self.first.uncontrolled)}
-        return together | {name: statistics.mean(values) for name, values in metrics.items()}
+        return together | {"unstable": self.unstable, **{name: statistics.mean(values) for name, values in metrics.items()}}
+
+    @property
+    def unstable(self) -> Estimate:
+        """Share of episodes that are, as the benchmark counts them."""
+        cost = np.stack([each.metrics.cost for each in self.evaluations.values()])
+        return statistics.mean((cost > UNSTABLE * self.first.uncontrolled).astype(float))
 
     def spread(self) -> dict[str, Spread]:
         """How far the runs' own values lie from each other, by name."""
-        return {name: _spread([each.estimates()[name].value for each in self.evaluations.values()]) for name in self.estimates()}
-
-    def cells(self) -> list[str]:
-        """A row of a table: name, then every column."""
-        found = self.estimates()
-        return [f"mean of {len(self.evaluations)} runs", *(column.text(found[column.name]) for column in EVALUATION)]
-
-    @property
-    def sentence(self) -> str:
-        """Mean and spread of the relative cost."""
-        value, spread = self.estimates()["relative_cost"].value, self.spread()["relative_cost"]
-        return (
-            f"J / J without control over {len(self.evaluations)} runs: mean {value:.3f}, standard deviation "
-            f"{spread.deviation:.3f}, {spread.least:.3f} to {spread.greatest:.3f}"
-        )
+        each = [Runs(self.name, {run: found}).estimates() for run, found in self.evaluations.items()]
+        return {name: _spread([own[name].value for own in each]) for name in each[0]}
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the time series, as JSON can hold it: together, as of one evaluation, and run by run."""
-        found = {
-            name: {"value": finite(each.value), "low": finite(each.low), "high": finite(each.high)}
-            for name, each in self.estimates().items()
-        }
+        found = {name: _told(each) for name, each in self.estimates().items()}
         spread = {
             name: {"deviation": finite(each.deviation), "least": finite(each.least), "greatest": finite(each.greatest)}
             for name, each in self.spread().items()
@@ -87,6 +77,15 @@ class Runs:
             "seeds": list(self.first.episodes.seeds),
             "runs": {run: each.to_dict() for run, each in self.evaluations.items()},
         }
+
+    def one_to_dict(self) -> dict[str, Any]:
+        """The same of the first run alone."""
+        content = self.first.to_dict()
+        return {**content, "estimates": {**content["estimates"], "unstable": _told(self.unstable)}}
+
+
+def _told(estimate: Estimate) -> dict[str, float | None]:
+    return {"value": finite(estimate.value), "low": finite(estimate.low), "high": finite(estimate.high)}
 
 
 def _spread(values: list[float]) -> Spread:

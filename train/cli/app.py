@@ -12,6 +12,7 @@ from train.cli.export import export
 from train.cli.frequencies import frequencies
 from train.cli.identify import identify
 from train.cli.listing import list_ids
+from train.cli.names import check_names, check_studies
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -24,9 +25,10 @@ from train.cli.options import (
     SpeedOption,
     TrainedSeedOption,
     environment_arguments,
+    moving,
     one_sentence,
+    overwriting,
     print_json,
-    print_table,
     say,
     working,
 )
@@ -38,6 +40,7 @@ from train.cli.speed import speed
 from train.cli.train import train
 from train.cli.tune import tune
 from train.cli.usage import OneSentence
+from train.controllers.ids import found
 
 app = typer.Typer(
     cls=OneSentence,
@@ -45,6 +48,25 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Vibration control of a rotating composite blade: frequencies, controllers, agents, and how they compare.",
 )
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from beamenv import __version__
+
+        say(f"beamenv {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def beamenv(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """The commands below; --help after one tells of its options."""
+
+
 app.command("list")(list_ids)
 app.command()(frequencies)
 app.command()(section)
@@ -73,16 +95,14 @@ def evaluate(
     blade: BladeOption = None,
     scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
-    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    episodes: Annotated[int, typer.Option(min=2, help="How many held-out ones.")] = 64,
     trained_seed: TrainedSeedOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run one controller through held-out episodes and compare it with no control on the same ones."""
     with one_sentence():
-        from train.controllers.ids import found
-
-        found(controller, scenario, trained_seed)  # what nobody has is told before anything takes its time
-
+        check_names(preset, scenario, blade, plant)
+        found(controller, scenario, trained_seed)
         import gymnasium as gym
 
         import baselines
@@ -92,7 +112,7 @@ def evaluate(
         from train.controllers.choice import chosen_runs
         from train.shared.held_out import SEEDS, held_out
 
-        seeds = checked("seeds", seeds, SEEDS)
+        seeds = checked("episodes", episodes, SEEDS)
         arguments = {**environment_arguments(preset, speed, blade, plant), "scenario": scenario}
         envs: Any = gym.make_vec(beamenv.ENV_ID, num_envs=seeds, dtype="float64", **arguments)
         each: dict[str, baselines.Evaluation] = {}
@@ -101,18 +121,18 @@ def evaluate(
             each[run] = baselines.evaluate(law, envs, held_out(seeds), reference=reference)
         runs = Runs(next(iter(each.values())).name, each)
     if as_json:
-        print_json(runs.to_dict() if len(each) > 1 else runs.first.to_dict())
+        print_json(runs.to_dict() if len(each) > 1 else runs.one_to_dict())
     else:
-        from train.cli.evaluations import runs_table, screen_table
+        from train.cli.evaluations import show_one
 
-        print_table(runs_table(runs) if len(each) > 1 else screen_table([runs.first]))
+        show_one(runs, f"scenario {scenario}, {moving(preset, speed, blade, plant)}")
 
 
 @app.command()
 def compare(
-    folder: Annotated[Path, typer.Argument(help="Where tables, figures and agents are written.")] = Path("results/compare"),
+    folder: Annotated[Path, typer.Option(help="Where tables, figures and agents are written.")] = Path("results/compare"),
     minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 1.5,
-    seeds: Annotated[int, typer.Option(min=2, help="How many held-out episodes.")] = 64,
+    episodes: Annotated[int, typer.Option(min=2, help="How many held-out ones.")] = 64,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -125,12 +145,15 @@ def compare(
     An interrupted run resumes from what its folder holds.
     """
     with one_sentence(RESUMES):
+        check_names(preset, scenario, blade, plant)
         from beamenv.configuration import Number, checked
-        from train.cli.evaluations import screen_table
+        from train.cli.evaluations import show_compared
         from train.cli.progress import Progressbar
         from train.comparison.compare import Comparison, tiers_of
         from train.comparison.compare import compare as run
+        from train.shared.held_out import SEEDS
 
+        seeds = checked("episodes", episodes, SEEDS)
         default = Comparison().budget
         share = 60.0 * checked("minutes", minutes, Number(ge=0.0)) / sum(default.values())
         budget = {name: share * length for name, length in default.items()} if minutes else {}
@@ -141,7 +164,7 @@ def compare(
     if as_json:
         print_json([{"tier": tiers[evaluation.name], **evaluation.row()} for evaluation in evaluations])
     else:
-        print_table(screen_table(evaluations, tiers))
+        show_compared(evaluations, tiers)
         say(f"written to {folder}")
 
 
@@ -159,6 +182,7 @@ def explore(
     plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file for --blade.
     """
     with one_sentence():
+        check_names(preset, blade=blade)
         from dataclasses import replace
 
         from beamenv.blade.files import load_config
@@ -175,21 +199,23 @@ def explore(
 @app.command()
 def reproduce(
     names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
-    output: Annotated[Path, typer.Option(help="Folder for a CSV and a PNG of each, and the page.")] = Path("results/thesis"),
-    fresh: Annotated[bool, typer.Option(help="Do again what is finished already.")] = False,
+    folder: Annotated[Path, typer.Option(help="Where CSV and PNG of each, and the page, are written.")] = Path("results/thesis"),
+    overwrite: Annotated[bool, overwriting("what is finished already")] = False,
     docs: Annotated[
         Path | None, typer.Option(help="Folder that gets the pages too: thesis.md, one a chapter, and figures/.")
     ] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
+    as_json: JsonOption = False,
 ) -> None:
     """Regenerate the thesis' tables and figures and judge its statements twice. About a minute on two cores.
 
     An interrupted run resumes from what its folder holds.
     """
     with one_sentence(RESUMES):
+        check_studies(names or ())
         from train.cli.reproduce import reproduce as run
 
-        status = run(names or [], output, fresh, docs, working(jobs, cluster))
+        status = run(names or [], folder, overwrite, docs, working(jobs, cluster), as_json)
     if status:
         raise typer.Exit(status)

@@ -27,6 +27,10 @@ class Bars:
         if self._bars.live.is_started:
             self._bars.stop()
 
+    def say(self, sentence: str) -> None:
+        """Above the bars, in the name of the command."""
+        self._bars.console.print(f"beamenv: {sentence}", markup=False, highlight=False, soft_wrap=True)
+
     def update(self, task: Any, **changed: Any) -> None:
         """Show how far a task is."""
         self._bars.start()

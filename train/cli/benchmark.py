@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
-from beamenv.configuration.files import ENDINGS
+from beamenv.configuration.files import ENDINGS, content_of
 from train.cli.bars import Bars
 from train.cli.benchmark_options import (
     SEEDS,
@@ -28,7 +28,8 @@ from train.cli.benchmark_options import (
     TierOption,
     TrustOption,
 )
-from train.cli.benchmark_table import finite_row, show_entry, show_table
+from train.cli.benchmark_table import finite_row, show_benchmark, show_entry
+from train.cli.names import check_controller, check_names, check_scenarios
 from train.cli.options import (
     RESUMES,
     ClusterOption,
@@ -56,7 +57,7 @@ LONGEST = 60
 def benchmark(
     scenario: ScenariosOption = None,
     controller: ControllersOption = None,
-    seeds: EpisodesOption = None,
+    episodes: EpisodesOption = None,
     runs: RunsOption = None,
     folder: FolderOption = None,
     model: ModelsOption = None,
@@ -78,7 +79,8 @@ def benchmark(
     left out with its reason, which is no failure; asked for by name, it is refused.
     """
     with one_sentence(RESUMES):
-        workers, asked = working(jobs, cluster), Asked(scenario, controller, seeds, runs, model, quick, plant)
+        check_all(scenario or (), controller or (), (model or ()) if trust else (), submit, plant)
+        workers, asked = working(jobs, cluster), Asked(scenario, controller, episodes, runs, model, quick, plant)
         how = {"trusted": trust, "jobs": workers.jobs, "cluster": cluster}
         if submit is not None:
             entered(submit, asked, folder, docs, as_json, tier=tier, overwrite=overwrite, **how)
@@ -97,13 +99,27 @@ def benchmark(
         raise typer.Exit(1)
 
 
+def check_all(
+    scenarios: Sequence[str], controllers: Sequence[str], models: Sequence[Path], submit: str | None, plant: Path | None
+) -> None:
+    """``ValueError`` of one sentence for a name that there is not, and for a file that is not there."""
+    check_scenarios(scenarios)
+    for each in controllers:
+        check_controller(each)
+    for path in models:
+        content_of(path, 1)
+    if submit is not None and not submit.lower().endswith(".zip"):
+        check_controller(submit, "submit", "the folder of a trained agent, a model's .zip file")
+    check_names(plant=plant)
+
+
 @dataclass(frozen=True, slots=True)
 class Asked:
     """What is to be measured, as far as options say."""
 
     scenario: list[str] | None
     controller: list[str] | None
-    seeds: int | None
+    episodes: int | None
     runs: int | None
     model: list[Path] | None
     quick: bool
@@ -115,15 +131,15 @@ class Asked:
         return [name for name in self.__dataclass_fields__ if getattr(self, name)]
 
     @property
-    def episodes(self) -> int:
-        """How many."""
-        return self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
+    def seeds(self) -> int:
+        """How many they are."""
+        return self.episodes or (QUICK_SEEDS if self.quick else SEEDS)
 
     @property
     def usual_folder(self) -> Path:
         """Where it is written unless said otherwise."""
         models = self.model or ([] if self.plant is None else [self.plant])
-        chosen = self.scenario or (), self.controller or (), self.episodes, models
+        chosen = self.scenario or (), self.controller or (), self.seeds, models
         return default_folder(*chosen, quick=self.quick, runs=self.runs)
 
     @property
@@ -132,7 +148,7 @@ class Asked:
         return {
             "scenarios": self.scenario or (QUICK_SCENARIOS if self.quick else None),
             "controllers": self.controller or (quick_controllers(self.plant) if self.quick else None),
-            "seeds": self.episodes,
+            "seeds": self.seeds,
             "runs": self.runs or (QUICK_RUNS if self.quick else None),
             "models": self.model or (),
             "environment": {} if self.plant is None else {"plant": str(self.plant)},
@@ -156,6 +172,7 @@ def entered(submit: str, asked: Asked, folder: Path | None, docs: Path | None, a
     home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
     with _Bar() as bar:
         entry, table = run(submit, board, folder=home, progress=bar.show, **arguments)
+        bar.end()
     if as_json:
         print_json(finite_row(entry))
     else:
@@ -167,7 +184,9 @@ def _measured(**arguments: Any) -> BenchmarkTable:
     from train.benchmark.campaign import benchmark as run
 
     with _Bar() as bar:
-        return run(**arguments, progress=bar.show)
+        table = run(**arguments, progress=bar.show)
+        bar.end()
+    return table
 
 
 def default_folder(
@@ -196,10 +215,19 @@ class _Bar(Bars):
         name = TextColumn("{task.description:>44}", markup=False)
         super().__init__(name, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
         self._task = self._bars.add_task("building the blades", total=None)
+        self._begun = False
 
     def show(self, done: int, total: int, cell: object) -> None:
+        if not self._begun and done > 1:
+            self.say(f"resumed: {done - 1} of {total} cells are kept from an earlier run.")
+        self._begun = True
         name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))
         self.update(self._task, description=name.strip(), completed=done, total=total)
+
+    def end(self) -> None:
+        """Where no cell was left to be measured, say so."""
+        if not self._begun:
+            self.say("resumed: all cells are kept from an earlier run.")
 
 
 def _show(table: BenchmarkTable, folder: Path | None, quick: bool) -> None:
@@ -209,7 +237,7 @@ def _show(table: BenchmarkTable, folder: Path | None, quick: bool) -> None:
     if folder is None:
         print_json(as_json(table))
     else:
-        show_table(table, folder)
+        show_benchmark(table, folder)
     for sentence in table.left_out:
         complain(sentence)
     for where, sentence in table.sentences.items():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
+from train.cli.names import FORMATS, PRECISIONS, check_name, check_names
 from train.cli.options import (
     BladeOption,
     ControllerArgument,
@@ -18,11 +19,13 @@ from train.cli.options import (
     SpeedOption,
     TrainedSeedOption,
     environment_arguments,
+    moving,
     one_sentence,
     overwriting,
     print_json,
     say,
 )
+from train.controllers.ids import found
 
 if TYPE_CHECKING:
     from train.export import Exported
@@ -34,12 +37,12 @@ STEPS, PASSES = 2000, 20
 def export(
     controller: ControllerArgument,
     format: Annotated[
-        str | None, typer.Option("--format", help="c, onnx or mat; what the output ends in if left out, or else c.")
+        str | None, typer.Option("--format", help=f"{', '.join(FORMATS)}; what the output ends in if left out, or else c.")
     ] = None,
     output: Annotated[
         Path | None, typer.Option(help="The file; the controller's name with the format's ending if left out.")
     ] = None,
-    precision: Annotated[str, typer.Option(help="double or single.")] = "double",
+    precision: Annotated[str, typer.Option(help=f"{' or '.join(PRECISIONS)}.")] = "double",
     name: Annotated[str | None, typer.Option(help="Of functions and types; the controller's if left out.")] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
@@ -53,10 +56,14 @@ def export(
 ) -> None:
     """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
     with one_sentence():
+        check_names(preset, scenario, blade, plant)
+        whose = found(controller, scenario, trained_seed)
+        check_name("precision", precision, PRECISIONS)
+        if format is not None:
+            check_name("format", format, FORMATS)
         from beamenv.configuration import Refused
         from beamenv.task import resolve_task
         from train.controllers.choice import chosen
-        from train.controllers.ids import found
         from train.export import export, exported
         from train.export.exported import identifier
 
@@ -64,11 +71,11 @@ def export(
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
         task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
-        called = identifier(found(controller, str(scenario), trained_seed).id) if name is None else name
+        called = identifier(whose.id) if name is None else name
         path = output or Path(f"{called}.{format}")
         _check_free(path, overwrite)
         law = chosen(controller, task, scenario, trained_seed)
-        model = f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}" if plant is None else f"plant {plant}"
+        model = moving(preset, speed, blade, plant)
         more: dict[str, Any] = {"precision": precision, "name": called, "note": f"{controller}, {model}, scenario {scenario}"}
         written = exported(law, task.design_plant, **more)
         seconds = _measured(written) if measure else None
@@ -81,7 +88,6 @@ def export(
 
 def _format(format: str | None, output: Path | None) -> str:
     """The one that is asked for, else that of the output's ending, else C."""
-    from train.export import FORMATS
     from train.export.writing import checked_format
 
     ending = "" if output is None else output.suffix.lower().removeprefix(".")

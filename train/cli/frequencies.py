@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich.table import Table
 
+from train.cli.names import check_names
 from train.cli.options import (
     BladeOption,
     JsonOption,
@@ -18,9 +18,9 @@ from train.cli.options import (
     environment_arguments,
     one_sentence,
     print_json,
-    print_table,
     say,
 )
+from train.cli.tables import Column, show_table
 
 FASTEST = 1e6
 """rad/s: a critical speed beyond is none that a rotor has, and is not told."""
@@ -46,6 +46,7 @@ def frequencies(
         _of_model(plant, preset, speed, blade, count, as_json)
         return
     with one_sentence():
+        check_names(preset, blade=blade)
         from beamenv.blade.build import build_beam
         from beamenv.blade.clamp import clamp_note
         from beamenv.blade.files import load_config
@@ -62,14 +63,11 @@ def frequencies(
         rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
         print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
         return
-    critical = f"critical speed {beam.critical_speed:.1f} rad/s" if beam.critical_speed < FASTEST else None
-    table = Table(title="Natural frequencies, rad/s (Hz)", caption=critical)
-    table.add_column("mode", justify="right")
-    for each in speeds:
-        table.add_column(f"at {each:g} rad/s", justify="right")
-    for mode in range(count):
-        table.add_row(str(mode + 1), *(_frequency(modes, mode) for modes in found))
-    print_table(table)
+    columns = [Column("mode", words=True), *(Column(f"at {each:g} rad/s", words=True) for each in speeds)]
+    by_mode = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
+    show_table(columns, by_mode, "Natural frequencies, rad/s (Hz)")
+    if beam.critical_speed < FASTEST:
+        say(f"critical speed {beam.critical_speed:.1f} rad/s")
     for each, state in zip(speeds, steady, strict=True):
         if each > 0.0 and config.model != "thesis":
             say(_turning(each, state, config.patches.failure_strain))
@@ -99,12 +97,13 @@ def _turning(speed: float, state: Any, limit: float) -> str:
 
 def _frequency(modes: Any, mode: int) -> str:
     frequency = modes.natural_frequencies[mode]
-    return f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f}) {modes.families[mode]}"
+    return f"{frequency:8.2f} {f'({frequency / (2.0 * np.pi):.2f})':>9} {modes.families[mode]}"
 
 
 def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path | None, count: int, as_json: bool) -> None:
     """What is known of the modes of a model."""
     with one_sentence():
+        check_names(preset, blade=blade, plant=plant)
         from beamenv.plant.poles import swinging
         from beamenv.task import resolve_task
 
@@ -115,11 +114,12 @@ def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path |
         told = {"unit": "rad/s", "natural_frequencies": frequencies.tolist(), "damping_ratios": ratios.tolist()}
         print_json({"plant": str(plant), **told, "assumed": list(model.assumed)})
         return
-    table = Table(title="Natural frequencies, rad/s (Hz)", caption=model.sizes)
-    for heading in ("mode", "frequency", "damping, %"):
-        table.add_column(heading, justify="right")
-    for number, (frequency, ratio) in enumerate(zip(frequencies, ratios, strict=True), start=1):
-        table.add_row(str(number), f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f})", f"{100.0 * ratio:.3g}")
-    print_table(table)
+    columns = [Column("mode", words=True), Column("frequency"), Column("damping, %")]
+    rows = [
+        [str(number), f"{frequency:.2f} ({frequency / (2.0 * np.pi):.2f})", f"{100.0 * ratio:.3g}"]
+        for number, (frequency, ratio) in enumerate(zip(frequencies, ratios, strict=True), start=1)
+    ]
+    show_table(columns, rows, "Natural frequencies, rad/s (Hz)")
+    say(model.sizes)
     if model.assumed:
         say(f"assumed: {'; '.join(model.assumed)}")

@@ -9,10 +9,11 @@ from typing import Annotated, Any
 
 import typer
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
+from beamenv.configuration.files import content_of
 from train.cli.bars import fleeting
-from train.cli.options import JsonOption, one_sentence, print_json, print_table, say
+from train.cli.options import JsonOption, one_sentence, print_json, say
+from train.cli.tables import Column, show_table
 from train.shared.files import check_folder
 
 
@@ -48,6 +49,7 @@ def identify(
     The folder gets plant.npz, an ensemble of plants within the spread, report.md, report.json, stabilisation.png and fit.png.
     """
     with one_sentence():
+        content_of(data, 1)
         from baselines.identification.files import read_measurement
         from baselines.identification.identify import identify as run
         from beamenv.configuration import Count, checked
@@ -114,19 +116,21 @@ def bar() -> Iterator[Callable[[str, float], None]]:
 def show(found: Any) -> None:
     """Modes and fits on the screen."""
     modes, fit, names = found.modes, found.fit, found.measurement.reading_names
-    table = Table(title="Modes", caption="± one standard deviation; certainty about 1: none")
-    for column in ("mode", "rad/s", "damping ratio, %", "certainty"):
-        table.add_column(column, justify="right")
+    columns = [Column(each) for each in ("rad/s", "±", "damping\nratio, %", "±", "certainty")]
     rows = zip(modes.frequency, modes.frequency_spread, modes.damping_ratio, modes.damping_spread, modes.certainty, strict=True)
-    for k, (frequency, spread, ratio, of_ratio, certainty) in enumerate(rows, start=1):
-        table.add_row(
-            str(k), f"{frequency:.2f} ± {spread:.2g}", f"{100.0 * ratio:.3f} ± {100.0 * of_ratio:.2g}", f"{certainty:.3g}"
-        )
-    print_table(table)
-    fits = Table(title="Fit on rows held back")
-    for column in ("reading", "one step", "free run", "attainable"):
-        fits.add_column(column, justify="left" if column == "reading" else "right")
-    for name, *values in zip(names, fit.one_step, fit.free_run, fit.attainable, strict=True):
-        fits.add_row(name, *(f"{value:.3f}" for value in values))
-    print_table(fits)
+    show_table(
+        [Column("mode", words=True), *columns],
+        [
+            [str(k), f"{frequency:.2f}", f"{spread:.2g}", f"{100.0 * ratio:.3f}", f"{100.0 * of_ratio:.2g}", f"{certainty:.3g}"]
+            for k, (frequency, spread, ratio, of_ratio, certainty) in enumerate(rows, start=1)
+        ],
+        "Modes",
+    )
+    say("± one standard deviation; certainty about 1: none")
+    of_readings = zip(names, fit.one_step, fit.free_run, fit.attainable, strict=True)
+    show_table(
+        [Column("reading", words=True), Column("one step"), Column("free run"), Column("attainable")],
+        [[name, *(f"{value:.3f}" for value in values)] for name, *values in of_readings],
+        "Fit on rows held back",
+    )
     say(found.choice.reason)

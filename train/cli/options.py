@@ -9,17 +9,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from beamenv.configuration import shown
-from beamenv.scenarios.named import titles
-from beamenv.titles import BLADES
+from train.cli.names import PRESETS, SCENARIOS, check_names
 from train.shared.interruption import status_of
-from train.workers.workers import Workers
+
+if TYPE_CHECKING:
+    from train.workers.workers import Workers
 
 RESUMES = "what was finished is kept, and the same command resumes"
 """What is said of an interruption where it holds."""
@@ -27,14 +27,14 @@ RESUMES = "what was finished is kept, and the same command resumes"
 JOBS = 2
 """Processes, if nobody says how many."""
 
-PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(BLADES)}.")]
+PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
 SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
 BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
 PlantOption = Annotated[
     Path | None,
     typer.Option(help="A model of your own in the place of a blade: .npz, .mat or .json, with A, B, C and what is known."),
 ]
-ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(titles())}, or a TOML or JSON file.")]
+ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
 JobsOption = Annotated[
     int | None, typer.Option(min=1, help=f"Processes at work side by side; {JOBS}, or on a cluster as many as it has, if left out.")
 ]
@@ -59,6 +59,7 @@ def overwriting(what: str) -> Any:
 
 def environment_arguments(preset: str, speed: float | None, blade: Path | None, plant: Path | None = None) -> dict[str, Any]:
     """Keyword arguments of the environment that the options stand for."""
+    check_names(preset, blade=blade, plant=plant)
     from beamenv.blade.files import load_config, to_dict
 
     arguments: dict[str, Any] = {"preset": preset}
@@ -71,8 +72,17 @@ def environment_arguments(preset: str, speed: float | None, blade: Path | None, 
     return arguments
 
 
+def moving(preset: str, speed: float | None, blade: Path | None, plant: Path | None) -> str:
+    """What moves, in words."""
+    if plant is not None:
+        return f"plant {plant}"
+    return f"blade {blade or preset}{'' if speed is None else f' at {speed:g} rad/s'}"
+
+
 def working(jobs: int | None, cluster: str | None) -> Workers:
     """Who works, by the options; this process alone where joblib, which starts others, is not installed and nobody asks for any."""
+    from train.workers.workers import Workers
+
     if jobs is None and cluster is None and find_spec("joblib") is not None:
         return Workers(JOBS)
     return Workers(jobs, cluster)
@@ -120,20 +130,14 @@ def same_command(context: typer.Context, **changed: Any) -> str:
 
 
 def say(line: str) -> None:
-    """To standard output, as it stands and on as many lines of the terminal as it takes."""
-    Console().print(line, soft_wrap=True, markup=False, highlight=False)
+    """To standard output; a terminal breaks it between words, and whatever else reads gets one line."""
+    screen = Console()
+    screen.print(line, soft_wrap=not screen.is_terminal, markup=False, highlight=False)
 
 
 def complain(sentence: str) -> None:
     """To standard error, in the name of the command."""
     print(f"beamenv: {sentence}", file=sys.stderr)  # noqa: T201 - the command's own voice
-
-
-def print_table(table: Table) -> None:
-    """To standard output, never cut off however narrow the terminal is."""
-    console = Console()
-    needed = console.measure(table, options=console.options.update(width=1000)).maximum
-    Console(width=max(console.width, needed)).print(table)
 
 
 def print_json(content: Any) -> None:

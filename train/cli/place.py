@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from train.cli.names import METHODS, check_name, check_names
 from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence
 from train.cli.place_in_turn import METHOD, Search, place_in_turn
 from train.cli.place_sizes import Written, place_sizes
@@ -21,10 +22,8 @@ def place(
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    passive: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
-    method: Annotated[
-        str, typer.Option(help="multistart, ga+sqp (the thesis'), ga, sqp, cma-es, or grid for one or two.")
-    ] = METHOD,
+    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
+    method: Annotated[str, typer.Option(help=f"{', '.join(METHODS)}; ga+sqp is the thesis', grid is for one or two.")] = METHOD,
     seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
@@ -39,7 +38,7 @@ def place(
     channels: Annotated[int | None, typer.Option(help="With --size: voltages at most.")] = None,
     power: Annotated[float | None, typer.Option(help="With --size: W at most, ½CV²f of all actuators.")] = None,
     frequency: Annotated[float | None, typer.Option(help="With --size: f in Hz; the first mode's if left out.")] = None,
-    save: Annotated[
+    output: Annotated[
         Path | None,
         typer.Option(help="With --size: JSON file of the best blade within the mass, or no heavier than its own patches."),
     ] = None,
@@ -54,21 +53,23 @@ def place(
     """
     drawn = picture or (None if as_json or together else Path("results/sizes.png" if size else "results/placement.png"))
     with one_sentence():
+        check_names(preset, blade=blade)
+        check_name("method", method, METHODS)
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
 
         budget = {"mass": mass, "channels": channels, "power": power, "frequency": frequency}
-        check_alone(together, size, picture, {**budget, "save": save})
+        check_alone(together, size, picture, {**budget, "output": output})
         check_searched("size" if size else "together" if together else "", method)
         if size and leave_unreached:
             raise ValueError("--size leaves modes that no patch reaches alone: leave --leave-unreached out.")
         if drawn is not None:
             check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
-        config = config if passive else replace(config, patches=config.patches.without_mass())
+        config = config if patches else replace(config, patches=config.patches.without_mass())
         counts = {"actuators": actuators, "sensors": sensors}
         if size:
-            place_sizes(config, counts, budget, seed, Written(save, drawn, as_json))
+            place_sizes(config, counts, budget, seed, Written(output, drawn, as_json))
         elif together:
             place_together(config, counts, seed, leave_unreached, as_json)
         else:

@@ -10,10 +10,10 @@ from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from train.cli.bars import fleeting
-from train.cli.options import print_json, print_table, say
+from train.cli.options import print_json, say
+from train.cli.tables import Column, show_table
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 
 METHOD = "multistart"
@@ -67,29 +67,29 @@ def show(sides: list[PlacedSide]) -> None:
     """Positions, traces and damping ratios on the screen."""
     for side in sides:
         placement, (name, unit) = side.placement, UNITS[side.placement.side]
-        positions = Table(title=f"{placement.side}, {side.problem.config.speed:g} rad/s: root-side edges, m")
-        for column in ("layout", *map(str, range(1, len(placement.positions) + 1)), f"{name}, {unit}", "of uniform"):
-            positions.add_column(column, justify="left" if column == "layout" else "right")
-        for label, layout, cost in (
+        each_way = (
             ("uniform", side.problem.bounds.uniform(), side.uniform_cost),
             (placement.method, placement.positions, placement.cost),
-        ):
-            positions.add_row(label, *(f"{z:.4f}" for z in layout), f"{cost:.5g}", f"{100.0 * cost / side.uniform_cost:.2f} %")
-        print_table(positions)
+        )
+        columns = [Column("layout", words=True), *(Column(str(k)) for k in range(1, len(placement.positions) + 1))]
+        rows = [
+            [label, *(f"{z:.4f}" for z in layout), f"{cost:.5g}", f"{100.0 * cost / side.uniform_cost:.2f} %"]
+            for label, layout, cost in each_way
+        ]
+        title = f"{placement.side.capitalize()}, {side.problem.config.speed:g} rad/s: root-side edges, m"
+        show_table([*columns, Column(f"{name}, {unit}"), Column("of uniform")], rows, title)
         say(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
-        print_table(damping_table(side))
+        show_damping(side)
         if side.note:
             say(side.note)
 
 
-def damping_table(side: PlacedSide) -> Table:
+def show_damping(side: PlacedSide) -> None:
     """Damping ratios, mode by mode."""
-    law = LAWS[side.placement.side]
-    table = Table(title=f"damping ratios of the {law}, %")
-    for column in ("mode", "left alone", "uniform", side.placement.method):
-        table.add_column(column, justify="right")
-    longest = max(len(side.left_alone), len(side.uniform), len(side.placed))
-    for mode in range(longest):
-        cells = [f"{100.0 * each[mode]:.2f}" if mode < len(each) else "" for each in (side.left_alone, side.uniform, side.placed)]
-        table.add_row(str(mode + 1), *cells)
-    return table
+    found = side.left_alone, side.uniform, side.placed
+    columns = [Column("mode", words=True), Column("left alone"), Column("uniform"), Column(side.placement.method)]
+    rows = [
+        [str(mode + 1), *(f"{100.0 * each[mode]:.2f}" if mode < len(each) else "" for each in found)]
+        for mode in range(max(map(len, found)))
+    ]
+    show_table(columns, rows, f"Damping ratios of the {LAWS[side.placement.side]}, %")

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.table import Table
 
 from beamenv.configuration.files import checked_path
 from train.cli.bars import one_cost_bar
-from train.cli.options import print_json, print_table, say
+from train.cli.options import print_json, say
+from train.cli.tables import Column, show_table
 from train.placement.sized import SizedFront, size_patches
 from train.shared.files import check_file, write_json
 
@@ -20,7 +20,7 @@ from train.shared.files import check_file, write_json
 class Written:
     """Where a front goes."""
 
-    save: Path | None
+    output: Path | None
     """The file of its chosen blade."""
     drawn: Path | None
     """Its picture."""
@@ -31,8 +31,8 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
     """Search for the front, tell it, and write what is asked for; an interruption ends it with what was found."""
     from baselines.placement import Budget, Sizes
 
-    if to.save is not None:
-        check_file(checked_path("save", to.save, (".json",)), "save")
+    if to.output is not None:
+        check_file(checked_path("output", to.output, (".json",)), "output")
     with one_cost_bar("sizes") as report:
         sized = size_patches(
             config, Sizes(actuators=counts["actuators"], sensors=counts["sensors"]), Budget(**budget), seed, report
@@ -41,8 +41,8 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
         print_json(sized.to_dict())
     else:
         show_front(sized)
-    if to.save is not None:
-        save_chosen(sized, to.save, to.as_json)
+    if to.output is not None:
+        save_chosen(sized, to.output, to.as_json)
     if to.drawn is not None:
         from train.placement.front_picture import draw_front
 
@@ -54,16 +54,15 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
 
 def show_front(sized: SizedFront) -> None:
     """A line for each point, and for the blade's own patches."""
-    table = Table(title="patches sized and placed: stationary cost of LQG over mass")
-    columns = ("g", "J", "on its plant", "W", "actuators", "mm", "sensors", "mm")
-    for column in ("", *columns):
-        table.add_column(column, justify="right" if column else "left")
+    columns = [Column("g", words=True), Column("J"), Column("on its\nplant"), Column("W")]
+    columns += [Column("actuators, mm", words=True), Column("sensors, mm", words=True), Column("", words=True)]
+    rows = []
     for number, (each, cost) in enumerate(zip(sized.front.points, sized.on_plants, strict=True)):
         power = "" if each.power is None else f"{each.power:.3g}"
-        sides = [text for side in (each.actuators, each.sensors) for text in (str(len(side.patches)), sheet(side))]
         mark = "chosen" if number == sized.chosen else ""
-        table.add_row(mark, f"{1e3 * each.mass:.4g}", f"{each.cost:.4g}", f"{cost:.4g}", power, *sides)
-    print_table(table)
+        sides = [f"{len(side.patches)}: {sheet(side)}" if side.patches else "" for side in (each.actuators, each.sensors)]
+        rows.append([f"{1e3 * each.mass:.4g}", f"{each.cost:.4g}", f"{cost:.4g}", power, *sides, mark])
+    show_table(columns, rows, "Patches sized and placed: stationary cost of LQG over mass")
     chosen = sized.front.points[sized.chosen]
     say(f"chosen, root-side edges: actuators {edges(chosen.actuators)}; sensors {edges(chosen.sensors)} m")
     for layout in sized.layouts:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from rich.table import Table
-
 from train.cli.bars import one_cost_bar
-from train.cli.options import print_json, print_table, say
+from train.cli.options import print_json, say
+from train.cli.tables import Column, show_table
 
 
 def place_together(config: Any, counts: dict[str, int | None], seed: int, leave_unreached: bool, as_json: bool) -> None:
@@ -21,13 +21,15 @@ def place_together(config: Any, counts: dict[str, int | None], seed: int, leave_
     if as_json:
         print_json({**asdict(found), "unit": "J", "gain": found.gain})
         return
-    table = Table(title=f"both sides, {problem.config.speed:g} rad/s: root-side edges, m")
-    for column in ("placed", "actuators", "sensors", "cost of the loop, J"):
-        table.add_column(column, justify="left" if column == "placed" else "right")
-    for label, above, below, cost in (
+    each_way = (
         ("one after the other", found.in_turn["actuators"], found.in_turn["sensors"], found.in_turn_cost),
         ("together", found.actuators, found.sensors, found.cost),
-    ):
-        table.add_row(label, *(" ".join(f"{z:.4f}" for z in side) for side in (above, below)), f"{cost:.4g}")
-    print_table(table)
+    )
+    words = [Column(each, words=True) for each in ("placed", "actuators", "sensors")]
+    rows = [[name, _edges(above), _edges(below), f"{cost:.4g}"] for name, above, below, cost in each_way]
+    show_table([*words, Column("cost of\nthe loop, J")], rows, f"Both sides, {problem.config.speed:g} rad/s: root-side edges, m")
     say(f"together they cost {100.0 * found.gain:.2f} % less")
+
+
+def _edges(side: Sequence[float]) -> str:
+    return " ".join(f"{z:.4f}" for z in side)

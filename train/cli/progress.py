@@ -42,6 +42,10 @@ class Progressbar(Bars, Listener):
             rate=rate,
         )
 
+    def resumed(self, name: str, finished: bool) -> None:
+        """Say what of an earlier run goes on."""
+        self.say(f"resumed: {name} {'is kept from an earlier run' if finished else 'goes on from its checkpoint'}.")
+
     def evaluated(self, evaluation: Evaluation) -> None:
         """Say how a controller did."""
         self._bars.console.print(f"{evaluation.name:>36}  J / no control {evaluation.relative_cost.value:.3f}", markup=False)
@@ -49,4 +53,4 @@ class Progressbar(Bars, Listener):
     def left_out(self, name: str, sentence: str) -> None:
         """Say which law there is not, and why."""
         self.without.append(name)
-        self._bars.console.print(f"beamenv: {name} is left out: {sentence}", markup=False, soft_wrap=True)
+        self.say(f"{name} is left out: {sentence}")

@@ -11,6 +11,7 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from train.cli.bars import fleeting
+from train.cli.names import check_names
 from train.cli.options import (
     BladeOption,
     ControllerArgument,
@@ -26,7 +27,7 @@ from train.cli.options import (
     print_json,
     say,
 )
-from train.shared.held_out import RECORDED
+from train.controllers.ids import found
 
 if TYPE_CHECKING:
     from minari import MinariDataset
@@ -37,11 +38,13 @@ def record(
     scenario: ScenarioOption = "nominal",
     episodes: Annotated[int, typer.Option(min=1, help="How many.")] = 100,
     seed: Annotated[
-        int,
+        int | None,
         typer.Option(
-            min=0, help="Of the first episode, each of the next has one more; not those that controllers are compared on."
+            min=0,
+            help="Of the first episode, each of the next has one more; not those that controllers are compared on. Behind all "
+            "of those if left out.",
         ),
-    ] = RECORDED,
+    ] = None,
     name: Annotated[str | None, typer.Option(help="Of the data set; beamenv/CONTROLLER-SCENARIO-v0 if left out.")] = None,
     folder: Annotated[
         Path | None,
@@ -61,14 +64,17 @@ def record(
     set.
     """
     with one_sentence("nothing is kept"):
+        check_names(preset, scenario, blade, plant)
+        found(controller, scenario, trained_seed)
         from train.datasets import record as run
+        from train.shared.held_out import RECORDED
 
         with bar(episodes) as report:
             made = run(
                 controller,
                 scenario,
                 episodes,
-                seed,
+                RECORDED if seed is None else seed,
                 name=name,
                 folder=folder,
                 environment=environment_arguments(preset, speed, blade, plant),

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 
 from beamenv.configuration.writing import write_whole
 from train.cli.bars import Bars
+from train.cli.options import complain, print_json
 from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIES, chosen
 from train.reproduce.index import first_verdicts, second_verdicts
 from train.reproduce.judging.ledger import ROWS, counts
@@ -17,8 +19,9 @@ from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.overview import verdicts_of
 from train.reproduce.report import documentation, html_page, markdown_page
-from train.reproduce.runner import Record, load, run
+from train.reproduce.runner import Record, load, run, source_fingerprint
 from train.reproduce.section import OWN_WORDS
+from train.reproduce.thesis import Model
 from train.shared.files import check_folder
 from train.shared.lock import alone_in
 from train.workers.workers import Workers
@@ -32,8 +35,9 @@ def reproduce(
     fresh: bool = False,
     docs: Path | None = None,
     workers: Workers = Workers(),  # noqa: B008 - frozen
+    as_json: bool = False,
 ) -> int:
-    """Run the named studies (all for none), write the page, and return the exit status.
+    """Run the named studies (all for none), write the page, say or print as JSON what came out, and return the exit status.
 
     0: done; 1: a study failed. After an interruption the page of what is finished is written, and it is raised again.
     ``ValueError`` for an unknown name, a folder in which nothing can be written or another process is at work, a damaged record.
@@ -46,13 +50,22 @@ def reproduce(
         for study in STUDIES:
             if not (fresh and study in studies):
                 load(output, study.name)
+        if not fresh:
+            tell_kept(studies, output)
         try:
             run_with_progress(studies, output, fresh, records, workers)
         except KeyboardInterrupt:
-            sum_up(output, records, docs)
+            sum_up(output, records, docs, as_json)
             raise
-        sum_up(output, records, docs)
+        sum_up(output, records, docs, as_json)
     return int(any(record.error for record in records))
+
+
+def tell_kept(studies: Sequence[Study], output: Path) -> None:
+    """How many are kept from an earlier run, if any."""
+    fingerprint = source_fingerprint(Model())
+    if kept := sum(load(output, study.name, fingerprint) is not None for study in studies):
+        complain(f"resumed: {kept} of {len(studies)} are kept from an earlier run.")
 
 
 def run_with_progress(studies: tuple[Study, ...], output: Path, fresh: bool, records: list[Record], workers: Workers) -> None:
@@ -77,11 +90,20 @@ class _Bar(Bars):
         self.update(self._task, advance=1, description=record.name)
 
 
-def sum_up(output: Path, records: list[Record], docs: Path | None) -> None:
-    """The page, and in a few lines what came out, in the thesis' order whichever was done first."""
+def sum_up(output: Path, records: list[Record], docs: Path | None, as_json: bool = False) -> None:
+    """The page, and in a few lines or as JSON what came out, in the thesis' order whichever was done first."""
     records = sorted(records, key=lambda record: NAMES.index(record.name))
     write_pages(output, records, docs)
-    report(records, output)
+    if as_json:
+        print_json({"folder": str(output), "page": str(output / "report.html"), "studies": [content(each) for each in records]})
+    else:
+        report(records, output)
+
+
+def content(record: Record) -> dict[str, Any]:
+    """A study's verdicts as JSON, in nature and by the thesis' equations."""
+    first, second = ({key: each.verdict.value for key, each in found.items()} for found in (record.judgements, record.second))
+    return {"name": record.name, "in_nature": first, "by_equations": second, "error": record.error or None}
 
 
 def write_pages(output: Path, records: list[Record], docs: Path | None) -> None:

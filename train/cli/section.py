@@ -8,14 +8,17 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich.table import Table
 
-from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, print_table, say
+from beamenv.configuration import Number, checked
+from train.cli.names import check_names
+from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, say
+from train.cli.tables import Column, show_table
 from train.shared.files import check_picture
 
 ROWS = ("γx", "γy", "w′", "θx′", "θy′", "φ′")
 MEANING = ("shear along x", "shear along y", "extension", "bending in flap", "bending in lag", "torsion")
 UNITS = ("N", "N", "N", "N m²", "N m²", "N m²")
+PLIES = "plies, ° from the contour,\ninner to outer"
 SEEN = 1e-6
 """Couplings below this share of the root of the product of the diagonals are none."""
 
@@ -29,13 +32,13 @@ def section(
 ) -> None:
     """Stiffness, mass and centres of a blade's section, without its patches, about the origin of its coordinates."""
     with one_sentence():
-        from beamenv.blade.files import load_config
-        from beamenv.blade.presets import blade_config
-        from beamenv.configuration import Number, checked
-
+        check_names(preset, blade=blade)
         at = checked("at", at, Number(ge=0.0, le=1.0))
         if picture is not None:
             check_picture(picture)
+        from beamenv.blade.files import load_config
+        from beamenv.blade.presets import blade_config
+
         config = blade_config(preset, load_config(blade) if blade else None)
         beam = config.beam.build(model=config.model)
         size = float(beam.planform.scale(np.array([at * beam.length]))[0])
@@ -64,32 +67,39 @@ def _walls(beam: Any, size: float) -> list[dict[str, Any]]:
 
 
 def _print(found: Any, walls: list[dict[str, Any]]) -> None:
-    table = Table(title="Walls")
-    for name in ("wall", "length, mm", "thickness, mm", "plies, ° from the contour, inner to outer"):
-        table.add_column(name, justify="left" if name in ("wall",) else "right")
-    for row in walls:
-        angles = row["ply_angles_deg"]
-        graded = row.get("graded", [False] * len(angles))
-        plies = ", ".join("graded" if each else f"{angle:g}" for angle, each in zip(angles, graded, strict=True))
-        table.add_row(row["wall"], f"{1e3 * row['length']:.4g}", f"{1e3 * row['thickness']:.4g}", plies)
-    print_table(table)
-    table = Table(title="Stiffness, transverse shear with it")
-    for name in ("", "meaning", "value"):
-        table.add_column(name, justify="right" if name == "value" else "left")
+    columns = (Column("wall", words=True), Column("length,\nmm"), Column("thickness,\nmm"), Column(PLIES, words=True))
+    rows = [[row["wall"], f"{1e3 * row['length']:.4g}", f"{1e3 * row['thickness']:.4g}", _plies(row)] for row in walls]
+    show_table(columns, rows, "Walls")
     diagonal = np.diag(found.stiffness)
-    for name, meaning, value, unit in zip(ROWS, MEANING, diagonal, UNITS, strict=True):
-        table.add_row(name, meaning, f"{value:.5g} {unit}")
-    unit = np.sqrt(np.outer(diagonal, diagonal))
+    rows = [
+        [*each[:2], f"{value:.5g}", each[2]] for each, value in zip(zip(ROWS, MEANING, UNITS, strict=True), diagonal, strict=True)
+    ]
+    scale = np.sqrt(np.outer(diagonal, diagonal))
     for one, other in zip(*np.triu_indices(len(ROWS), 1), strict=True):
-        if abs(found.stiffness[one, other]) > SEEN * unit[one, other]:
-            table.add_row(f"{ROWS[one]} {ROWS[other]}", "coupling", f"{found.stiffness[one, other]:.5g}")
-    print_table(table)
+        if abs(found.stiffness[one, other]) > SEEN * scale[one, other]:
+            rows.append(
+                [f"{ROWS[one]} {ROWS[other]}", "coupling", f"{found.stiffness[one, other]:.5g}", _unit(int(one), int(other))]
+            )
+    columns = (Column("", words=True), Column("meaning", words=True), Column("value"), Column("unit", words=True))
+    show_table(columns, rows, "Stiffness, transverse shear with it")
     classical = np.diag(found.classical_stiffness)
     names = zip(("EA", "EI flap", "EI lag", "GJ"), classical, ("N", "N m²", "N m²", "N m²"), strict=True)
     say("no transverse force: " + ", ".join(f"{name} {value:.5g} {unit}" for name, value, unit in names))
     centres = (("tension", found.tension_centre), ("shear", found.shear_centre), ("mass", found.mass_centre))
     places = ", ".join(f"{name} centre ({_millimetres(x)}, {_millimetres(y)}) mm" for name, (x, y) in centres)
     say(f"{places}; {found.mass_per_length:.4g} kg/m")
+
+
+def _plies(row: dict[str, Any]) -> str:
+    """Angles from the inside outwards."""
+    angles = row["ply_angles_deg"]
+    graded = row.get("graded", [False] * len(angles))
+    return ", ".join("graded" if each else f"{angle:g}" for angle, each in zip(angles, graded, strict=True))
+
+
+def _unit(one: int, other: int) -> str:
+    """Of a coupling, from the powers of the metre of both rows."""
+    return ("N", "N m", "N m²")[sum(UNITS[k] != "N" for k in (one, other))]
 
 
 def _millimetres(metres: float) -> str:

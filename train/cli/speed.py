@@ -2,45 +2,57 @@
 
 from __future__ import annotations
 
-from rich.table import Table
+from collections.abc import Mapping
+from typing import Annotated
 
-from train.cli.options import JsonOption, one_sentence, print_json, print_table
+import typer
+
+from train.cli.options import JsonOption, one_sentence, print_json, say
+from train.cli.tables import Column, show_table
 from train.shared.versions import machine
 from train.speed.beside_cartpole import ROUNDS
 from train.speed.beside_cartpole import speed as measured
 from train.speed.rows import ROWS, TARGETS, met
 
 
-def speed(as_json: JsonOption = False) -> None:
+def speed(
+    check: Annotated[
+        bool, typer.Option("--check", help="Beside what is to be reached on this project's machine; status 1 where it is not.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
     """How fast it is: steps/s beside CartPole's, imports, assembly. About half a minute."""
     with one_sentence():
         results = measured()
+    missed = [name for name in TARGETS if name in results and not met(name, results[name])] if check else []
     if as_json:
-        print_json({"machine": machine(), **results})
+        targets = {"targets": TARGETS, "missed": missed} if check else {}
+        print_json({"machine": machine(), **results, **targets})
     else:
-        show(results)
+        show(results, check)
+    if missed:
+        raise typer.Exit(1)
 
 
-def show(results: dict[str, float]) -> None:
-    """Print the measurements as a table, with the targets."""
-    table = Table(title=f"best of {ROUNDS} rounds, BLAS threads: {results['threads']:g}, on {machine()}")
-    table.add_column("")
-    table.add_column("measured", justify="right")
-    table.add_column("target", justify="right")
-    table.add_column("")
-    for name, label, unit in ROWS:
-        target = _number(TARGETS[name], unit) if name in TARGETS else ""
-        if name in results:
-            table.add_row(label, _number(results[name], unit), target, VERDICTS[met(name, results[name])])
-        else:
-            table.add_row(label, "needs torch", target, "")
-    print_table(table)
+def show(results: Mapping[str, float], check: bool = False) -> None:
+    """Print machine and threads, the measurements, and beside them the targets where these are asked for."""
+    say(f"{machine()}; threads of linear algebra: {results['threads']:g}; best of {ROUNDS} rounds")
+    columns = [Column("", words=True), Column("measured"), Column("", words=True), *([Column("target")] if check else [])]
+    show_table(columns, [_row(results, *each)[: len(columns)] for each in ROWS])
 
 
-VERDICTS = {None: "", True: "met", False: "[bold]missed[/bold]"}
+def _row(results: Mapping[str, float], name: str, label: str, unit: str) -> list[str]:
+    target = _number(TARGETS[name], unit) if name in TARGETS else ""
+    if name not in results:
+        return [label, "needs torch", "", target]
+    verdict = VERDICTS[met(name, results[name])]
+    return [label, _number(results[name], unit), unit, f"{target} {verdict}".strip()]
+
+
+VERDICTS = {None: "", True: "   met", False: "missed"}
 
 
 def _number(value: float, unit: str) -> str:
     if unit == "steps/s":
-        return f"{value / 1e6:.2f} M steps/s" if value >= 1e6 else f"{value / 1e3:.1f} k steps/s"
-    return f"{value:.2f} {unit}".strip()
+        return f"{value / 1e6:.2f} M" if value >= 1e6 else f"{value / 1e3:.1f} k"
+    return f"{value:.2f}"

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from beamenv.configuration import FileName, Number, checked
+from beamenv.configuration import FileName, Number, Refused, checked
+from beamenv.configuration.files import read_table
+from train.cli.names import check_device, check_name, check_names, check_scenario
 from train.cli.options import (
     BladeOption,
     ClusterOption,
     JobsOption,
+    JsonOption,
     PlantOption,
     PresetOption,
     SpeedOption,
@@ -22,6 +25,7 @@ from train.cli.options import (
     environment_arguments,
     one_sentence,
     overwriting,
+    print_json,
     same_command,
     say,
     working,
@@ -38,11 +42,14 @@ from train.cli.train_options import (
     StartOption,
     UpdatesOption,
 )
+from train.controllers.shipped import GENERALIST
+from train.learning.recipes import NAMES as RECIPES
 
 if TYPE_CHECKING:
     from train.learning.job import Job
     from train.learning.recipe import Recipe
     from train.learning.session import Budget
+    from train.learning.several import Trained
     from train.learning.training import Progress
     from train.workers.workers import Workers
 
@@ -66,6 +73,7 @@ def train(
     speed: SpeedOption = None,
     blade: BladeOption = None,
     plant: PlantOption = None,
+    as_json: JsonOption = False,
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
@@ -75,37 +83,71 @@ def train(
     """
     homes: dict[Path, tuple[str, str, int]] = {}
     with one_sentence(lambda: _resumed_by(context, list(homes))):
+        _check(agent, scenario or [], recipe, start)
+        check_names(preset, blade=blade, plant=plant)
+        if device is not None:
+            check_device(device)
+        workers = working(jobs, cluster)
         recipes = {each: _recipe(each, recipe, device, len(agent)) for each in agent}
         budgets = {each: _budget(minutes, updates, recipes[each].updates) for each in agent}
         environment = environment_arguments(preset, speed, blade, plant)
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
         trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
-        failed = _trained(trainings, names, working(jobs, cluster), resume, overwrite)
-    if failed:
+        trained, already, whole = _trained(trainings, names, workers, resume, overwrite)
+        _tell(homes, names, trained, already, as_json)
+        if not whole:
+            raise KeyboardInterrupt
+    if trained.failed:
         raise typer.Exit(1)
 
 
-def _trained(trainings: Mapping[Path, Job], names: Mapping[Path, str], workers: Workers, resume: bool, overwrite: bool) -> bool:
-    """Train under a bar, and say what became of each; whether one has failed. ``KeyboardInterrupt`` if one was not finished."""
+def _tell(
+    homes: Mapping[Path, tuple[str, str, int]],
+    names: Mapping[Path, str],
+    trained: Trained,
+    already: Collection[Path],
+    as_json: bool,
+) -> None:
+    """What became of each training; ``already`` are those that an earlier run had finished."""
+    if as_json:
+        print_json([_content(home, each, trained, home in already) for home, each in homes.items()])
+    else:
+        for home, made in trained.places.items():
+            say(f"{names[home]} {'was finished already' if home in already else 'saved'} in {', '.join(map(str, made))}")
+    for home, clause in trained.failed.items():
+        complain(f"{names[home]} failed: {clause}.")
+
+
+def _trained(
+    trainings: Mapping[Path, Job], names: Mapping[Path, str], workers: Workers, resume: bool, overwrite: bool
+) -> tuple[Trained, set[Path], bool]:
+    """Train under a bar; what came of each, which were finished before, and whether all are now."""
     from train.cli.progress import Progressbar
+    from train.learning.checkpoint import NAME
     from train.learning.several import is_finished, train_all
 
     totals = {names[home]: _total(job.budget) for home, job in trainings.items()}
     by_clock = any(math.isfinite(job.budget.seconds) for job in trainings.values())
+    begun = {home for home in trainings if resume and (home / NAME).is_file()}
+    already = {home for home in begun if is_finished(home)}
     with Progressbar(totals, "s" if by_clock else "updates") as bar:
 
         def told(home: Path, progress: Progress) -> None:
+            if home in begun:
+                begun.remove(home)
+                bar.say(f"resumed: {names[home]} goes on from its checkpoint.")
             bar.training(names[home], totals[names[home]], progress)
 
         trained = train_all(trainings, workers, told, resume, overwrite)
-    for home, made in trained.places.items():
-        say(f"{names[home]} saved in {', '.join(map(str, made))}")
-    for home, clause in trained.failed.items():
-        complain(f"{names[home]} failed: {clause}.")
-    if not all(is_finished(home) for home in trainings if home not in trained.failed):
-        raise KeyboardInterrupt
-    return bool(trained.failed)
+    return trained, already, all(is_finished(home) for home in trainings if home not in trained.failed)
+
+
+def _content(home: Path, training: tuple[str, str, int], trained: Trained, already: bool) -> dict[str, Any]:
+    """What became of a training, as JSON."""
+    agent, scenario, seed = training
+    about = {"agent": agent, "scenario": scenario, "seed": seed, "folder": str(home), "finished_before": already}
+    return {**about, "policies": [str(each) for each in trained.places.get(home, [])], "failed": trained.failed.get(home)}
 
 
 def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> dict[Path, tuple[str, str, int]]:
@@ -120,11 +162,24 @@ def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> 
     return named
 
 
+def _check(agents: Sequence[str], scenarios: Sequence[str], recipe: Path | None, start: Path | None) -> None:
+    """``ValueError`` of one sentence for a name that there is not, and for a file or folder that is not there."""
+    for each in agents:
+        checked("agent", each, FileName())
+        if recipe is None:
+            check_name("agent", each, RECIPES)
+    for each in scenarios:
+        check_scenario(each, (GENERALIST,))
+    if recipe is not None:
+        read_table(recipe)
+    if start is not None and not start.exists():
+        raise Refused("from", str(start), "the folder of a trained agent")
+
+
 def _recipe(agent: str, own: Path | None, device: str | None, agents: int) -> Recipe:
     """By its name, or of the user's own file."""
     from train.learning.recipe import load_recipe, named_recipe
 
-    checked("agent", agent, FileName())
     if own is not None and agents > 1:
         raise ValueError(f"recipe = {str(own)!r} is of one agent: name one alone.")
     chosen = named_recipe(agent) if own is None else load_recipe(own)

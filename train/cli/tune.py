@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
-from rich.text import Text
 
-from beamenv.configuration import Count, FileName, Refused, checked
+from beamenv.configuration import Count, FileName, checked
+from beamenv.configuration.files import read_table
 from train.cli.bars import Bars
+from train.cli.names import check_names, check_recipe, check_scenario
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -28,9 +28,10 @@ from train.cli.options import (
     one_sentence,
     overwriting,
     print_json,
-    print_table,
     say,
 )
+from train.cli.tables import Column, show_table
+from train.controllers.shipped import GENERALIST
 from train.learning.recipes import NAMES
 
 if TYPE_CHECKING:
@@ -69,13 +70,16 @@ def tune(
     name = recipe if recipe in NAMES else Path(recipe).stem
     home = folder or Path("results/tuning") / f"{name}-{Path(scenario).stem}-{seed}"
     with one_sentence(RESUMES):
+        check_recipe(recipe, "recipe")
+        check_scenario(scenario, (GENERALIST,))
+        check_names(preset, blade=blade, plant=plant)
+        if space is not None:
+            read_table(space)
         from train.learning.recipe import load_recipe, named_recipe
         from train.tuning.space import space_of
         from train.tuning.tuning import Tuning
         from train.tuning.tuning import tune as run
 
-        if recipe not in NAMES and not recipe.endswith((".toml", ".json")):
-            raise Refused("recipe", recipe, f"one of {', '.join(NAMES)}, or a file that ends in .toml or .json")
         chosen = named_recipe(recipe) if recipe in NAMES else load_recipe(Path(recipe))
         chosen = chosen if updates is None else replace(chosen, updates=checked("updates", updates, Count()))
         environment = environment_arguments(preset, speed, blade, plant)
@@ -95,15 +99,20 @@ class _Bar(Bars):
         best = TextColumn("{task.fields[best]}")
         super().__init__(TextColumn("trials"), BarColumn(), MofNCompleteColumn(), best, TimeElapsedColumn())
         self._task = self._bars.add_task("trials", total=trials, best="")
+        self._begun = False
 
     def show(self, records: Sequence[Record]) -> None:
         """How far it is."""
         from train.tuning.records import FINISHED, finished
 
+        ended = sum(bool(each.ended) for each in records)
+        if not self._begun and ended:
+            self.say(f"resumed: {ended} of {len(records)} trials are kept from an earlier run.")
+        self._begun = True
         best = "".join(f"J / no control {each.looks[-1].cost:.3f} at best" for each in finished(records)[:1])
         if records[0].ended == FINISHED:
             best += f", {records[0].looks[-1].cost:.3f} as it is"
-        self._bars.update(self._task, completed=sum(bool(each.ended) for each in records), best=best)
+        self._bars.update(self._task, completed=ended, best=best)
 
 
 def _show(name: str, tuned: Tuned) -> None:
@@ -111,14 +120,14 @@ def _show(name: str, tuned: Tuned) -> None:
     from train.tuning.records import finished
 
     whole = finished(tuned.records)
-    table = Table(title=Text(f"Trials of {name}, on validation seeds"))
-    for heading in ("trial", "ended", "updates", "J / no control", *tuned.untuned.settings):
-        table.add_column(heading, justify="right")
+    settings = (Column(each) for each in tuned.untuned.settings)
+    columns = [Column("trial", words=True), Column("ended", words=True), Column("updates"), Column("J / J₀"), *settings]
+    rows = []
     for each in [*whole, *(other for other in tuned.records if other not in whole)]:
         cost = f"{each.looks[-1].cost:.3f}" if each.looks else "–"
         values = [f"{value:.3g}" if isinstance(value, float) else str(value) for value in each.settings.values()]
-        table.add_row(*map(Text, [str(each.trial), each.ended, str(each.updates), cost, *values]))
-    print_table(table)
+        rows.append([str(each.trial), each.ended, str(each.updates), cost, *values])
+    show_table(columns, rows, f"Trials of {name}, on validation seeds")
     say(_sentence(tuned, len(whole)))
     for each in tuned.records:
         if each.sentence:

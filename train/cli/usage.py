@@ -31,9 +31,9 @@ class OneSentence(TyperGroup):
 
 def _told(error: Any) -> int:
     """Say what is wrong, or help where nothing was asked; the status."""
-    words = " ".join(map(cut, error.format_message().split()))
+    words = " ".join(map(cut, error.format_message().replace(": Value error, ", ": ").split()))
     if type(error).__name__ == "NoArgsIsHelpError":
         error.show()
     else:
-        complain(f"{words}{'' if words.endswith('.') else '.'}")
+        complain(f"{words}{'' if words.endswith(('.', '?')) else '.'}")
     return int(error.exit_code)

@@ -104,6 +104,9 @@ class Listener:
     def training(self, name: str, budget: float, progress: Progress) -> None:
         """After every update of an agent."""
 
+    def resumed(self, name: str, finished: bool) -> None:
+        """Before an agent that an earlier run has trained, or has begun to train."""
+
     def evaluated(self, evaluation: Evaluation) -> None:
         """After each controller."""
 
@@ -227,8 +230,11 @@ def claimed(folder: Path, content: Mapping[str, Any]) -> Iterator[None]:
 def trained(comparison: Comparison, name: str, folder: Path, task: Task, listener: Listener) -> Controller:
     """The agent of an earlier run, or one trained now, from its checkpoint on if it was interrupted; called as it is here."""
     home = folder / "agents" / name
-    if not ((home / "agent.json").exists() and read_about(home).get("finished", True)):
-        budget, resumes = comparison.budget[name], (home / CHECKPOINT).exists()
+    finished = (home / "agent.json").exists() and read_about(home).get("finished", True)
+    budget, resumes = comparison.budget[name], (home / CHECKPOINT).exists()
+    if finished or resumes:
+        listener.resumed(name, finished)
+    if not finished:
         run(
             comparison.job(name),
             home,

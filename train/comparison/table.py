@@ -37,16 +37,20 @@ def cells(evaluation: Evaluation, tiers: Tiers = None) -> list[str]:
 
 def caption(evaluations: Sequence[Evaluation], tiers: Tiers = None) -> str:
     """What the table rests on."""
-    first = evaluations[0]
-    seeds = first.episodes.seeds
     return (
-        f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]}), the same for every controller; "
-        f"brackets: {100 * first.confidence:.0f} % bootstrap intervals over seeds. "
-        f"{tiers_told() if tiers else _told_of_references(evaluations)}"
+        f"{episodes_told(evaluations[0])}, the same for every controller; "
+        f"brackets: {100 * evaluations[0].confidence:.0f} % bootstrap intervals over seeds. "
+        f"{tiers_told() if tiers else told_of_references(evaluations)}"
     ).rstrip()
 
 
-def _told_of_references(evaluations: Sequence[Evaluation]) -> str:
+def episodes_told(evaluation: Evaluation) -> str:
+    """Which episodes."""
+    seeds = evaluation.episodes.seeds
+    return f"{len(seeds)} held-out episodes (seeds {seeds[0]} to {seeds[-1]})"
+
+
+def told_of_references(evaluations: Sequence[Evaluation]) -> str:
     """Empty where nobody is told what no sensor offers."""
     known = known_controllers()
     found = [each.name for each in evaluations if each.name in known and known[each.name].tier == TRUTH]

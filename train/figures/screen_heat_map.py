@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from plotly.colors import sample_colorscale
 
-from train.figures.heat_map import LOST, QUANTITY, RANGE, SCALE, TICKS, WAY, HeatMap
+from train.figures.heat_map import LOST, QUANTITY, RANGE, SCALE, TICKS, HeatMap
 from train.figures.palette import ink_on
 from train.figures.screen import plain
 
@@ -51,9 +51,9 @@ def _shaded(content: HeatMap) -> dict[str, Any]:
 
 
 def _bar() -> dict[str, Any]:
-    """The key to the shades."""
+    """The key to the shades; the page says in words which way is better."""
     names = [f"≤ {TICKS[0]:g}", *(f"{tick:g}" for tick in TICKS[1:-1]), f"≥ {TICKS[-1]:g}"]
-    title = {"text": f"{QUANTITY}: {WAY}", "side": "right"}
+    title = {"text": QUANTITY, "side": "right"}
     return {"title": title, "tickvals": np.log10(TICKS), "ticktext": names, "thickness": 12}
 
 

@@ -28,8 +28,12 @@ class Column:
         """A value, with its interval where that is shown; a dash for None."""
         if estimate is None:
             return "–"
-        value, low, high = (self._number(self.factor * each) for each in (estimate.value, estimate.low, estimate.high))
+        value, low, high = (self.number(each) for each in (estimate.value, estimate.low, estimate.high))
         return f"{value} [{low}, {high}]" if self.interval else value
+
+    def number(self, value: float) -> str:
+        """A value in SI units, in the heading's."""
+        return self._number(self.factor * value)
 
     def _number(self, value: float) -> str:
         return number(value, "{:.3g}" if self.fine and abs(value) < 10.0 else self.form)
