@@ -20,10 +20,10 @@ LEFT_AS_THEY_ARE = {"README.md", "agents.md", "libraries.md"}
 SMALLER = {
     "train": {"--minutes": None, "--updates": "1", "--jobs": "1"},
     "tune": {"--trials": "1", "--updates": "2", "--jobs": "1"},
-    "evaluate": {"--seeds": "2"},
+    "evaluate": {"--episodes": "2"},
     "record": {"--episodes": "2"},
-    "compare": {"--minutes": "0", "--seeds": "2"},
-    "benchmark": {"--seeds": "2", "--jobs": "1", "--scenario": "nominal", "--controller": "lqg"},
+    "compare": {"--minutes": "0", "--episodes": "2"},
+    "benchmark": {"--episodes": "2", "--jobs": "1", "--scenario": "nominal", "--controller": "lqg"},
     "reproduce": {"--jobs": "1"},
 }
 """By command: options that are put in the place of what the page has, or added; None takes an option away. Clusters, which only the
@@ -166,7 +166,7 @@ def test_a_command_that_a_page_has_wrong_is_found(tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     words, only_begun = smaller(["evaluate", "nobody"])
-    assert not only_begun and words == ["evaluate", "nobody", "--seeds", "2"]
+    assert not only_begun and words == ["evaluate", "nobody", "--episodes", "2"]
     assert CliRunner().invoke(app, words).exit_code == 2
 
 
