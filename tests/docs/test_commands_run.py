@@ -19,7 +19,7 @@ LEFT_AS_THEY_ARE = {"README.md", "agents.md", "libraries.md"}
 """Pages whose Python blocks the commands do not need, and which take long."""
 SMALLER = {
     "train": {"--minutes": None, "--updates": "1", "--jobs": "1"},
-    "tune": {"--trials": "1", "--updates": "2", "--jobs": "1"},
+    "tune": {"--trials": "2", "--updates": "2", "--jobs": "1"},
     "evaluate": {"--episodes": "2"},
     "record": {"--episodes": "2"},
     "compare": {"--minutes": "0", "--episodes": "2"},
