@@ -88,7 +88,7 @@ def train(
         if device is not None:
             check_device(device)
         workers = working(jobs, cluster)
-        recipes = {each: _recipe(each, recipe, device, len(agent)) for each in agent}
+        recipes = {each: _recipe(each, recipe, device) for each in agent}
         budgets = {each: _budget(minutes, updates, recipes[each].updates) for each in agent}
         environment = environment_arguments(preset, speed, blade, plant)
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
@@ -171,17 +171,17 @@ def _check(agents: Sequence[str], scenarios: Sequence[str], recipe: Path | None,
     for each in scenarios:
         check_scenario(each, (GENERALIST,))
     if recipe is not None:
+        if len(agents) > 1:
+            raise ValueError(f"recipe = {str(recipe)!r} is of one agent: name one alone.")
         read_table(recipe)
     if start is not None and not start.exists():
         raise Refused("from", str(start), "the folder of a trained agent")
 
 
-def _recipe(agent: str, own: Path | None, device: str | None, agents: int) -> Recipe:
+def _recipe(agent: str, own: Path | None, device: str | None) -> Recipe:
     """By its name, or of the user's own file."""
     from train.learning.recipe import load_recipe, named_recipe
 
-    if own is not None and agents > 1:
-        raise ValueError(f"recipe = {str(own)!r} is of one agent: name one alone.")
     chosen = named_recipe(agent) if own is None else load_recipe(own)
     return chosen if device is None else chosen.on(device)
 
