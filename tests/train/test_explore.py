@@ -13,7 +13,7 @@ import pytest
 from baselines import closed_loop_poles, lqg
 from baselines.laws.lqg import sampled_design
 from beamenv.blade.build import build_beam, build_plant
-from beamenv.blade.presets import THESIS
+from beamenv.blade.presets import THESIS, blade_config
 from beamenv.plant.plant import drive_limit, sample
 from beamenv.plant.poles import poles_of_sampled
 from beamenv.scenarios.load_cases import static_deflection
@@ -80,6 +80,18 @@ def test_modes_at_rest_are_real_and_clamped_at_the_root():
 
 def test_the_gyroscopic_force_moves_parts_of_a_mode_a_quarter_of_a_period_later(thesis):
     assert np.abs(thesis.shapes.imag).max() > 0.01
+
+
+def test_modes_above_half_the_sampling_rate_keep_their_own_damping():
+    """A bench strip whose highest modes fold into lower ones as samples."""
+    strip = {"beam": {"section": {"shape": "strip", "width": 0.03, "thickness": 0.002}, "length": 0.3, "material": "aluminium"}}
+    group = {"positions": [0.0], "length": 0.05, "width": 0.03, "wall": "strip", "material": "PIC255", "bonded": True}
+    patches = {"actuators": [group], "sensors": [{**group, "face": "inner"}]}
+    base = blade_config("thesis", {**strip, "patches": patches, "speed": 0.0, "damping_ratio": 0.005})
+    found = view(Settings(speed=0.0), base)
+    assert found.natural_frequencies[base.modes - 1] > np.pi / base.control_interval
+    np.testing.assert_allclose(found.damping.free, 0.005, rtol=1e-6)
+    assert np.all(found.damping.controlled > 0.005 * (1.0 - 1e-6))
 
 
 def test_damping_at_rest_is_one_per_cent_in_every_mode():

@@ -71,7 +71,7 @@ def view(settings: Settings, base: BladeConfig = THESIS) -> View:
         families=modes.families,
         stations=stations,
         shapes=shapes,
-        damping=damping(held, K, L, len(plant.A)),
+        damping=damping(plant, held, K, L),
         response=step_responses(plant, held, K, L, line_load, STEP_DURATION),
     )
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
 
 from baselines.analysis.response import linear_response
 from baselines.design.loop import spectral_radius
 from baselines.laws.lqg import compensator
 from beamenv.plant.plant import Plant, SampledPlant
-from beamenv.plant.poles import damping_ratios, poles_of_sampled
 
 Array = NDArray[np.float64]
 
@@ -21,26 +21,43 @@ class Damping:
     """Of a blade with r modes. By the separation principle a loop's poles are its regulator's and its filter's."""
 
     free: Array
-    """(r,): damping ratios without control, in ascending order of the poles' magnitude."""
+    """(r,): damping ratios of the modes without control, in ascending order of their frequencies."""
     controlled: Array
-    """(r,): under LQG, likewise: of the regulator's poles."""
+    """(r,): of the same modes under LQG: of the regulator's poles."""
     filter_rate: float
     """1/s: at least this fast the error of the Kalman filter decays."""
 
 
-def damping(held: SampledPlant, K: Array, L: Array, states: int) -> Damping:
-    """Damping of a sampled plant without control and with gains K (m, n) and L (n, p), of whose states so many are the blade's.
+def damping(plant: Plant, held: SampledPlant, K: Array, L: Array) -> Damping:
+    """Damping of a plant without control and, sampled, with gains K (m, n) and L (n, p), of whose states the first are its own.
 
-    The others are what readings show of the voltages before, which moves nothing.
+    The others are what readings show of the voltages before, which moves nothing. A mode above half the sampling rate shows in
+    samples as a slower one: each pole of the loop is taken for the mode that has the greatest part in it, where it is nearest to
+    that mode's.
     """
-    own = np.s_[:states, :states]
-    free, controlled = held.A[own], (held.A - held.B @ K)[own]
+    free, modes = np.linalg.eig(plant.A)
+    own = np.s_[: len(free), : len(free)]
+    poles, shapes = np.linalg.eig((held.A - held.B @ K)[own])
+    parts = np.abs(np.linalg.solve(modes, shapes))
+    mode, pole = linear_sum_assignment(-parts / np.linalg.norm(parts, axis=0))
+    of_modes = np.empty_like(free)
+    of_modes[mode] = _unfolded(poles[pole], free[mode], held.interval)
+    upper = np.flatnonzero(free.imag > 0.0)
+    upper = upper[np.argsort(np.abs(free[upper]))]
     error = held.A - held.A @ L @ held.C
     return Damping(
-        free=damping_ratios(poles_of_sampled(free, held.interval)),
-        controlled=damping_ratios(poles_of_sampled(controlled, held.interval)),
+        free=-free[upper].real / np.abs(free[upper]),
+        controlled=-of_modes[upper].real / np.abs(of_modes[upper]),
         filter_rate=-float(np.log(spectral_radius(error))) / held.interval,
     )
+
+
+def _unfolded(poles: Array, near: Array, interval: float) -> NDArray[np.complex128]:
+    """log(z)/Δt, rad/s, of the sampled poles, each on the branch nearest to a continuous one."""
+    with np.errstate(divide="ignore"):  # z = 0 is infinitely fast
+        found = np.log(poles.astype(complex)) / interval
+    turns = np.round((near.imag - found.imag) * interval / (2.0 * np.pi))
+    return np.asarray(found + 2j * np.pi * turns / interval)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
