@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Mapping
-from functools import cache
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from beamenv.configuration import Refused
@@ -13,9 +12,8 @@ from beamenv.scenarios.named import FORMER as FORMER_SCENARIOS
 from beamenv.scenarios.named import GROUPS, LOADS, NOMINAL
 from beamenv.scenarios.named import NAMES as IN_FILES
 from beamenv.titles import BLADES
-from train.controllers.known import FORMER, known_controllers
+from train.controllers.ids import is_known, unknown
 from train.controllers.near import near
-from train.controllers.shipped import recipes, shipped_agents
 from train.learning.recipes import NAMES as RECIPES
 from train.reproduce.names import NAMES as STUDIES
 
@@ -68,12 +66,8 @@ def check_scenarios(names: Iterable[str]) -> None:
 
 def check_controller(name: str, argument: str = "controller", others: str = "") -> None:
     """The same of the id of a controller or of an agent that ships, and of the folder of a trained one, or ``others``."""
-    ids, agents, short = _ids()
-    if name in ids or name in agents or name in short or name in FORMER or os.path.exists(name):
-        return
-    known = f"one of {', '.join(ids)}, of the agents that ship, {', '.join(agents)}"
-    allowed = f"{others}, or {known}" if others else f"{known}, or the folder of a trained agent"
-    raise Refused(argument, name, allowed + near(name, [*ids, *agents, *short], short))
+    if not is_known(name) and not os.path.exists(name):
+        raise unknown(name, argument, others)
 
 
 def check_recipe(name: str, argument: str) -> None:
@@ -100,10 +94,3 @@ def check_name(argument: str, name: str, known: Collection[str], others: str = "
     """The same of one of some names."""
     if name not in known:
         raise Refused(argument, name, f"one of {', '.join(known)}{others}{near(name, known)}")
-
-
-@cache
-def _ids() -> tuple[Collection[str], Collection[str], Mapping[str, str]]:
-    """Of controllers, of agents that ship, and the recipes of these with what is said of each."""
-    agents = shipped_agents()
-    return tuple(known_controllers()), tuple(agents), recipes(agents)

@@ -76,8 +76,20 @@ def _runs_of(agent: Agent, scenario: str, seed: int | None) -> Mapping[str, Path
 
 def _controller(name: str) -> str:
     """The id of a controller that is built; ``ValueError`` lists them, and the agents."""
+    if FORMER.get(name, name) not in known_controllers():
+        raise unknown(name)
+    return FORMER.get(name, name)
+
+
+def is_known(name: str) -> bool:
+    """Whether a name is an id, one of former days, or that of the recipe of an agent that ships."""
+    agents = shipped_agents()
+    return any(name in each for each in (known_controllers(), agents, recipes(agents), FORMER))
+
+
+def unknown(name: str, argument: str = "controller", others: str = "") -> Refused:
+    """What is said of a name that leads to nobody: who is known, or ``others``, and who has an id like it."""
     laws, agents = known_controllers(), shipped_agents()
-    if FORMER.get(name, name) in laws:
-        return FORMER.get(name, name)
-    known = f"one of {', '.join(laws)}, of the agents that ship, {', '.join(agents)}, or the folder of a trained agent"
-    raise Refused("controller", name, known + near(name, [*laws, *agents, *recipes(agents)], recipes(agents)))
+    known = f"one of {', '.join(laws)}, of the agents that ship, {', '.join(agents)}"
+    allowed = f"{others}, or {known}" if others else f"{known}, or the folder of a trained agent"
+    return Refused(argument, name, allowed + near(name, [*laws, *agents, *recipes(agents)], recipes(agents)))
