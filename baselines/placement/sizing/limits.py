@@ -158,7 +158,8 @@ def free_widths(bare: RotatingBeam, group: PatchGroup) -> Span:
     met = [number for number, width in enumerate(tried) if not _lies_free(bare, group, width)]
     below = [number for number in met if tried[number] < group.width]
     above = [number for number in met if tried[number] > group.width]
-    return tried[below[-1] + 1 if below else 0], tried[above[0] - 1 if above else -1]
+    first, last = below[-1] + 1 if below else 0, above[0] - 1 if above else TRIED - 1
+    return tried[min(first, last)], tried[last]
 
 
 def _lies_free(bare: RotatingBeam, group: PatchGroup, width: float) -> bool:
