@@ -152,7 +152,7 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("train", "dreamer"), "dreamer"),
         (("train", "ppo", "--minutes", "0"), "minutes"),
         (("train", "ppo", "--updates", "0"), "updates"),
-        (("train", "ppo", "--updates", "1", "--minutes", "1"), "minutes and updates"),
+        (("train", "ppo", "--updates", "1", "--minutes", "1"), "--minutes and --updates"),
         (("train", "ppo", "--scenario", "storm"), "storm"),
         (("train", "ppo", "--scenario", "quiet"), "nothing to learn"),
         (("train", "ppo", "--recipe", "absent.toml"), "absent.toml"),

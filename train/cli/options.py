@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from beamenv.configuration import shown
 from train.cli.names import PRESETS, SCENARIOS, check_names
+from train.cli.said import said
 from train.shared.interruption import status_of
 
 if TYPE_CHECKING:
@@ -99,19 +99,12 @@ def one_sentence(interrupted: str | Callable[[], str] = "") -> Iterator[None]:
     except BrokenPipeError:
         raise
     except (ValueError, OSError) as error:
-        complain(_said(error))
+        complain(said(error))
         raise typer.Exit(2) from None
     except KeyboardInterrupt as error:
         holds = interrupted if isinstance(interrupted, str) else interrupted()
         complain(f"interrupted{holds and ': '}{holds}.")
         raise typer.Exit(status_of(error)) from None
-
-
-def _said(error: ValueError | OSError) -> str:
-    """The sentence; of the system's own errors the file and what is wrong with it."""
-    if isinstance(error, OSError) and error.strerror:
-        return f"file {shown(error.filename)} cannot be used: {error.strerror}."
-    return str(error)
 
 
 def same_command(context: typer.Context, **changed: Any) -> str:

@@ -157,7 +157,7 @@ def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> 
         own = folder is None or len(trainings) > 1
         home = parent / f"{agent}-{Path(scenario).stem}-{seed}" if own else parent
         if home in named:
-            raise ValueError(f"agent, scenario and seed lead twice to the folder {str(home)!r}: name each once.")
+            raise ValueError(f"agent, --scenario and --seed lead twice to the folder {str(home)!r}: name each once.")
         named[home] = agent, scenario, seed
     return named
 
@@ -220,5 +220,5 @@ def _budget(minutes: float | None, updates: int | None, otherwise: int) -> Budge
     if minutes is None:
         return Budget(updates=otherwise if updates is None else updates)
     if updates is not None:
-        raise ValueError("minutes and updates must not both be given.")
+        raise ValueError("--minutes and --updates must not both be given.")
     return Budget(seconds=60.0 * checked("minutes", minutes, Number(gt=0.0)))
