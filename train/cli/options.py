@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import sys
+import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -126,6 +127,11 @@ def say(line: str) -> None:
     """To standard output; a terminal breaks it between words, and whatever else reads gets one line."""
     screen = Console()
     screen.print(line, soft_wrap=not screen.is_terminal, markup=False, highlight=False)
+
+
+def note(line: str) -> None:
+    """To standard output, below a table: broken between words as that is, whoever reads."""
+    print(textwrap.fill(line, Console().width, break_long_words=False, break_on_hyphens=False))  # noqa: T201 - the command's own voice
 
 
 def complain(sentence: str) -> None:

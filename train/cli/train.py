@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Collection, Mapping, Sequence
 from itertools import product
 from pathlib import Path
@@ -95,7 +96,7 @@ def train(
         trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
         trained, already, whole = _trained(trainings, names, workers, resume, overwrite)
-        _tell(homes, names, trained, already, as_json)
+        _tell(homes, names, trained, already, {"preset": preset, "speed": speed, "blade": blade, "plant": plant}, as_json)
         if not whole:
             raise KeyboardInterrupt
     if trained.failed:
@@ -107,16 +108,26 @@ def _tell(
     names: Mapping[Path, str],
     trained: Trained,
     already: Collection[Path],
+    given: Mapping[str, Any],
     as_json: bool,
 ) -> None:
-    """What became of each training; ``already`` are those that an earlier run had finished."""
+    """What became of each training, and how the first is measured; ``already`` are those that an earlier run had finished."""
     if as_json:
         print_json([_content(home, each, trained, home in already) for home, each in homes.items()])
     else:
         for home, made in trained.places.items():
             say(f"{names[home]} {'was finished already' if home in already else 'saved'} in {', '.join(map(str, made))}")
+        for home in list(trained.places)[:1]:
+            say(f"next: {shlex.join(['beamenv', 'evaluate', str(home), *where(homes[home][1], given)])}")
     for home, clause in trained.failed.items():
         complain(f"{names[home]} failed: {clause}.")
+
+
+def where(scenario: str, given: Mapping[str, Any]) -> list[str]:
+    """Options of ``evaluate`` for what an agent was trained on, those that are not usual; a generalist is measured in "nominal"."""
+    usual = {"scenario": "nominal", "preset": "thesis"}
+    chosen = {"scenario": "nominal" if scenario == GENERALIST else scenario, **given}
+    return [word for name, each in chosen.items() if each not in (None, usual.get(name)) for word in (f"--{name}", str(each))]
 
 
 def _trained(
