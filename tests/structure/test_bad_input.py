@@ -217,7 +217,7 @@ def test_bad_input_is_refused_by_name_and_value(case):
 def test_inlay_that_fits_the_root_but_not_the_tapered_tip_is_refused():
     inlay = Inlay("top", 0.0, 0.1, 0.2, Ply(GRAPHITE_EPOXY, 90.0), 3e-4)
     blade(inlays=(inlay,))
-    with pytest.raises(ValueError, match=r"width = 0\.2 m must be .* at most the top wall's 0\.127 m"):
+    with pytest.raises(ValueError, match=r"width is 0\.2, but must be .* at most the top wall's 0\.127 m"):
         blade(inlays=(inlay,), taper=2.0)
 
 
