@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from beamenv.configuration import Refused, unknown_name
-from beamenv.configuration.files import ENDINGS, content_of, read_table
+from beamenv.configuration.files import ENDINGS, checked_path, content_of, read_table
 from beamenv.scenarios.named import FORMER as FORMER_SCENARIOS
 from beamenv.scenarios.named import GROUPS, LOADS, NOMINAL
 from beamenv.scenarios.named import NAMES as IN_FILES
@@ -44,9 +44,14 @@ def check_names(
     if scenario is not None:
         check_scenario(scenario)
     if blade is not None:
-        read_table(blade)
+        check_table(blade, "blade")
     if plant is not None and plant.suffix.lower() in MODELS:
         content_of(plant, 1)
+
+
+def check_table(path: Path, argument: str) -> None:
+    """The same of a .toml or .json file."""
+    read_table(checked_path(argument, path, ENDINGS))
 
 
 def check_scenario(name: str, others: Collection[str] = ()) -> None:

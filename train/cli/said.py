@@ -13,14 +13,20 @@ from beamenv.configuration import shown
 OPTIONS: ContextVar[Mapping[str, str]] = ContextVar("OPTIONS", default=MappingProxyType({}))
 """Of the command that runs, by the arguments that they are in Python."""
 
-_ARGUMENT = re.compile(r"(?:(?<=^)|(?<=: )|(?<=; )|(?<=, so )|(?<=, but )|(?<=, or ))(\w+)(?= (?:is|must)\b| = [^(])")
+OTHERWISE = {"teacher": "from", "seeds": "episodes", **{f"counts.{side}": side for side in ("actuators", "sensors")}}
+OTHERWISE |= {f"budget.{name}": name for name in ("mass", "channels", "power", "frequency")}
+"""Arguments that are called otherwise than the option that they come from."""
+
+_ARGUMENT = re.compile(r"(?:(?<=^)|(?<=: )|(?<=; )|(?<=, so )|(?<=, but )|(?<=, or ))([\w.]+)(?= (?:is|must)\b| = [^(])")
 """Where a sentence, or a part of it, begins with the name of an argument."""
 
 
 def options_of(command: Any) -> dict[str, str]:
     """The options of a command by the names of its parameters, one that is given several times by their plural too."""
     long = {each.name: max(each.opts, key=len) for each in command.params if each.param_type_name == "option"}
-    return {f"{name}s": option for name, option in long.items()} | long
+    bare = {option.lstrip("-"): option for option in long.values()}
+    also = {other: bare[name] for other, name in OTHERWISE.items() if name in bare}
+    return {f"{name}s": option for name, option in long.items()} | also | bare | long
 
 
 def in_options(sentence: str, options: Mapping[str, str]) -> str:

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from beamenv.configuration import FileName, Number, Refused, checked
-from beamenv.configuration.files import read_table
-from train.cli.names import check_device, check_name, check_names, check_scenario
+from train.cli.names import check_device, check_name, check_names, check_scenario, check_table
 from train.cli.options import (
     BladeOption,
     ClusterOption,
@@ -184,7 +183,7 @@ def _check(agents: Sequence[str], scenarios: Sequence[str], recipe: Path | None,
     if recipe is not None:
         if len(agents) > 1:
             raise ValueError(f"recipe = {str(recipe)!r} is of one agent: name one alone.")
-        read_table(recipe)
+        check_table(recipe, "recipe")
     if start is not None and not start.exists():
         raise Refused("from", str(start), "the folder of a trained agent")
 

@@ -59,4 +59,7 @@ def _refused(error: Any) -> str:
     value, told = first["input"], first["msg"].removeprefix("Value error, ")
     if " is not one of " in told:
         return str(unknown_name(name, value, re.findall(r"'([^']*)'", told.partition(" is not one of ")[2])))
-    return str(Refused(name, value, told.removeprefix("Input should be ").partition(", unable to")[0]))
+    allowed = told.removeprefix("Input should be ").partition(", unable to")[0]
+    for theirs, ours in (("greater than or equal to", "at least"), ("less than or equal to", "at most")):
+        allowed = allowed.replace(theirs, ours)
+    return str(Refused(name, value, allowed))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,7 +51,7 @@ def folder_id(folder: Path) -> str:
 
 def _folder(name: str) -> Path | None:
     known = checked("controller", name, Text()) in {**known_controllers(), **shipped_agents(), **FORMER}
-    return Path(name) if not known and Path(name).is_dir() else None
+    return Path(name) if not known and os.path.isdir(name) else None  # which the empty text is not
 
 
 def _agent(name: str, scenario: str) -> Agent | None:
