@@ -132,7 +132,7 @@ def test_a_picture_that_cannot_be_written_is_told_before_the_search(more, tmp_pa
     for picture in (tmp_path / "note" / "picture.png", tmp_path / "folder.png"):
         result = run("--picture", str(picture), *more)
         assert result.exit_code == 2, result.output
-        assert result.stdout == "" and result.stderr.startswith("beamenv: picture = ")
+        assert result.stdout == "" and result.stderr.startswith("beamenv: --picture = ")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "results").write_text("")
     assert run(*more).exit_code == (1 if more else 2)  # without --json a picture is drawn in results

@@ -154,7 +154,7 @@ def test_each_agent_scenario_and_seed_has_a_folder_of_its_own(tmp_path, monkeypa
         (("ppo", "--seed", "1", "--seed", "1"), "lead twice to the folder 'results/agents/ppo-nominal-1'"),
         (("ppo", "sac", "--recipe", "brief.toml"), "recipe = 'brief.toml' is of one agent: name one alone"),
         (("ppo", "dreamer"), "dreamer"),
-        (("ppo", "--seed", "0", "--seed", "-1"), "'--seed'"),
+        (("ppo", "--seed", "0", "--seed", "-1"), "--seed is '-1', but must be at least 0"),
         (("ppo", "--cluster", "nowhere"), "cluster is 'nowhere', but must be local"),
     ],
 )
