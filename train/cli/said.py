@@ -13,7 +13,11 @@ from beamenv.configuration import shown
 OPTIONS: ContextVar[Mapping[str, str]] = ContextVar("OPTIONS", default=MappingProxyType({}))
 """Of the command that runs, by the arguments that they are in Python."""
 
-OTHERWISE = {"teacher": "from", "seeds": "episodes", **{f"counts.{side}": side for side in ("actuators", "sensors")}}
+OTHERWISE = {
+    "teacher": "from",
+    "seeds": "episodes",
+    **{f"{table}.{side}": side for table in ("counts", "sizes") for side in ("actuators", "sensors")},
+}
 OTHERWISE |= {f"budget.{name}": name for name in ("mass", "channels", "power", "frequency")}
 """Arguments that are called otherwise than the option that they come from."""
 
