@@ -185,14 +185,18 @@ def explore(
         check_names(preset, blade=blade)
         from dataclasses import replace
 
+        from rich.console import Console
+
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
         from train.explore import serve
 
-        base = blade_config(preset, load_config(blade) if blade else None)
-        server = serve(port, host, base if speed is None else replace(base, speed=speed))
-    name = f"[{host}]" if ":" in host else host
-    say(f"http://{name}:{server.port} (Ctrl-C ends it)")
+        with Console(stderr=True).status("building the blade"):
+            base = blade_config(preset, load_config(blade) if blade else None)
+            name = Path(blade).name if blade else preset
+            server = serve(port, host, base if speed is None else replace(base, speed=speed), name)
+    place = f"[{host}]" if ":" in host else host
+    say(f"http://{place}:{server.port} (Ctrl-C ends it)")
     server.serve_forever()
 
 

@@ -1,0 +1,241 @@
+"""Pictures of a blade's section at one station, to scale: walls with their plies and patches, and each wall from face to face."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamenv.blade.config import BladeConfig
+from beamenv.blade.layouts import SIDES
+from beamenv.patches.group import PatchGroup
+from beamenv.structure import RotatingBeam
+from beamenv.structure.section.mesh import Mesh, mesh
+from beamenv.structure.walls.inlay import Inlay
+from beamenv.structure.walls.laminate import Laminate, Ply
+from train.explore.picture import as_address, colour_of, name_of
+from train.explore.units import nearest_round, number, signed, unit_of
+from train.figures.section import piece
+from train.figures.themes import THEMES
+
+Array = NDArray[np.float64]
+
+WIDTH, HIGHEST, MARGIN = 640.0, 320.0, 22.0
+BAR_WIDTH, BAR_HEIGHT, BAR_ROW = 380.0, 30.0, 62.0
+LETTER = 7.0
+"""Pixels, about, of a letter of a bar's labels."""
+THINNEST_PLY = 1.2
+"""Pixels: a wall whose plies are thinner is drawn as one."""
+GREYS = ("#c3ced9", "#9fb0c1", "#dde5ec", "#8497ab", "#b1bfcd", "#6f849a")
+"""Of plies by their angle, in its order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A patch that lies at the station."""
+
+    name: str
+    colour: str
+    side: str
+    inlay: Inlay
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cut:
+    """A blade's section at one station."""
+
+    elements: Mesh
+    hosts: dict[str, Laminate]
+    sheets: tuple[Sheet, ...]
+    material: str
+
+    @classmethod
+    def at(cls, config: BladeConfig, beam: RotatingBeam, z: float) -> Cut:
+        """That at z, m from the root."""
+        sheets = tuple(_sheets(config, beam, z))
+        strips = sorted({each.inlay.strip for each in sheets}, key=lambda strip: (strip.wall, strip.width, strip.offset))
+        elements = mesh(beam.section.chains, beam.planform.scale(np.array([z])), strips)
+        given = config.beam.material
+        material = given if isinstance(given, str) else "your own material"
+        return cls(elements, beam.section.hosts(config.beam.layup()), sheets, material)
+
+    def laminate(self, k: int) -> Laminate:
+        """Of an element: its wall's, with the patches there."""
+        edge = self.elements.edges[k]
+        return self.within(edge.wall, [each for each in self.sheets if edge.lies_under(each.inlay)])
+
+    def within(self, wall: str, sheets: Sequence[Sheet]) -> Laminate:
+        """A wall with patches."""
+        laminate = self.hosts[wall]
+        for sheet in sheets:
+            laminate = sheet.inlay.let_into(laminate)
+        return laminate
+
+    def colour(self, ply: Ply) -> str:
+        """Of a patch its material's, of another ply by its angle."""
+        own = [sheet.colour for sheet in self.sheets if sheet.inlay.ply == ply]
+        angles = sorted({each.angle_deg for host in self.hosts.values() for each in host.plies})
+        return own[0] if own else GREYS[angles.index(ply.angle_deg) % len(GREYS)]
+
+    @property
+    def bars(self) -> dict[tuple[str, ...], tuple[Laminate, tuple[Sheet, ...]]]:
+        """By the walls that are alike: their plies, with the patches there."""
+        found: dict[tuple[Laminate, tuple[Sheet, ...]], list[str]] = {}
+        for wall in self.hosts:
+            sheets = tuple(each for each in self.sheets if each.inlay.wall == wall)
+            found.setdefault((self.within(wall, sheets), sheets), []).append(wall)
+        return {tuple(walls): each for each, walls in found.items()}
+
+
+def _sheets(config: BladeConfig, beam: RotatingBeam, z: float) -> Iterator[Sheet]:
+    for side in SIDES:
+        number_of = 0
+        for group in config.patches.groups(side):
+            for inlay in group.inlays(side, beam.length):
+                number_of += 1
+                if inlay.covers(np.array(z)):
+                    yield Sheet(f"{name_of(group)} {side[:-1]} {number_of}", colour_of(group), side, inlay)
+
+
+def first_patch(config: BladeConfig) -> float:
+    """Where the first actuator is, m from the root: its middle, or that of the span where there is none."""
+    groups: Sequence[PatchGroup] = config.patches.groups("actuators")
+    length = config.beam.length
+    return groups[0].at("actuators", length)[0] + 0.5 * groups[0].length if groups else 0.5 * length
+
+
+def section_picture(cut: Cut) -> str:
+    """The section as the address of an image."""
+    elements = cut.elements
+    layers = [layer for k in range(len(elements.edges)) for layer in _layers(cut, k)]
+    corners = np.concatenate([points for points, *_ in layers])
+    low, extent = corners.min(axis=0), np.ptp(corners, axis=0)
+    scale = min((WIDTH - 2.0 * MARGIN) / extent[0], (HIGHEST - 2.0 * MARGIN) / max(extent[1], 1e-12))
+
+    def placed(points: Array) -> Array:
+        left = 0.5 * (WIDTH - scale * extent[0])
+        return np.stack([left + scale * (points[:, 0] - low[0]), MARGIN + scale * (low[1] + extent[1] - points[:, 1])], axis=-1)
+
+    parts = []
+    for points, colour, kind, thickness in layers:
+        fine = "" if kind == "ply" and scale * thickness < THINNEST_PLY else kind
+        parts.append(f'<polygon class="{fine}" fill="{colour}" stroke="{colour}" points="{_points(placed(points))}"/>')
+    parts += _names(cut, placed)
+    height = 2.0 * MARGIN + scale * extent[1] + 30.0
+    parts += _scale_bar(scale, height - 14.0)
+    return as_address(
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:.0f} {height:.0f}">{_style()}{"".join(parts)}</svg>'
+    )
+
+
+def _layers(cut: Cut, k: int) -> Iterator[tuple[Array, str, str, float]]:
+    """Of an element: corners (4, 2), m, the colour, what it is, and its thickness, m."""
+    laminate, own = cut.laminate(k), {sheet.inlay.ply: sheet.side for sheet in cut.sheets}
+    for ply, low, high in zip(laminate.plies, laminate.interfaces[:-1], laminate.interfaces[1:], strict=True):
+        yield piece(cut.elements, k, low, high), cut.colour(ply), own.get(ply, "ply"), high - low
+
+
+def _names(cut: Cut, placed: Callable[[Array], Array]) -> Iterator[str]:
+    """Of walls, inside of the middle of each."""
+    elements = cut.elements
+    for wall in cut.hosts:
+        pieces = [k for k, edge in enumerate(elements.edges) if edge.wall == wall]
+        lengths = np.array([float(np.hypot(*(elements.last_points[0, k] - elements.points[0, k]))) for k in pieces])
+        k = pieces[int(np.searchsorted(np.cumsum(lengths), 0.5 * lengths.sum()))]
+        middle = 0.5 * (elements.points[0, k] + elements.last_points[0, k])
+        inward = -elements.directions[0, k] / float(np.hypot(*elements.directions[0, k]))
+        half = 0.5 * float(elements.thickness[k])
+        x, y = placed((middle + half * inward)[None])[0] + [14.0 * inward[0], -14.0 * inward[1]]
+        anchor = "start" if inward[0] > 0.7 else "end" if inward[0] < -0.7 else "middle"
+        yield f'<text x="{x:.1f}" y="{y + 5.0:.1f}" text-anchor="{anchor}">{escape(wall)}</text>'
+
+
+def _scale_bar(scale: float, y: float) -> Iterator[str]:
+    """A round length of about a quarter of the picture."""
+    length = nearest_round(0.22 * WIDTH / scale)
+    unit = unit_of(length, "m")
+    end = MARGIN + scale * length
+    yield f'<path class="bar" d="M{MARGIN} {y - 5:.1f}v10m0-5H{end:.1f}m0-5v10"/>'
+    yield f'<text x="{end + 8:.1f}" y="{y + 5:.1f}" text-anchor="start">{unit.per * length:g} {unit.name}</text>'
+
+
+def plies_picture(cut: Cut) -> str:
+    """Each wall from its inner face to its outer, to one scale, as the address of an image."""
+    parts, y = [], 0.0
+    thickest = max(laminate.thickness for laminate, _ in cut.bars.values())
+    for walls, (laminate, _) in cut.bars.items():
+        unit = unit_of(laminate.thickness, "m")
+        named = f"{', '.join(walls)}: {number(unit.per * laminate.thickness)} {unit.name}"
+        parts.append(f'<text x="0" y="{y + 14:.1f}" text-anchor="start">{escape(named)}</text>')
+        parts += _bar(cut, laminate, BAR_WIDTH / thickest, y + 21.0)
+        y += BAR_ROW
+    box = f"-1 0 {BAR_WIDTH + 2:.0f} {y:.0f}"
+    return as_address(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}">{_style()}{"".join(parts)}</svg>')
+
+
+def _bar(cut: Cut, laminate: Laminate, scale: float, y: float) -> Iterator[str]:
+    """Plies, and over each as much of its name as has room."""
+    for first, last, ply in _runs(laminate):
+        levels = scale * (np.array(laminate.interfaces[first : last + 1]) - laminate.interfaces[0])
+        for low, high in zip(levels[:-1], levels[1:], strict=True):
+            place = f'x="{low:.2f}" y="{y}" width="{high - low:.2f}" height="{BAR_HEIGHT}"'
+            yield f'<rect class="ply" fill="{cut.colour(ply)}" {place}/>'
+        own = [sheet for sheet in cut.sheets if sheet.inlay.ply == ply]
+        name = own[0].name.split()[0] if own else f"{signed(ply.angle_deg)}°"
+        if LETTER * len(name) > np.diff(levels).min() and last - first > 1:
+            name, levels = f"{last - first} × {name}", levels[[0, -1]]
+        where = f'class="{"on" if own else "in"}" y="{y + 20:.1f}" text-anchor="middle"'
+        for low, high in zip(levels[:-1], levels[1:], strict=True):
+            if LETTER * len(name) <= high - low:
+                yield f'<text {where} x="{0.5 * (low + high):.1f}">{escape(name)}</text>'
+
+
+def _runs(laminate: Laminate) -> Iterator[tuple[int, int, Ply]]:
+    """From which ply to before which one they are the same, inner to outer."""
+    plies, first = laminate.plies, 0
+    for k in range(1, len(plies) + 1):
+        if k == len(plies) or plies[k] != plies[first]:
+            yield first, k, plies[first]
+            first = k
+
+
+def section_said(cut: Cut) -> list[str]:
+    """What both pictures show, in words: the outer size, then a line for each kind of wall."""
+    elements = cut.elements
+    corners = np.concatenate([points for k in range(len(elements.edges)) for points, *_ in _layers(cut, k)])
+    extent = np.ptp(corners, axis=0)
+    unit = unit_of(extent.max(), "m")
+    lines = [f"{number(unit.per * extent[0])} × {number(unit.per * extent[1])} {unit.name} outside, turned back by its twist"]
+    for walls, (laminate, sheets) in cut.bars.items():
+        plies = ", ".join(_said(cut, laminate, *run) for run in _runs(laminate))
+        there = f"; {', '.join(sheet.name for sheet in sheets)}" if sheets else ""
+        lines.append(f"{', '.join(walls)}, inner to outer face: {plies}{there}")
+    return lines
+
+
+def _said(cut: Cut, laminate: Laminate, first: int, last: int, ply: Ply) -> str:
+    own = [sheet for sheet in cut.sheets if sheet.inlay.ply == ply]
+    thickness = laminate.interfaces[last] - laminate.interfaces[first]
+    unit = unit_of(thickness, "m")
+    name = own[0].name if own else f"{last - first} × {signed(ply.angle_deg)}° {cut.material}"
+    return f"{name} ({number(unit.per * thickness, 3)} {unit.name})"
+
+
+def _points(corners: Array) -> str:
+    return " ".join(f"{x:.2f},{y:.2f}" for x, y in corners)
+
+
+def _style() -> str:
+    light, dark = THEMES["light"], THEMES["dark"]
+    return (
+        f"<style>text{{font:14px system-ui,sans-serif;fill:{light.ink}}}text.in{{fill:#10161d}}text.on{{fill:#fff;font-weight:600}}"
+        f"polygon{{stroke-width:.4}}polygon.ply,rect.ply{{stroke:#fff;stroke-width:.7}}"
+        f"polygon.actuators{{stroke:#000;stroke-width:.6}}polygon.sensors{{fill-opacity:.45}}"
+        f".bar{{fill:none;stroke:{light.ink};stroke-width:1.5}}"
+        f"@media (prefers-color-scheme:dark){{text{{fill:{dark.ink}}}.bar{{stroke:{dark.ink}}}"
+        "text.in{fill:#10161d}text.on{fill:#fff}}"
+        "</style>"
+    )
