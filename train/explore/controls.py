@@ -167,9 +167,9 @@ class Page:
         blade = built(base)
         load = unit_of(blade.reference_load, "N/m")
         choices = {"load": Options(f"step load of {load(blade.reference_load, 3)} in", get_args(Direction), "flap")}
-        for name, count in zip(PAIR, (blade.plant.B.shape[1], len(blade.plant.C)), strict=True):
-            choices[name] = Options(name, tuple(str(k + 1) for k in range(count)), "1", "Bode")
-        ranges = {name: entry for name, entry in found.items() if entry is not None}
+        for end, count in zip(PAIR, (blade.plant.B.shape[1], len(blade.plant.C)), strict=True):
+            choices[end] = Options(end, tuple(str(k + 1) for k in range(count)), "1", "Bode")
+        ranges = {each: entry for each, entry in found.items() if entry is not None}
         whole = {each: Words(label, each, as_text(getattr(beam, each))) for each, label in TABLES.items()}
         tables = whole if base.model != "thesis" else {}
         return cls(base, MappingProxyType(ranges), MappingProxyType(choices), MappingProxyType(tables), name)

@@ -124,9 +124,9 @@ def step_response(view: View) -> Figure:
         limits = (-1.0, 1.0) if still else (None, None)
         named = [replace(curve, listed=row == 0) for curve in curves]
         panels.append(Panel("", "", f"{direction}, {unit.name}", named, y_limits=limits))
-    volts = unit_of(response.volts, "V")
+    volts = unit_of(np.minimum(np.abs(response.volts), 1.0), "V")
     driven = [replace(curve, joined="begins") for curve in voltage_curves(time, volts.per * response.volts)]
-    panels.append(Panel("", f"time, {seconds.name}", f"LQG, {volts.name}", driven, x_limits=(0.0, float(time[-1]))))
+    panels.append(Panel("", f"time, {seconds.name}", f"voltage, {volts.name}", driven, x_limits=(0.0, float(time[-1]))))
     figure = shown(panels, gap=0.12)
     return with_room_for_its_legend(figure)
 

@@ -79,7 +79,7 @@ def _introduction(base: BladeConfig) -> str:
     counted = ", whose mass and stiffness count" if groups and all(group.passive for group in groups) else ""
     return (
         f"{what}, {_patches(base)}{counted}. Damping without control is {100.0 * base.damping_ratio:g} % of critical in every "
-        "mode, but for gyroscopic coupling. Move a slider or write a number, and all is computed again; LQG is designed anew each time."
+        "mode, but for gyroscopic coupling. Move a slider or write a number: all is computed again, and LQG is designed anew."
     )
 
 

@@ -19,6 +19,8 @@ from train.figures.panels import pole_panel
 HALF_A_TURN = 180.0
 HERTZ_ROOM = 46
 """Pixels that the axis in Hz takes."""
+STEEP = 20.0
+"""From a peak of S as high on it is drawn in its logarithm."""
 MOST_TICKS = 4
 """Of a logarithmic axis, about."""
 BY_CONTROLLER = ((Look(NEUTRAL, 1.2), "solid"), (Look(PALETTE[0], 2.2), "dashed"))
@@ -81,7 +83,10 @@ def sensitivity(loop: Loop) -> Figure:
         peak = replace(look, marker=Marker(("circle", "square")[k], 10))
         curves.append(Curve(frequencies[at : at + 1], gains[at : at + 1], f"at the {where}", "points", peak, listed=False))
     one = Curve(frequencies[[0, -1]], np.ones(2), "neither more nor less", "dotted", Look(NEUTRAL, 1.2))
-    return over_frequency([Panel("", "", "largest singular value of S", [*curves, one], logarithmic=True)], loop)
+    highest = max(float(gains.max()) for gains in loop.sensitivity.values())
+    steep = highest > STEEP
+    limits = (None, None) if steep else (0.0, 1.1 * highest)
+    return over_frequency([Panel("", "", "largest singular value", [*curves, one], steep, y_limits=limits)], loop)
 
 
 def _scaled(loop: Loop) -> Array:

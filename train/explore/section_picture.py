@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +18,17 @@ from beamenv.structure.section.mesh import Mesh, mesh
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Laminate, Ply
 from train.explore.picture import as_address, colour_of, name_of
-from train.explore.units import nearest_round, number, signed, unit_of
+from train.explore.units import nearest_round, signed, unit_of
 from train.figures.section import piece
 from train.figures.themes import THEMES
 
 Array = NDArray[np.float64]
 
-WIDTH, HIGHEST, MARGIN = 640.0, 320.0, 22.0
+WIDTH, HIGHEST, MARGIN = 420.0, 270.0, 26.0
 BAR_WIDTH, BAR_HEIGHT, BAR_ROW = 380.0, 30.0, 62.0
-LETTER = 7.0
+BESIDE = 13.0
+"""Pixels from a wall to its name."""
+LETTER = 8.0
 """Pixels, about, of a letter of a bar's labels."""
 THINNEST_PLY = 1.2
 """Pixels: a wall whose plies are thinner is drawn as one."""
@@ -62,32 +65,50 @@ class Cut:
         material = given if isinstance(given, str) else "your own material"
         return cls(elements, beam.section.hosts(config.beam.layup()), sheets, material)
 
+    def under(self, k: int) -> tuple[Sheet, ...]:
+        """The patches on an element."""
+        return tuple(each for each in self.sheets if self.elements.edges[k].lies_under(each.inlay))
+
     def laminate(self, k: int) -> Laminate:
         """Of an element: its wall's, with the patches there."""
-        edge = self.elements.edges[k]
-        return self.within(edge.wall, [each for each in self.sheets if edge.lies_under(each.inlay)])
-
-    def within(self, wall: str, sheets: Sequence[Sheet]) -> Laminate:
-        """A wall with patches."""
-        laminate = self.hosts[wall]
-        for sheet in sheets:
+        laminate = self.hosts[self.elements.edges[k].wall]
+        for sheet in self.under(k):
             laminate = sheet.inlay.let_into(laminate)
         return laminate
 
     def colour(self, ply: Ply) -> str:
-        """Of a patch its material's, of another ply by its angle."""
-        own = [sheet.colour for sheet in self.sheets if sheet.inlay.ply == ply]
+        """Of a ply of the walls, by its angle."""
         angles = sorted({each.angle_deg for host in self.hosts.values() for each in host.plies})
-        return own[0] if own else GREYS[angles.index(ply.angle_deg) % len(GREYS)]
+        return GREYS[angles.index(ply.angle_deg) % len(GREYS)]
 
     @property
-    def bars(self) -> dict[tuple[str, ...], tuple[Laminate, tuple[Sheet, ...]]]:
-        """By the walls that are alike: their plies, with the patches there."""
+    def bars(self) -> list[Bar]:
+        """One for all walls, or parts of them under patches, that are alike."""
         found: dict[tuple[Laminate, tuple[Sheet, ...]], list[str]] = {}
-        for wall in self.hosts:
-            sheets = tuple(each for each in self.sheets if each.inlay.wall == wall)
-            found.setdefault((self.within(wall, sheets), sheets), []).append(wall)
-        return {tuple(walls): each for each, walls in found.items()}
+        for k, edge in enumerate(self.elements.edges):
+            found.setdefault((self.laminate(k), self.under(k)), []).append(edge.wall)
+        return [Bar(tuple(dict.fromkeys(walls)), *each) for each, walls in sorted(found.items(), key=lambda each: len(each[0][1]))]
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """Walls that are alike, from the inner face to the outer, with the patches on them."""
+
+    walls: tuple[str, ...]
+    laminate: Laminate
+    sheets: tuple[Sheet, ...]
+
+    @property
+    def name(self) -> str:
+        """The walls, and what lies on them."""
+        on = f" with {' and '.join(sheet.name for sheet in self.sheets)}" if self.sheets else ""
+        return f"{', '.join(self.walls)}{on}"
+
+
+def sheet_of(laminate: Laminate, sheets: Sequence[Sheet], layer: int) -> Sheet | None:
+    """The patch that is a layer of a wall: its first or its last, by the face that it lies on."""
+    place = {0: "inner", len(laminate.plies) - 1: "outer"}.get(layer)
+    return next((each for each in sheets if each.inlay.face == place and each.inlay.ply == laminate.plies[layer]), None)
 
 
 def _sheets(config: BladeConfig, beam: RotatingBeam, z: float) -> Iterator[Sheet]:
@@ -121,8 +142,10 @@ def section_picture(cut: Cut) -> str:
 
     parts = []
     for points, colour, kind, thickness in layers:
-        fine = "" if kind == "ply" and scale * thickness < THINNEST_PLY else kind
-        parts.append(f'<polygon class="{fine}" fill="{colour}" stroke="{colour}" points="{_points(placed(points))}"/>')
+        corners = placed(points)
+        parts.append(f'<polygon class="{kind}" fill="{colour}" stroke="{colour}" points="{_points(corners)}"/>')
+        if kind == "ply" and scale * thickness > THINNEST_PLY:
+            parts.append(f'<polyline class="between" points="{_points(corners[:2])}"/>')
     parts += _names(cut, placed)
     height = 2.0 * MARGIN + scale * extent[1] + 30.0
     parts += _scale_bar(scale, height - 14.0)
@@ -133,23 +156,27 @@ def section_picture(cut: Cut) -> str:
 
 def _layers(cut: Cut, k: int) -> Iterator[tuple[Array, str, str, float]]:
     """Of an element: corners (4, 2), m, the colour, what it is, and its thickness, m."""
-    laminate, own = cut.laminate(k), {sheet.inlay.ply: sheet.side for sheet in cut.sheets}
-    for ply, low, high in zip(laminate.plies, laminate.interfaces[:-1], laminate.interfaces[1:], strict=True):
-        yield piece(cut.elements, k, low, high), cut.colour(ply), own.get(ply, "ply"), high - low
+    laminate, sheets = cut.laminate(k), cut.under(k)
+    for layer, (low, high) in enumerate(pairwise(laminate.interfaces)):
+        sheet = sheet_of(laminate, sheets, layer)
+        colour, kind = (cut.colour(laminate.plies[layer]), "ply") if sheet is None else (sheet.colour, sheet.side)
+        yield piece(cut.elements, k, low, high), colour, kind, high - low
 
 
 def _names(cut: Cut, placed: Callable[[Array], Array]) -> Iterator[str]:
-    """Of walls, inside of the middle of each."""
+    """Of walls, at the middle of each: of one that lies outside of it, of one that stands inside."""
     elements = cut.elements
+    centre = 0.5 * (elements.points[0].min(axis=0) + elements.points[0].max(axis=0))
     for wall in cut.hosts:
         pieces = [k for k, edge in enumerate(elements.edges) if edge.wall == wall]
         lengths = np.array([float(np.hypot(*(elements.last_points[0, k] - elements.points[0, k]))) for k in pieces])
         k = pieces[int(np.searchsorted(np.cumsum(lengths), 0.5 * lengths.sum()))]
         middle = 0.5 * (elements.points[0, k] + elements.last_points[0, k])
-        inward = -elements.directions[0, k] / float(np.hypot(*elements.directions[0, k]))
-        half = 0.5 * float(elements.thickness[k])
-        x, y = placed((middle + half * inward)[None])[0] + [14.0 * inward[0], -14.0 * inward[1]]
-        anchor = "start" if inward[0] > 0.7 else "end" if inward[0] < -0.7 else "middle"
+        normal = elements.directions[0, k] / float(np.hypot(*elements.directions[0, k]))
+        away = normal if normal @ (middle - centre) >= 0.0 else -normal
+        side = away if abs(normal[1]) > 0.5 else -away
+        x, y = placed((middle + 0.5 * float(elements.thickness[k]) * side)[None])[0] + BESIDE * side * [1.0, -1.0]
+        anchor = "start" if side[0] > 0.7 else "end" if side[0] < -0.7 else "middle"
         yield f'<text x="{x:.1f}" y="{y + 5.0:.1f}" text-anchor="{anchor}">{escape(wall)}</text>'
 
 
@@ -164,31 +191,30 @@ def _scale_bar(scale: float, y: float) -> Iterator[str]:
 
 def plies_picture(cut: Cut) -> str:
     """Each wall from its inner face to its outer, to one scale, as the address of an image."""
-    parts, y = [], 0.0
-    thickest = max(laminate.thickness for laminate, _ in cut.bars.values())
-    for walls, (laminate, _) in cut.bars.items():
-        unit = unit_of(laminate.thickness, "m")
-        named = f"{', '.join(walls)}: {number(unit.per * laminate.thickness)} {unit.name}"
-        parts.append(f'<text x="0" y="{y + 14:.1f}" text-anchor="start">{escape(named)}</text>')
-        parts += _bar(cut, laminate, BAR_WIDTH / thickest, y + 21.0)
-        y += BAR_ROW
-    box = f"-1 0 {BAR_WIDTH + 2:.0f} {y:.0f}"
-    return as_address(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}">{_style()}{"".join(parts)}</svg>')
+    parts, bars = [], cut.bars
+    scale = BAR_WIDTH / max(bar.laminate.thickness for bar in bars)
+    for k, bar in enumerate(bars):
+        thickness = bar.laminate.thickness
+        named = f"{bar.name}: {unit_of(thickness, 'm')(thickness)}"
+        parts.append(f'<text x="0" y="{k * BAR_ROW + 14:.1f}" text-anchor="start">{escape(named)}</text>')
+        parts += _drawn(cut, bar, scale, k * BAR_ROW + 21.0)
+    return _document(f"-1 0 {BAR_WIDTH + 2:.0f} {len(bars) * BAR_ROW:.0f}", parts)
 
 
-def _bar(cut: Cut, laminate: Laminate, scale: float, y: float) -> Iterator[str]:
+def _drawn(cut: Cut, bar: Bar, scale: float, y: float) -> Iterator[str]:
     """Plies, and over each as much of its name as has room."""
+    laminate = bar.laminate
     for first, last, ply in _runs(laminate):
         levels = scale * (np.array(laminate.interfaces[first : last + 1]) - laminate.interfaces[0])
-        for low, high in zip(levels[:-1], levels[1:], strict=True):
+        sheet = sheet_of(laminate, bar.sheets, first)
+        colour, name = (cut.colour(ply), f"{signed(ply.angle_deg)}°") if sheet is None else (sheet.colour, sheet.name.split()[0])
+        for low, high in pairwise(levels):
             place = f'x="{low:.2f}" y="{y}" width="{high - low:.2f}" height="{BAR_HEIGHT}"'
-            yield f'<rect class="ply" fill="{cut.colour(ply)}" {place}/>'
-        own = [sheet for sheet in cut.sheets if sheet.inlay.ply == ply]
-        name = own[0].name.split()[0] if own else f"{signed(ply.angle_deg)}°"
+            yield f'<rect class="ply" fill="{colour}" {place}/>'
         if LETTER * len(name) > np.diff(levels).min() and last - first > 1:
             name, levels = f"{last - first} × {name}", levels[[0, -1]]
-        where = f'class="{"on" if own else "in"}" y="{y + 20:.1f}" text-anchor="middle"'
-        for low, high in zip(levels[:-1], levels[1:], strict=True):
+        where = f'class="{"in" if sheet is None else "on"}" y="{y + 20:.1f}" text-anchor="middle"'
+        for low, high in pairwise(levels):
             if LETTER * len(name) <= high - low:
                 yield f'<text {where} x="{0.5 * (low + high):.1f}">{escape(name)}</text>'
 
@@ -206,33 +232,34 @@ def section_said(cut: Cut) -> list[str]:
     """What both pictures show, in words: the outer size, then a line for each kind of wall."""
     elements = cut.elements
     corners = np.concatenate([points for k in range(len(elements.edges)) for points, *_ in _layers(cut, k)])
-    extent = np.ptp(corners, axis=0)
-    unit = unit_of(extent.max(), "m")
-    lines = [f"{number(unit.per * extent[0])} × {number(unit.per * extent[1])} {unit.name} outside, turned back by its twist"]
-    for walls, (laminate, sheets) in cut.bars.items():
-        plies = ", ".join(_said(cut, laminate, *run) for run in _runs(laminate))
-        there = f"; {', '.join(sheet.name for sheet in sheets)}" if sheets else ""
-        lines.append(f"{', '.join(walls)}, inner to outer face: {plies}{there}")
+    wide, high = np.ptp(corners, axis=0)
+    lines = [f"{unit_of(wide, 'm')(wide)} × {unit_of(high, 'm')(high)} outside, drawn without its twist"]
+    for bar in cut.bars:
+        plies = ", ".join(_said(cut, bar, *run) for run in _runs(bar.laminate))
+        lines.append(f"{bar.name}, inner to outer face: {plies}")
     return lines
 
 
-def _said(cut: Cut, laminate: Laminate, first: int, last: int, ply: Ply) -> str:
-    own = [sheet for sheet in cut.sheets if sheet.inlay.ply == ply]
-    thickness = laminate.interfaces[last] - laminate.interfaces[first]
-    unit = unit_of(thickness, "m")
-    name = own[0].name if own else f"{last - first} × {signed(ply.angle_deg)}° {cut.material}"
-    return f"{name} ({number(unit.per * thickness, 3)} {unit.name})"
+def _said(cut: Cut, bar: Bar, first: int, last: int, ply: Ply) -> str:
+    sheet, thickness = sheet_of(bar.laminate, bar.sheets, first), bar.laminate.interfaces[last] - bar.laminate.interfaces[first]
+    times = f"{last - first} × " if last - first > 1 else ""
+    name = f"{times}{signed(ply.angle_deg)}° {cut.material}" if sheet is None else f"{sheet.name} at {signed(ply.angle_deg)}°"
+    return f"{name} ({unit_of(thickness, 'm')(thickness, 3)})"
 
 
 def _points(corners: Array) -> str:
     return " ".join(f"{x:.2f},{y:.2f}" for x, y in corners)
 
 
+def _document(box: str, parts: Sequence[str]) -> str:
+    return as_address(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}">{_style()}{"".join(parts)}</svg>')
+
+
 def _style() -> str:
     light, dark = THEMES["light"], THEMES["dark"]
     return (
         f"<style>text{{font:14px system-ui,sans-serif;fill:{light.ink}}}text.in{{fill:#10161d}}text.on{{fill:#fff;font-weight:600}}"
-        f"polygon{{stroke-width:.4}}polygon.ply,rect.ply{{stroke:#fff;stroke-width:.7}}"
+        f"polygon{{stroke-width:.4}}.between{{stroke:#fff;stroke-width:.6;fill:none}}rect.ply{{stroke:#fff;stroke-width:.7}}"
         f"polygon.actuators{{stroke:#000;stroke-width:.6}}polygon.sensors{{fill-opacity:.45}}"
         f".bar{{fill:none;stroke:{light.ink};stroke-width:1.5}}"
         f"@media (prefers-color-scheme:dark){{text{{fill:{dark.ink}}}.bar{{stroke:{dark.ink}}}"

@@ -36,7 +36,7 @@ def damping_rows(seen: View) -> list[html.Tr]:
     found = seen.families, seen.natural_frequencies, 100.0 * seen.damping.free, 100.0 * seen.damping.controlled
     rows = zip(*(each[: len(seen.damping.free)] for each in found), strict=True)
     return [
-        _row(f"{mode} {family}", number(frequency), number(frequency / TURN), number(free, 3), number(controlled, 3))
+        _row(f"{mode} {family}", number(frequency), number(frequency / TURN), _percent(free), _percent(controlled))
         for mode, (family, frequency, free, controlled) in enumerate(rows, start=1)
     ]
 
@@ -81,6 +81,11 @@ def cost_note(closed: Loop) -> str:
         "On the plant that LQG is designed for; the true blade has more modes, filters and amplifiers. Under white loads J is "
         f"{number(closed.cost)} of that without control{with_own}."
     )
+
+
+def _percent(value: float) -> str:
+    """With two digits behind the point, and of a very small one with two digits."""
+    return f"{value:.2f}" if abs(value) >= 0.1 else number(value, 2)
 
 
 def _row(name: str, *cells: str) -> html.Tr:

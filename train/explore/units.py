@@ -24,7 +24,7 @@ class Unit:
 
     def __call__(self, value: float, digits: int = 4) -> str:
         """A value without prefix as a number with its unit."""
-        return f"{number(self.per * value, digits)} {self.name}"
+        return f"{bare(number(self.per * value, digits))} {self.name}"
 
 
 def unit_of(values: Any, symbol: str) -> Unit:
@@ -56,6 +56,11 @@ def number(value: float, digits: int = 4) -> str:
 def signed(value: float) -> str:
     """As it is, with a minus sign that is one."""
     return f"{value:g}".replace("-", "−")
+
+
+def bare(text: str) -> str:
+    """A number as text without zeros at its end that say nothing."""
+    return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 
 def nearest_round(value: float) -> float:
