@@ -28,7 +28,7 @@ WIDTH, HIGHEST, MARGIN = 420.0, 270.0, 26.0
 BAR_WIDTH, BAR_HEIGHT, BAR_ROW = 380.0, 30.0, 62.0
 BESIDE = 13.0
 """Pixels from a wall to its name."""
-LETTER = 8.0
+LETTER = 9.0
 """Pixels, about, of a letter of a bar's labels."""
 THINNEST_PLY = 1.2
 """Pixels: a wall whose plies are thinner is drawn as one."""
@@ -101,7 +101,7 @@ class Bar:
     @property
     def name(self) -> str:
         """The walls, and what lies on them."""
-        on = f" with {' and '.join(sheet.name for sheet in self.sheets)}" if self.sheets else ""
+        on = f" with {' and '.join(sheet.name.partition(' ')[2] for sheet in self.sheets)}" if self.sheets else ""
         return f"{', '.join(self.walls)}{on}"
 
 
@@ -149,9 +149,7 @@ def section_picture(cut: Cut) -> str:
     parts += _names(cut, placed)
     height = 2.0 * MARGIN + scale * extent[1] + 30.0
     parts += _scale_bar(scale, height - 14.0)
-    return as_address(
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:.0f} {height:.0f}">{_style()}{"".join(parts)}</svg>'
-    )
+    return _document(f"0 0 {WIDTH:.0f} {height:.0f}", parts)
 
 
 def _layers(cut: Cut, k: int) -> Iterator[tuple[Array, str, str, float]]:
@@ -195,7 +193,7 @@ def plies_picture(cut: Cut) -> str:
     scale = BAR_WIDTH / max(bar.laminate.thickness for bar in bars)
     for k, bar in enumerate(bars):
         thickness = bar.laminate.thickness
-        named = f"{bar.name}: {unit_of(thickness, 'm')(thickness)}"
+        named = f"{unit_of(thickness, 'm')(thickness)}: {bar.name}"
         parts.append(f'<text x="0" y="{k * BAR_ROW + 14:.1f}" text-anchor="start">{escape(named)}</text>')
         parts += _drawn(cut, bar, scale, k * BAR_ROW + 21.0)
     return _document(f"-1 0 {BAR_WIDTH + 2:.0f} {len(bars) * BAR_ROW:.0f}", parts)
@@ -207,7 +205,7 @@ def _drawn(cut: Cut, bar: Bar, scale: float, y: float) -> Iterator[str]:
     for first, last, ply in _runs(laminate):
         levels = scale * (np.array(laminate.interfaces[first : last + 1]) - laminate.interfaces[0])
         sheet = sheet_of(laminate, bar.sheets, first)
-        colour, name = (cut.colour(ply), f"{signed(ply.angle_deg)}°") if sheet is None else (sheet.colour, sheet.name.split()[0])
+        colour, name = (cut.colour(ply), _ply(ply)) if sheet is None else (sheet.colour, sheet.name.split()[0])
         for low, high in pairwise(levels):
             place = f'x="{low:.2f}" y="{y}" width="{high - low:.2f}" height="{BAR_HEIGHT}"'
             yield f'<rect class="ply" fill="{colour}" {place}/>'
@@ -243,8 +241,12 @@ def section_said(cut: Cut) -> list[str]:
 def _said(cut: Cut, bar: Bar, first: int, last: int, ply: Ply) -> str:
     sheet, thickness = sheet_of(bar.laminate, bar.sheets, first), bar.laminate.interfaces[last] - bar.laminate.interfaces[first]
     times = f"{last - first} × " if last - first > 1 else ""
-    name = f"{times}{signed(ply.angle_deg)}° {cut.material}" if sheet is None else f"{sheet.name} at {signed(ply.angle_deg)}°"
+    name = f"{times}{_ply(ply)} {cut.material}" if sheet is None else f"{sheet.name} at {_ply(ply)}"
     return f"{name} ({unit_of(thickness, 'm')(thickness, 3)})"
+
+
+def _ply(ply: Ply) -> str:
+    return "graded" if ply.uniform is None else f"{signed(ply.angle_deg)}°"
 
 
 def _points(corners: Array) -> str:
@@ -260,7 +262,7 @@ def _style() -> str:
     return (
         f"<style>text{{font:14px system-ui,sans-serif;fill:{light.ink}}}text.in{{fill:#10161d}}text.on{{fill:#fff;font-weight:600}}"
         f"polygon{{stroke-width:.4}}.between{{stroke:#fff;stroke-width:.6;fill:none}}rect.ply{{stroke:#fff;stroke-width:.7}}"
-        f"polygon.actuators{{stroke:#000;stroke-width:.6}}polygon.sensors{{fill-opacity:.45}}"
+        "polygon.actuators{stroke-width:1.2}polygon.sensors{fill-opacity:.45}"
         f".bar{{fill:none;stroke:{light.ink};stroke-width:1.5}}"
         f"@media (prefers-color-scheme:dark){{text{{fill:{dark.ink}}}.bar{{stroke:{dark.ink}}}"
         "text.in{fill:#10161d}text.on{fill:#fff}}"
