@@ -178,8 +178,8 @@ def explore(
 ) -> None:
     """Serve a page that shows a blade and its LQG, and redraws what its controls change. Ctrl-C ends it.
 
-    Frequencies, mode shapes, damping, step response, poles, margins, Bode diagram and singular values, by the blade's geometry,
-    plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file for --blade.
+    Section, frequencies, mode shapes, damping, step response, poles, margins, sensitivity, Bode diagram and singular values, by
+    the blade's geometry, plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file for --blade.
     """
     with one_sentence():
         check_names(preset, blade=blade)
@@ -196,7 +196,7 @@ def explore(
             name = Path(blade).name if blade else preset
             server = serve(port, host, base if speed is None else replace(base, speed=speed), name)
     place = f"[{host}]" if ":" in host else host
-    say(f"http://{place}:{server.port} (Ctrl-C ends it)")
+    say(f"open http://{place}:{server.port} in a browser (Ctrl-C ends it)")
     server.serve_forever()
 
 

@@ -38,8 +38,8 @@ def layout(page: Page = THESIS_PAGE) -> html.Div:
     kept = ("link", "state", "wanted", "settled", "busy", "analysing", "file", "named", "stopping", "stopped", "ending")
     return html.Div(
         [
-            html.Header([html.H1(page.name, id="title"), html.P(_introduction(page.base))]),
-            html.Main([_controls(page), html.Div([_notice(), _working(), _message(), _results(page)], id="shown")]),
+            html.Header([html.H1(page.name, id="title"), html.P(_introduction(page.base)), _notice()]),
+            html.Main([_controls(page), html.Div([_working(), _message(), _results(page)], id="shown")]),
             dcc.Store(id="about", data=about(page)),
             dcc.Store(id="blade", data=page.key),
             *(dcc.Store(id=name) for name in kept),

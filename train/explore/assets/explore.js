@@ -237,16 +237,19 @@
       below();
     });
   }).observe(document.documentElement, { childList: true, subtree: true });
+  const phone = window.matchMedia("(max-width: 900px)");
   const below = () => {
     const controls = document.getElementById("controls");
     const more = document.getElementById("more");
     if (!controls || !more) return;
+    const top = Math.max(16, controls.getBoundingClientRect().top);
+    controls.style.maxHeight = phone.matches ? "" : `${Math.max(240, window.innerHeight - top - 16)}px`;
     more.hidden = controls.scrollHeight - controls.scrollTop - controls.clientHeight < 24;
   };
   window.addEventListener("resize", below);
   document.addEventListener("scroll", below, true);
   document.addEventListener("toggle", below, true);
-  if (window.matchMedia("(max-width: 900px)").matches) {
+  if (phone.matches) {
     const folded = new MutationObserver(() => {
       const groups = document.querySelectorAll("#controls details:not(.first)");
       if (!groups.length) return;
