@@ -17,7 +17,9 @@ class Stopped(Exception):  # noqa: N818 - asked for, and not an error
 class _Worker(threading.Thread):
     def __init__(self, work: Callable[[], Any]) -> None:
         super().__init__(daemon=True)
-        self.work, self.result, self.error = work, None, None  # type: ignore[var-annotated]
+        self.work = work
+        self.result: Any = None
+        self.error: Exception | None = None
 
     def run(self) -> None:
         try:
