@@ -179,7 +179,8 @@ def explore(
     """Serve a page that shows a blade and its LQG, and redraws what its controls change. Ctrl-C ends it.
 
     Section, frequencies, mode shapes, damping, step response, poles, margins, sensitivity, Bode diagram and singular values, by
-    the blade's geometry, plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file for --blade.
+    the blade's geometry, plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file
+    for --blade.
     """
     with one_sentence():
         check_names(preset, blade=blade)
