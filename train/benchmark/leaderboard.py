@@ -44,18 +44,22 @@ SCORE = Column("", "", 1.0, "{:.3f}", interval=True)
 INTRODUCTION = """\
 # Leaderboard
 
-Each row was made by running its entry again: in every scenario, on the benchmark's held-out episodes, beside no control, LQG and
-the clairvoyant law. To enter an agent of yours, from its training on:
+Each row is one entry, an agent or controller that was run again in every scenario on the held-out episodes of the
+[benchmark](benchmark.md), beside no control, LQG and the clairvoyant controller. To train an agent and enter it:
 
 ```sh
 beamenv train gradient --scenario generalist --folder mine
 beamenv benchmark --submit mine
 ```
 
-`--submit` takes the folder of a trained agent or of its runs, or the name of a controller, say of a file of yours in
-`train/controllers/named/`; and with `--trust`, for loading it can run code, the `.zip` file of a Stable-Baselines3 model. It
-appends to `results/leaderboard.csv`, with `--docs docs` to the table of this page. `--tier` declares what the entry was told, where
-its own file does not. An interrupted run resumes.
+`--submit` takes one of these:
+
+- the folder of a trained agent or of its runs;
+- the name of a controller, also of one that you added in `train/controllers/named/`;
+- the `.zip` file of a Stable-Baselines3 model, with `--trust`, because loading such a file can run code.
+
+The result is appended to `results/leaderboard.csv`, and with `--docs docs` to the table on this page. `--tier` declares what the entry
+was told, if its own file does not say so. An interrupted run resumes.
 """
 
 
