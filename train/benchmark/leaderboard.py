@@ -58,8 +58,8 @@ beamenv benchmark --submit mine
 - the name of a controller, also of one that you added in `train/controllers/named/`;
 - the `.zip` file of a Stable-Baselines3 model, with `--trust`, because loading such a file can run code.
 
-The result is appended to `results/leaderboard.csv`, and with `--docs docs` to the table on this page. `--tier` declares what the entry
-was told, if its own file does not say so. An interrupted run resumes.
+The result is appended to `results/leaderboard.csv`, and with `--docs docs` to the table on this page. `--tier` declares what the
+entry was told, if its own file does not say so. An interrupted run resumes.
 """
 
 
