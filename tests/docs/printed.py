@@ -1,9 +1,9 @@
 """What was printed, held against what a page shows.
 
-Words are the same. A number is the same within one unit of the last digit that is shown or within a thousandth, whichever is more: sums of
-another machine end in other digits. Three kinds are not compared, and a reader is told so: below the title ``ELSEWHERE`` only words are,
-for what a training has made goes another way on another machine; lines that tell a time on the clock, or what rounding leaves, are left
-out where a test names them.
+Words are the same. A number is the same within one unit of the last digit that is shown or within a thousandth, whichever is more:
+sums of another machine end in other digits. Two kinds are not compared. Below the title ``ELSEWHERE`` only
+words are, as a training goes another way on another machine. Lines that tell a time on the clock, or what rounding leaves,
+are left out where a test names them.
 """
 
 import re

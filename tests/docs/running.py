@@ -6,6 +6,7 @@
 import contextlib
 import importlib.util
 import io
+import os
 import re
 import sys
 import tempfile
@@ -13,7 +14,7 @@ import time
 from itertools import pairwise
 from pathlib import Path
 
-from tests.docs.written import BLOCK, blocks, line_of, shown_below
+from tests.docs.written import BLOCK, ROOT, blocks, line_of, shown_below
 
 APART = {"torchrl": "torchrl", "ray": "tree", "skrl": "skrl", "stable_baselines3": "stable_baselines3", "minari": "minari"}
 """Libraries of others, and what shows that they can be imported: their blocks run where they are, and in ``make clients``."""
@@ -42,8 +43,10 @@ def outputs(page):
 def write(page):
     """Run a page in a folder of its own and keep what its blocks print, each below its block."""
     titles = {line: title for line, title, _ in shown_below(page, "python")}
-    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
         printed = dict(timed(page))
+        os.chdir(ROOT)
     text, parts, end = page.read_text(encoding="utf-8"), [], 0
     for each, following in pairwise([*BLOCK.finditer(text), None]):
         line = line_of(each, text)
@@ -64,5 +67,5 @@ def timed(page):
 
 
 if __name__ == "__main__":
-    for name in sys.argv[1:]:
-        write(Path(name).resolve())
+    for page in [Path(name).resolve() for name in sys.argv[1:]]:
+        write(page)
