@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from baselines import Estimate
 from beamenv.knowledge import TRUTH
+from train.benchmark.listed import ListedController
 from train.benchmark.showing.episode import ShownEpisode, shown_episode
 from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.legend import legend
@@ -16,14 +18,23 @@ from train.benchmark.targets import findings
 from train.controllers.shipped import shipped_agents
 from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
 from train.page.lead import COST, blade_in_words, counted, load_in_words
+from train.page.recording import RecordingProgress
 from train.shared.curve import drawn_as, read_curve
 
 COLUMN = next(column for column in COLUMNS if column.name == "relative_cost")
 
 
-def write_report(path: Path, table: BenchmarkTable) -> None:
-    """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration."""
-    shown = shown_episode(table)
+def write_report(
+    path: Path,
+    table: BenchmarkTable,
+    listed: Sequence[ListedController],
+    progress: RecordingProgress | None = None,
+) -> None:
+    """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration.
+
+    Readers choose among those that are ``listed`` and measured in the episode's scenario; ``progress`` as in ``record_episode``.
+    """
+    shown = shown_episode(table, listed, progress)
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
         title=f"Controllers of a {'model' if of_model(table) else 'rotating blade'} across scenarios",
