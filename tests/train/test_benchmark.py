@@ -79,7 +79,9 @@ class Crowded(Still):
 
 def test_a_controller_that_cannot_be_shown_leaves_the_page_to_the_others(tmp_path):
     told = []
-    benchmark({"crowded": Crowded()}, folder=tmp_path, recording=lambda *each: told.append(each), **SMALL | {"scenarios": ["nominal"]})
+    benchmark(
+        {"crowded": Crowded()}, folder=tmp_path, recording=lambda *each: told.append(each), **SMALL | {"scenarios": ["nominal"]}
+    )
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Not shown, because they could not be run once more: crowded." in page
     assert set(shown_on(page)) == {"no control", "lqg", "lqg-load"}

@@ -226,6 +226,20 @@ def test_the_theme_is_the_systems_until_the_button_is_pressed(show, scheme, othe
     assert colours() == expected(other)
 
 
+def test_what_is_wider_than_the_screen_says_that_it_scrolls(show):
+    told, wider = (
+        f"return [...document.querySelectorAll('.scroll')].filter((each) => {condition}).map((each) => each.ariaLabel)"
+        for condition in ("!each.previousElementSibling.hidden", "each.scrollWidth > each.clientWidth + 1")
+    )
+    narrow = show(400)
+    heat_map = "document.getElementById('heat-map')"
+    narrow.execute_script(f"{heat_map}.style.minWidth = '900px'")
+    wait(narrow, f"return {heat_map}.closest('.scroll').classList.contains('cut')")
+    assert narrow.execute_script(told) == narrow.execute_script(wider) == ["Scenarios, scrolls sideways"]
+    narrow.execute_script(f"{heat_map}.closest('.scroll').scrollLeft = 10000")
+    wait(narrow, f"return !{heat_map}.closest('.scroll').classList.contains('cut')")
+
+
 @pytest.mark.parametrize("width", [400, 1200])
 def test_nothing_is_cut_off(show, width):
     browser = show(width)

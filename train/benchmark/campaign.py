@@ -254,9 +254,7 @@ def about(listed: ListedController) -> dict[str, Any]:
     return {"kind": listed.kind, "tier": listed.tier, **({} if listed.at_most is None else {RUNS: listed.at_most})}
 
 
-def write_all(
-    folder: Path, table: BenchmarkTable, listed: Sequence[ListedController], recording: Recording | None = None
-) -> None:
+def write_all(folder: Path, table: BenchmarkTable, listed: Sequence[ListedController], recording: Recording | None = None) -> None:
     """Tables, heat map and page, whose episode is recorded under those that are ``listed``."""
     from train.benchmark.showing.heat_map import heat_map
     from train.benchmark.showing.page import write_report

@@ -80,9 +80,8 @@ def _recorded(
 
 def _made(runs: Mapping[str, Source], task: Task) -> Controller | None:
     """The controller of the first of its runs; None of one that cannot be had any more."""
-    for source in runs.values():
-        try:
-            return source.build(task)
-        except Exception:  # a file that is gone, or whatever the code of a caller raises
-            return None
-    return None
+    source = next(iter(runs.values()), None)
+    try:
+        return None if source is None else source.build(task)
+    except Exception:  # a file that is gone, or whatever the code of a caller raises
+        return None
