@@ -11,7 +11,7 @@ from train.shared.columns import number, share
 
 LEADERS = (
     "The controller with the least mean J of each tier, of any kind and on these very seeds, with its J / J₀. By the paired "
-    "intervals it is below every other of its tier, unless the cell says “not clearly”, or that its tier has no other."
+    "intervals it is below every other of its tier, unless the cell says “not clearly”, or “the only one” of its tier."
 )
 
 
@@ -27,7 +27,7 @@ def _leader(table: BenchmarkTable, scenario: str, tier: int) -> str:
     first = leaders_of(table).get((scenario, tier))
     if first is None:
         return "–"
-    how = ", no other" if not first.rivals else "" if first.clear else ", not clearly"
+    how = ", the only one" if not first.rivals else "" if first.clear else ", not clearly"
     return f"{first.row.controller} {number(first.row.estimates['relative_cost'].value, '{:.3f}')}{_unstable(first.row)}{how}"
 
 

@@ -11,17 +11,17 @@ from train.benchmark.showing.section import Entry, Section, words
 from train.benchmark.table import BenchmarkTable
 from train.benchmark.targets import Leader, ahead_and_behind, leaders_of, reaches
 
-TEXT = """\
-Agents are the learned controllers of tier 1, which are told no more than the scenario's distribution. They are compared with the
-classical controllers of tiers 0 and 1. What is compared with what, each by the paired interval:
-
-- *Ahead* compares the chosen agent with every classical controller, also those that nobody would have chosen.
-- *Behind* compares the chosen classical controller with every agent.
-- *Overtaken* compares the chosen agent with every classical controller again: one at least is below it. Which one is seen on these
-  very seeds only, so an agent can be overtaken and not be behind.
-- *The best classical controller* of a target is the one with the least J on these very seeds.
-- *Who leads a tier* is below every other of it, or has no other beside it, unless the table says in how many scenarios this is
-  clear."""
+TEXT = (
+    "Agents are the learned controllers of tier 1, which are told no more than the scenario's distribution. They are compared with "
+    "the classical controllers of tiers 0 and 1. What is compared with what, each by the paired interval:\n\n"
+    "- Ahead: the chosen agent with every classical controller, also with those that nobody would have chosen.\n"
+    "- Behind: the chosen classical controller with every agent.\n"
+    "- Overtaken: the chosen agent with every classical controller again; one at least is below it. Which one is seen on these "
+    "very seeds only, so that an agent can be overtaken and not be behind.\n"
+    "- The best classical controller of a target is the one with the least J on these very seeds.\n"
+    "- Who has the least J of a tier is below every other of it, or the only one, unless the table says in how many scenarios this "
+    "is clear."
+)
 TOGETHER = (
     "The intervals hold for one scenario at a time. Where all {scenarios} scenarios are judged together, at 5 % by Holm's method, "
     "the agent is ahead in {ahead} and behind in {behind}."
