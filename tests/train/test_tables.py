@@ -130,6 +130,16 @@ def test_the_version_is_told(words):
     assert (result.exit_code, result.stdout) == (0, f"beamenv {beamenv.__version__}\n")
 
 
+def test_paragraphs_of_help_break_where_the_terminal_ends(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    for name in ("explore", "place"):
+        text = CliRunner().invoke(app, [name, "--help"]).stdout
+        above = [line.strip() for line in text.partition("Options")[0].splitlines()]
+        whole = [(line, after) for line, after in zip(above, above[1:]) if line and after and not line.startswith("Usage")]
+        assert all(len(line) + 1 + len(after.split()[0]) > 78 for line, after in whole if not after.startswith("╭")), name
+        assert "…" not in text, name
+
+
 FORMER = {"--seeds", "--save", "--passive", "--fresh"}
 
 
