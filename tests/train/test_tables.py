@@ -135,7 +135,11 @@ def test_paragraphs_of_help_break_where_the_terminal_ends(monkeypatch):
     for name in ("explore", "place"):
         text = CliRunner().invoke(app, [name, "--help"]).stdout
         above = [line.strip() for line in text.partition("Options")[0].splitlines()]
-        whole = [(line, after) for line, after in zip(above, above[1:]) if line and after and not line.startswith("Usage")]
+        whole = [
+            (line, after)
+            for line, after in zip(above[:-1], above[1:], strict=True)
+            if line and after and not line.startswith("Usage")
+        ]
         assert all(len(line) + 1 + len(after.split()[0]) > 78 for line, after in whole if not after.startswith("╭")), name
         assert "…" not in text, name
 
