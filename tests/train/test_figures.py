@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from train.comparison.figures import learning_figure
 from train.comparison.learning_curves import learning_curves
 from train.figures import paper, paper_heat_map, screen, screen_heat_map
 from train.figures.figure import Curve, Look, Marker, Note, Panel
 from train.figures.heat_map import HeatMap
+from train.figures.learning import learning_figure
 from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS, contrast
 from train.figures.panels import LearningCurves, actuator, learning_panel, pole_panel, voltage_curves
 from train.figures.patches import rows_of
