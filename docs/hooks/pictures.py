@@ -1,8 +1,8 @@
 """How pages show pictures: in the page's own colours, and as large as they are meant.
 
-A picture that has another beside it for dark pages, ``…-dark.png``, is shown in the one that fits. One with many dots an inch, as its
-file tells, is shown at its size on paper, 100 pixels an inch. Pages name the light picture alone; where this hook does not run, as in
-a view of the repository, that one is shown.
+A picture that has another beside it for dark pages, ``…-dark.png``, is shown in the one that fits. One with many dots an inch,
+as its file tells, is shown at its size on paper, 100 pixels an inch. Pages name the light picture alone; where this hook does not
+run, as in a view of the repository, that one is shown.
 """
 
 from __future__ import annotations

@@ -39,8 +39,8 @@ LooksOption = Annotated[
     typer.Option(
         min=0,
         max=10_000,
-        help="At the policy without exploration, on validation episodes, for its learning curve; 0: none. Twelve if left out, fewer "
-        "where they would take more than a tenth of the training's time. Recipes with validation look by themselves.",
+        help="At the policy without exploration, on validation episodes, for its learning curve; 0: none. Twelve if left out, or "
+        "fewer where they would take more than a tenth of the training's time. Recipes with validation look by themselves.",
     ),
 ]
 ResumeOption = Annotated[

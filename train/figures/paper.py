@@ -7,7 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from beamenv.configuration.writing import write_whole
+from beamenv.rendering.charts import spread
 from train.figures.figure import Curve, Marker, Panel, listed
 from train.figures.palette import BEHIND, INK
 from train.shared.files import on_one_line
@@ -36,6 +39,8 @@ DASHES: Mapping[str, Any] = {
     "points": "",
     "bars": "-",
 }
+END, PIECE = 10.5, 18.0
+"""Points: from one curve's name at its end to the next, at least, and how long the piece of line beside it is."""
 BAR = 3.5
 """Points: how broad bars are."""
 DECADES = 500.0
@@ -193,6 +198,28 @@ def marking(marker: Marker) -> dict[str, Any]:
     size = {} if marker.size is None else {"markersize": marker.size}
     fills = {"none": {"markerfacecolor": "none"}, "white": {"markerfacecolor": rcParams["axes.facecolor"]}}
     return {"marker": SIGNS[marker.sign], **fills.get(marker.fill, {}), **size}
+
+
+def name_ends(axis: Any, panel: Panel) -> None:
+    """The names of curves right of the axes, each at the height at which its curve ends or near it, with a piece of its line.
+
+    Of a figure whose layout is there, as ``draw_without_rendering`` finds it.
+    """
+    from matplotlib.lines import Line2D
+    from matplotlib.offsetbox import AnnotationBbox, DrawingArea, HPacker, TextArea
+
+    curves, box = listed([panel]), axis.get_window_extent()
+    ends = [axis.transData.transform((curve.x[-1], curve.y[np.isfinite(curve.y)][-1]))[1] for curve in curves]
+    heights = spread(np.array(ends), box.y0, box.y1, END / 72.0 * axis.figure.dpi) if curves else np.empty(0)
+    for curve, height in zip(curves, ((heights - box.y0) / box.height).tolist(), strict=True):
+        piece = DrawingArea(PIECE, 4.0)
+        piece.add_artist(Line2D([0.0, PIECE], [2.0, 2.0], **appearance(curve)))
+        name = TextArea(plain(curve.label), textprops={"fontsize": 8})
+        beside = HPacker(children=[piece, name], align="center", pad=0.0, sep=4.0)
+        held = AnnotationBbox(
+            beside, (1.0, height), (5.0, 0.0), "axes fraction", "offset points", box_alignment=(0.0, 0.5), frameon=False, pad=0.0
+        )
+        axis.add_artist(held)
 
 
 def handles(panels: Sequence[Panel]) -> list[Any]:

@@ -54,9 +54,9 @@ def follow(
 ) -> list[Policy]:
     """Train until the budget is spent, or until Ctrl-C; the policies learnt by then.
 
-    ``elapsed`` s were spent before; what ``aside`` tells, s, is no part of the training. ``keep`` is called with the seconds spent about every ``interval`` s and at the end; never
-    after half an update. A signal to end does as Ctrl-C, and then raises ``Interrupted``; so does a
-    second one, at once and without ``keep``.
+    ``elapsed`` s were spent before; what ``aside`` tells, s, is no part of the training. ``keep`` is called with the seconds spent
+    about every ``interval`` s and at the end; never after half an update. A signal to end does as Ctrl-C, and then raises
+    ``Interrupted``; so does a second one, at once and without ``keep``.
     """
     begin, kept = time.monotonic() - elapsed, elapsed
     with Deferred() as interruption:

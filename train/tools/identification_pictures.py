@@ -29,9 +29,7 @@ COLLOCATED = 5.0 / 3.0
 
 def measured(seconds: float = SECONDS, seed: int = 0) -> Measurement:
     """Voltages and currents of the blade in white loads."""
-    env = gym.make(
-        beamenv.ENV_ID, preset="sound-blade", scenario="white", duration=seconds, physical_units=True, dtype="float64"
-    )
+    env = gym.make(beamenv.ENV_ID, preset="sound-blade", scenario="white", duration=seconds, physical_units=True, dtype="float64")
     plant = env.unwrapped.plant  # type: ignore[attr-defined]
     interval, actuators = env.unwrapped.design.config.control_interval, plant.B.shape[1]
     volts = np.clip(np.random.default_rng(seed).normal(0.0, DEVIATION, (round(seconds / interval), actuators)), -LIMIT, LIMIT)
