@@ -1,8 +1,13 @@
-"""What pages take from the package when they are built: scenarios, recipes, shipped agents, gallery, the command line's help."""
+"""What pages take from the package: scenarios, recipes, shipped agents, gallery, the command line's help.
+
+Each stands in its page between two comments, so that whoever reads the unbuilt page has it too. A build makes them anew;
+``python docs/hooks/filling.py`` writes them into the pages, and a test compares.
+"""
 
 from __future__ import annotations
 
 import csv
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,12 +21,22 @@ BLADES = EXAMPLES / "blades"
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    """Fill in what a page asks for by a comment."""
-    for name, make in FILLED.items():
-        mark = f"<!-- {name} -->"
-        if mark in markdown:
-            markdown = markdown.replace(mark, make())
+    """Put what a page asks for by its comments in their place."""
+    for name in FILLED:
+        markdown = place_of(name).sub(lambda found: FILLED[found[1]](), markdown)
     return markdown
+
+
+def written(markdown: str) -> str:
+    """The page with what it asks for between the comments, as it is kept."""
+    for name in FILLED:
+        markdown = place_of(name).sub(lambda found: f"{found[0].splitlines()[0]}\n\n{FILLED[found[1]]()}\n\n{END}", markdown)
+    return markdown
+
+
+def place_of(name: str) -> re.Pattern[str]:
+    """From a comment with a name to the end of what was put there."""
+    return re.compile(rf"^<!-- ({re.escape(name)}): [^\n]*-->\n.*?^{re.escape(END)}$", flags=re.MULTILINE | re.DOTALL)
 
 
 def scenario_table() -> str:
@@ -42,13 +57,14 @@ def scenario_films() -> str:
 
 
 def scenario_film(file: Path) -> str:
-    """One of them, folded but for the first."""
+    """One of them, folded but for the first: HTML, which shows alike in a built page and in an unbuilt one."""
     lines = file.read_text(encoding="utf-8").splitlines()
     opening = " ".join(line.removeprefix("#").strip() for line in lines if line.startswith("#"))
     words = f"One episode of {file.stem} without control and under LQG"
-    picture = f"![{words}](images/scenarios/{file.stem}.svg){{ .film loading=lazy }}"
-    state = "???+" if file.stem == "nominal" else "???"
-    return f'{state} example "{file.stem}"\n\n    {opening}\n\n    {picture}'
+    picture = f'<img class="film" loading="lazy" alt="{words}" src="images/scenarios/{file.stem}.svg">'
+    state = " open" if file.stem == "nominal" else ""
+    head = f'<details class="example" markdown="1"{state}>\n<summary>{file.stem}</summary>'
+    return f"{head}\n\n{opening}\n\n{picture}\n\n</details>"
 
 
 def return_table() -> str:
@@ -168,4 +184,17 @@ FILLED = {
     "scenario films": scenario_films,
     "returns": return_table,
 }
-"""What a comment of that name is replaced by."""
+"""What a page asks for by a comment of that name."""
+END = "<!-- end -->"
+
+
+def main() -> None:
+    """Write every page again that asks for something."""
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        if (full := written(text)) != text:
+            page.write_text(full, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

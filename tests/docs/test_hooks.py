@@ -11,6 +11,10 @@ pytest.importorskip("typer")
 HOOKS = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks" / "filling.py"))
 
 
+ROOT = Path(__file__).parents[2]
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+
+
 @pytest.mark.parametrize(
     ("name", "row"),
     [
@@ -19,14 +23,15 @@ HOOKS = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks" / "filli
         ("shipped agents", "| `residual-generalist` | several scenarios at once | 0, 1, 2, 3, 4 | 1552 | 3302 |"),
         ("command line", "## beamenv frequencies"),
         ("gallery", "## Two cell box"),
-        ("scenario films", '??? example "long-delay"'),
+        ("scenario films", "<summary>long-delay</summary>"),
         ("returns", "| `overload` | −42"),
     ],
 )
 def test_a_page_is_filled_in_where_it_asks_for_it(name, row):
-    page = HOOKS["on_page_markdown"](f"before\n\n<!-- {name} -->\n\nbehind")
+    page = HOOKS["on_page_markdown"](f"before\n\n<!-- {name}: why -->\nstale\n<!-- end -->\n\nbehind")
     assert f"\n{row}" in page
-    assert "<!--" not in page
+    assert page.startswith("before") and page.endswith("behind")
+    assert "<!--" not in page and "stale" not in page
 
 
 def test_nothing_is_filled_in_elsewhere():
@@ -34,8 +39,24 @@ def test_nothing_is_filled_in_elsewhere():
 
 
 def test_every_mark_is_asked_for_by_a_page():
-    pages = "\n".join(page.read_text(encoding="utf-8") for page in (Path(__file__).parents[2] / "docs").glob("*.md"))
-    assert [name for name in HOOKS["FILLED"] if f"<!-- {name} -->" not in pages] == []
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    assert [name for name in HOOKS["FILLED"] if f"\n<!-- {name}: " not in pages] == []
+
+
+def test_a_reader_of_the_unbuilt_pages_reads_what_a_build_would_put_there():
+    """Where this fails, ``python docs/hooks/filling.py`` writes the pages again."""
+    stale = [page.name for page in PAGES if HOOKS["written"](text := page.read_text(encoding="utf-8")) != text]
+    assert stale == []
+
+
+ELSEWHERE = runpy.run_path(str(ROOT / "docs" / "hooks" / "changes.py"))
+
+
+def test_links_to_files_outside_the_pages_lead_to_their_pages():
+    page = "[a](../examples/02_lqg.py), [b](../CONTRIBUTING.md#numbers), [c](../CHANGELOG.md), [d](lqg.md)"
+    assert (
+        ELSEWHERE["on_page_markdown"](page) == "[a](examples/02_lqg.md), [b](contributing.md#numbers), [c](changes.md), [d](lqg.md)"
+    )
 
 
 NAMES = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "hooks" / "public_names.py"))

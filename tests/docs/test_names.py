@@ -22,8 +22,6 @@ TEST = re.compile(r"test_\w+")
 
 TO_BE_WRITTEN = {"beamenv/scenarios/named/gusty.toml", "train/controllers/named/half_lqg.py"}
 """Files that the reader is told to write: only their folders are there."""
-MADE = {"changes.md", "contributing.md"}
-"""Pages that the site makes of files beside README."""
 FORMER = "CHANGELOG.md"
 """The page that names what has moved away: of its tables' rows only the last column is checked."""
 
@@ -42,9 +40,9 @@ def paths(page):
 
 
 def links(page):
-    """Targets of relative links, without those that the site makes of the examples and of the files beside README."""
+    """Targets of relative links."""
     targets = re.findall(r"\]\(([^)#\s]+)[^)]*\)", FENCE.sub("", page.read_text(encoding="utf-8")))
-    return {target for target in targets if not target.startswith(("http", "examples/")) and target not in MADE}
+    return {target for target in targets if not target.startswith("http")}
 
 
 def names(page):
