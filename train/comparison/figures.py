@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from baselines import Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.figures.figure import Curve, Look, Panel
-from train.figures.learning import learning_figure
+from train.figures.learning import learning_figure, with_a_cost
 from train.figures.palette import BEHIND, INK, LINES
 from train.figures.panels import pole_panel, voltage_curves
 from train.figures.paper import draw_panel, handles, plain, save, styled
@@ -127,8 +127,7 @@ def write_figures(
     """``episode.png``, ``poles.png`` and, when training reported any progress, ``learning.png``."""
     save(episode_figure(evaluations, clearest_episode(evaluations[0])), folder / "episode.png")
     save(pole_figure(plant, controllers), folder / "poles.png")
-    reported = {name: curve for name, curve in curves.items() if len(curve)}
-    if reported:
+    if reported := with_a_cost(curves):
         save(learning_figure(reported, levels), folder / "learning.png")
 
 

@@ -20,8 +20,13 @@ Array = NDArray[np.float64]
 def draw_learning(agents: Mapping[str, Path], folder: Path) -> None:
     """``learning.png`` of the policies in some folders, by their names; none where no training reported any progress."""
     curves = {drawn_as(name, place): read_curve(place) for name, place in agents.items()}
-    if reported := {name: curve for name, curve in curves.items() if len(curve)}:
+    if reported := with_a_cost(curves):
         save(learning_figure(reported), folder / PICTURE)
+
+
+def with_a_cost(curves: Mapping[str, Array]) -> dict[str, Array]:
+    """Those in which an episode has ended or somebody has looked."""
+    return {name: curve for name, curve in curves.items() if np.isfinite(curve[:, 2]).any()}
 
 
 def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float] = MappingProxyType({})) -> Any:
