@@ -15,6 +15,8 @@ import baselines
 import train.benchmark
 from beamenv.wings import WINGS
 
+pytestmark = pytest.mark.slow  # `make quick-clients` runs them, with the wheel and the clients
+
 ROOT = Path(__file__).resolve().parents[1]
 SHOWN = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").glob("*.py")])
 IMPORT = re.compile(r"^(?:from|import) (\w[\w.]*)[^\n]*$", flags=re.MULTILINE)

@@ -7,13 +7,12 @@ from itertools import pairwise
 
 import pytest
 
-from tests.docs.printed import assert_same_words
-from tests.docs.written import ROOT, blocks, commands, comments, name_of, pages, printed, spans
+from tests.docs.printed import ELSEWHERE, assert_same_words
+from tests.docs.running import outputs
+from tests.docs.written import ROOT, blocks, commands, comments, name_of, pages, shown_below, spans
 
 SLOW = {"agents.md", "libraries.md"}
 """Pages whose blocks take more than some ten seconds together."""
-APART = {"torchrl": "torchrl", "ray": "tree", "skrl": "skrl", "stable_baselines3": "stable_baselines3", "minari": "minari"}
-"""Libraries of others, and what shows that they can be imported: their blocks run where they are, and in ``make clients``."""
 
 
 def with_blocks(language):
@@ -25,27 +24,13 @@ def params(language, slow=frozenset()):
     return [pytest.param(page, id=name_of(page), marks=those) for page, those in marks.items()]
 
 
-def wanting(text):
-    """Libraries of others that a block imports and that are not here."""
-    imported = set(re.findall(r"^(?:from|import) (\w+)", text, flags=re.MULTILINE)) | (
-        {"ray"} if "beamenv.train.rllib" in text or "ray." in text else set()
-    )
-    return {name for name in imported & APART.keys() if importlib.util.find_spec(APART[name]) is None}
-
-
 @pytest.mark.parametrize("page", params("python", SLOW))
-def test_python_blocks_run_in_the_order_of_their_page_and_print_what_it_shows(page, tmp_path, monkeypatch, capsys):
+def test_python_blocks_run_in_the_order_of_their_page_and_print_what_it_shows(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    namespace, left_out = {"__name__": page.stem}, False
-    shown = dict(printed(page))
-    for line, _, text in blocks(page, "python"):
-        left_out = bool(wanting(text)) or (left_out and "algorithm" in text)
-        if left_out:
-            continue
-        capsys.readouterr()
-        exec(compile("\n" * (line - 1) + text, str(page), "exec"), namespace)  # tracebacks tell the page's own lines
-        if line in shown:
-            assert_same_words(capsys.readouterr().out, shown[line])
+    shown = {line: (title, text) for line, title, text in shown_below(page, "python")}
+    for line, printed in outputs(page):
+        title, text = shown.get(line, ("", ""))
+        assert_same_words(printed, text, numbers=ELSEWHERE not in title)
 
 
 @pytest.mark.parametrize("page", params("python"))

@@ -29,7 +29,7 @@ SMALLER = {
 """By command: options that are put in the place of what the page has, or added; None takes an option away. Clusters, which only the
 reader has, are left out."""
 BEGUN = {"--quick", "--submit", "speed", "generalist"}
-"""What takes minutes however small, such as plants of fourteen scenarios: it runs up to where the work begins."""
+"""What takes minutes however small: it runs up to where the work begins, a generalist's training with two scenarios of fourteen."""
 
 
 class Reached(Exception):
@@ -136,6 +136,8 @@ def test_commands_run_in_the_order_of_their_page(page, tmp_path, monkeypatch):
                     patch.setattr("train.benchmark.campaign._cells", begun)
                     patch.setattr("train.cli.speed.measured", begun)
                     patch.setattr("train.learning.job.follow", begun)
+                    patch.setattr("train.learning.job.NAMES", ("nominal", "delay"))
+                    patch.setattr("train.learning.through_plant.gradient.compositions", lambda task, count, seed: [])
                 result = CliRunner().invoke(app, words)
             if not (only_begun and isinstance(result.exception, Reached)):
                 assert result.exit_code == 0, (words, result.output[-2000:], result.exception)

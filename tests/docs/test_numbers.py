@@ -2,7 +2,7 @@
 
 import re
 import sys
-from functools import cache
+from functools import cache, reduce
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from baselines import (
 )
 from baselines.design.loop import closed_loop
 from beamenv import UNSEEN_SCENARIOS
+from beamenv.patches.material import PATCH_MATERIALS
 from beamenv.plant.plant import sample
 from beamenv.task import resolve_task
 
@@ -101,17 +102,6 @@ def test_the_badge_of_gymnasium_is_what_the_package_asks_for():
     assert f"Gymnasium-{lowest}_and_newer-" in readme
 
 
-def test_patches_at_the_clamp_have_one_figure_on_all_pages():
-    """That of `tests/plant/test_clamp.py`."""
-    for page, words in {
-        "docs/placement.md": "from solid elements by up to 7 %",
-        "docs/physics.md": "| up to 110 % | up to 7 % | 3-D solid elements |",
-        "beamenv/envs/single.py": "of a solid of finite elements by up to 7 %",
-        "beamenv/blade/clamp.py": "by up to 7 %",
-    }.items():
-        assert words in (ROOT / page).read_text(encoding="utf-8"), page
-
-
 def test_counts_of_verdicts_told_of_the_thesis_are_those_of_its_page():
     page, told = ((ROOT / "docs" / name).read_text(encoding="utf-8") for name in ("thesis.md", "beyond-the-thesis.md"))
     nature, equations = (
@@ -125,13 +115,18 @@ def test_counts_of_verdicts_told_of_the_thesis_are_those_of_its_page():
     assert f"Of the {missed} that do not fully hold in nature, {rest}" in told
 
 
+def number(path):
+    """The value at a dotted path of ``numbers.toml``."""
+    return reduce(lambda table, key: table[key], path.split("."), TOLD)
+
+
 TOLD = tomllib.loads((ROOT / "docs" / "numbers.toml").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("page", TOLD["told"], ids=lambda page: page["page"])
 def test_numbers_that_several_pages_tell_are_those_of_one_file(page):
     text = " ".join((ROOT / page["page"]).read_text(encoding="utf-8").split())
-    sentences = [re.sub(r"{(\w+)\.(\w+)}", lambda found: str(TOLD[found[1]][found[2]]), each) for each in page["sentences"]]
+    sentences = [re.sub(r"{([\w.-]+)}", lambda found: str(number(found[1])), each) for each in page["sentences"]]
     assert [sentence for sentence in sentences if sentence not in text] == []
 
 
@@ -151,3 +146,44 @@ def test_the_scenarios_in_which_an_agent_is_ahead_are_as_many_as_the_benchmark_h
     assert len(verdicts) == told["scenarios"]
     assert (len(kept), kept.count("ahead")) == (told["kept_for_judging"], told["ahead_in_kept"])
     assert list(verdicts.values()).count("ahead") == told["ahead_in_kept"]
+
+
+def test_every_number_of_that_file_is_told_on_two_pages_or_compared_with_one():
+    """What is told once need not stand in it."""
+    told = [each[1] for page in TOLD["told"] for sentence in page["sentences"] for each in re.finditer(r"{([\w.-]+)}", sentence)]
+    compared = ("thesis.", "benchmark.", "cluster.")
+    assert [name for name in names(TOLD) if not name.startswith(compared) and told.count(name) < 2] == []
+
+
+def names(table, path=""):
+    """Dotted paths of the numbers in a table."""
+    return [
+        each
+        for key, value in table.items()
+        if key != "told"
+        for each in (names(value, f"{path}{key}.") if isinstance(value, dict) else [f"{path}{key}"])
+    ]
+
+
+@pytest.mark.parametrize(("scenario", "key"), [("solid", "lqg"), ("solid-20", "lqg_of_20_modes")])
+def test_lqg_on_the_solid_costs_what_the_benchmark_says(scenario, key):
+    page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
+    rows = page.partition(f"<summary>Every estimate: {scenario}</summary>")[2].partition("</details>")[0]
+    assert re.search(r"\| lqg \|.*?(\d\.\d{3}) \[", rows)[1] == TOLD["solid"][key]
+
+
+def test_strains_at_which_sheets_break_are_those_of_the_materials():
+    assert TOLD["breaks"] == {name: f"{100 * PATCH_MATERIALS[name].failure_strain:.3f} %" for name in TOLD["breaks"]}
+
+
+def test_speeds_of_a_cluster_are_calculated_from_what_was_measured():
+    """Minutes on n workers: to begin, the work, blades of every scenario that a worker meets, and a last piece of 6 s."""
+    page, told = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8"), TOLD["cluster"]
+    (to_begin,) = re.findall(r"took 27.7 s, of which ([\d.]+) s were to begin", page)
+    rows = re.findall(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| (\d+) \|$", page, re.MULTILINE)
+    assert [int(workers) for workers, *_ in rows] == [1, 2, 4, 16, 64]
+    for workers, minutes, faster, busy in [[float(cell) for cell in row] for row in rows][1:]:
+        blades = min(told["scenarios"], told["pieces"] / workers) * float(told["blades"]) / 60
+        taken = told["begin"] / 60 + told["minutes"] / workers + blades + 6 / 60
+        assert [minutes, faster] == pytest.approx([taken, told["minutes"] / taken], rel=0.04)
+        assert busy == pytest.approx(told["minutes"] + workers * (blades + float(to_begin) / 60), abs=0.5)

@@ -6,7 +6,7 @@ from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-BLOCK = re.compile(r"^```(\w+)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(?P<language>\w+)(?P<title>[^\n]*)\n(?P<body>.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 SPAN = re.compile(r"`((?:beamenv|make|python -m) [^`\n]+)`")
 FENCE = re.compile(r"^```.*?^```$", flags=re.MULTILINE | re.DOTALL)
 
@@ -22,16 +22,21 @@ def name_of(page):
 def blocks(page, *languages):
     """(line, language, text) of every fenced block in these languages, in the order of the page."""
     text = page.read_text(encoding="utf-8")
-    return [(text.count("\n", 0, each.start(2)) + 1, each[1], each[2]) for each in BLOCK.finditer(text) if each[1] in languages]
+    return [(line_of(each, text), each["language"], each["body"]) for each in BLOCK.finditer(text) if each["language"] in languages]
 
 
-def printed(page):
-    """(line of a Python block, text that it prints) of every block that is directly followed by one of what it prints."""
+def line_of(block, text):
+    """The line of the page on which what is in a block begins."""
+    return text.count("\n", 0, block.start("body")) + 1
+
+
+def shown_below(page, *languages):
+    """(line of a block in one of these languages, title, text) of what is shown directly below it: what it prints."""
     text = page.read_text(encoding="utf-8")
-    found = list(BLOCK.finditer(text))
-    for each, following in pairwise(found):
-        if each[1] == "python" and following[1] == "text" and not text[each.end() : following.start()].strip():
-            yield text.count("\n", 0, each.start(2)) + 1, following[2]
+    for each, following in pairwise(BLOCK.finditer(text)):
+        between = text[each.end() : following.start()]
+        if each["language"] in languages and following["language"] == "text" and not between.strip():
+            yield line_of(each, text), following["title"].strip(), following["body"]
 
 
 def commands(text):

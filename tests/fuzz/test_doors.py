@@ -55,7 +55,7 @@ DOORS = [door for room in (*OF_BLADES, *OF_LAWS, train_doors, export_doors, comm
 OUTCOMES = ("refused", "accepted", "fault")
 
 FAST = settings(
-    max_examples=25,
+    max_examples=15,
     derandomize=True,
     database=None,
     deadline=None,

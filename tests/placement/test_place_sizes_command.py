@@ -48,7 +48,7 @@ def test_json_tells_the_front_and_the_saved_blade_is_the_chosen_point(quick, tmp
 def test_the_screen_shows_the_front_and_a_picture_is_drawn(quick, tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "sizes.png"
-    result = run("--size", "--picture", str(picture))
+    result = run("--size", *TWO, "--picture", str(picture))
     assert result.exit_code == 0, result.output
     edges = "chosen, root-side edges: actuators 0."
     for word in ("stationary cost of LQG over mass", "chosen", edges, "own size, as configured: 63.26 g", "½CV²f at"):

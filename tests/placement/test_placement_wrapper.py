@@ -91,10 +91,10 @@ def test_optimal_layout_is_found_once_and_kept(monkeypatch, tmp_path):
 def test_optimal_layout_does_not_depend_on_where_the_patches_are():
     import baselines.placement.optimal as optimal
 
-    config = blade_config(overrides={"patches": ELSEWHERE})
-    found = optimal.optimal_positions(config, "actuators")
-    assert found == optimal.optimal_positions(blade_config(), "actuators")
-    assert found == place(PlacementProblem.of(blade_config(), "actuators")).positions
+    here, elsewhere = (blade_config(overrides={"patches": {"actuators": edges}}) for edges in ([0.0, 0.15], [0.2, 0.6]))
+    found = optimal.optimal_positions(elsewhere, "actuators")
+    assert found == optimal.optimal_positions(here, "actuators")
+    assert found == place(PlacementProblem.of(here, "actuators")).positions
 
 
 def test_a_range_is_drawn_from_at_each_reset():

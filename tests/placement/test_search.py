@@ -72,6 +72,7 @@ def test_two_patches_are_put_where_the_grid_puts_them(method, within):
     assert place(problem_of("actuators", 2), method).cost == pytest.approx(grid_optimum("actuators", 2).cost, rel=within)
 
 
+@pytest.mark.slow
 def test_sqp_betters_what_the_genetic_algorithm_found():
     """Thesis §6.6: the two together are superior to either."""
     alone, together = place(problem_of("actuators", 4), "ga"), place(problem_of("actuators", 4), "ga+sqp")

@@ -121,6 +121,7 @@ def test_a_piece_that_follows_from_another_is_done_too(workers, ray):
     assert found == {8.0: 4.0, 4.0: 2.0, 2.0: 1.0, 1.0: 0.5, 5.0: 2.5, 2.5: 1.25, 1.25: 0.625}
 
 
+@pytest.mark.slow
 def test_a_table_of_the_thesis_made_on_a_cluster_is_the_one_made_here(ray, tmp_path):
     for name, options in {"here": ["--jobs", "1"], "there": ["--cluster", "local"]}.items():
         result = CliRunner().invoke(app, ["reproduce", "table-3.4", "figure-3.3", "--folder", str(tmp_path / name), *options])
@@ -194,6 +195,7 @@ def test_without_ray_the_extra_is_named(tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 def test_trainings_on_a_cluster_are_those_made_one_by_one_though_a_worker_is_killed(ray, tmp_path, monkeypatch):
     monkeypatch.setattr("train.learning.several.trained_on", killed_once)

@@ -21,7 +21,7 @@ from train.learning.session import follow
 from train.shared.curve import read_curve
 from train.shared.interruption import Interrupted
 
-SMALL = Comparison({"duration": 0.05}, {"gradient": 0.5, "ppo": 0.5}, seeds=4)
+SMALL = Comparison({"duration": 0.05}, {"gradient": 0.2, "ppo": 0.2}, seeds=4)
 
 
 class Notes(Listener):

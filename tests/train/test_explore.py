@@ -210,6 +210,7 @@ EACH_MOVE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EACH_MOVE)
 def test_a_move_is_answered_within_the_budget_on_one_core(name):
     """CPU time, as other programs only slow a clock down; for the same reason one quick answer is proof."""

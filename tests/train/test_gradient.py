@@ -174,13 +174,13 @@ def test_plants_are_drawn_from_another_bank_than_the_evaluation_s():
     assert not np.isclose(on_training_bank(task).bank.speeds, task.bank.speeds).any()
 
 
-def test_forty_steps_of_training_damp_the_blade():
+def test_twenty_steps_of_training_damp_the_blade():
     seen = []
-    (policy,) = train_gradient(task_of(), 0, seen.append, updates=40)
+    (policy,) = train_gradient(task_of(), 0, seen.append, GradientSettings(episodes=16), updates=20)
     envs = gymnasium.make_vec(beamenv.ENV_ID, num_envs=32)
     assert evaluate(policy, envs, range(32)).relative_cost.high < 0.9
     assert [progress.steps for progress in seen] == sorted({progress.steps for progress in seen})
-    assert len(seen) == 40
+    assert len(seen) == 20
 
 
 def test_an_interrupted_training_gives_what_it_has():

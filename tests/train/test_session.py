@@ -128,7 +128,10 @@ def test_a_budget_must_end(given):
         Budget(**given)
 
 
-@pytest.mark.parametrize("scenario", ["nominal", "delay", "failure", "hysteresis", "rotor", "spin-up", "off-damping.toml"])
+@pytest.mark.parametrize(
+    "scenario",
+    ["nominal", "delay", "failure", "hysteresis", "rotor", pytest.param("spin-up", marks=pytest.mark.slow), "off-damping.toml"],
+)
 def test_a_resumed_gradient_training_ends_with_the_very_weights_of_an_uninterrupted_one(scenario, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "off-damping.toml").write_text("[plants]\nbank = 4\ndamping_ratio = [0.003, 0.02]\n")

@@ -44,18 +44,18 @@ SCORE = Column("", "", 1.0, "{:.3f}", interval=True)
 INTRODUCTION = """\
 # Leaderboard
 
-Each row was made by running its entry again: in every scenario, on the benchmark's held-out episodes, beside no control, LQG and
-the clairvoyant law. To enter an agent of yours, from its training on:
+Each row of the leaderboard is measured by running the entry again, in every scenario and on the benchmark's held-out
+episodes, together with no control, LQG and the clairvoyant controller. To train an agent and enter it:
 
 ```sh
 beamenv train gradient --scenario generalist --folder mine
 beamenv benchmark --submit mine
 ```
 
-`--submit` takes the folder of a trained agent or of its runs, or the name of a controller, say of a file of yours in
-`train/controllers/named/`; and with `--trust`, for loading it can run code, the `.zip` file of a Stable-Baselines3 model. It
-appends to `results/leaderboard.csv`, with `--docs docs` to the table of this page. `--tier` declares what the entry was told, where
-its own file does not. An interrupted run resumes.
+`--submit` takes the folder of a trained agent or of several runs of it, or the id of a controller, for example of your own
+file in `train/controllers/named/`. It also takes the `.zip` file of a Stable-Baselines3 model, with `--trust`, because
+loading such a file can run code. The entry is appended to `results/leaderboard.csv`, and with `--docs docs` to the table of
+this page. If the entry's file does not say what it was told, say so with `--tier`. An interrupted run resumes.
 """
 
 
@@ -165,7 +165,7 @@ def _remove_unfinished(path: Path) -> None:
 def page(entries: Sequence[Entry]) -> str:
     """How to enter, and the table."""
     if not entries:
-        return f"{INTRODUCTION}\nNobody has entered yet.\n"
+        return f"{INTRODUCTION}\nThere are no entries yet.\n"
     headings = ["entry", "tier", "kind", *(heading for split in SPLITS for heading in (f"J / J₀, {split}", f"score, {split}"))]
     rows = [cells(each) for each in sorted(entries, key=lambda each: each.place)]
     table = markdown.table([*headings, *("unstable", "training, s", "runs", "date", "digest")], rows, words=3)

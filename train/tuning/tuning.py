@@ -105,9 +105,9 @@ def tune(
         raise Refused(
             "cluster", cluster, f"{LOCAL}, or HOST:PORT: from outside a cluster Ray Tune would keep what it finds to itself"
         )
+    import_module("train.tuning.search")  # Ray Tune: where it is missing, that is said before anything is computed
     jobs = [held(tuning.job(trial)) for trial in range(tuning.trials)]
     jobs[0].tasks()
-    import_module("train.tuning.search")  # Ray Tune: where it is missing, that is said before anything is written
     with alone_in(folder), ending_as_interrupted():
         _begin(folder, tuning, overwrite)
         records = [known(folder, Record(trial, _settings(job, tuning.space))) for trial, job in enumerate(jobs)]
