@@ -56,8 +56,8 @@ def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
         end = max(float(curve.x[-1]) for curve in curves)
         level = Curve(np.array([0.0, end]), np.ones(2), "LQG", "solid", Look(NEUTRAL, width=0.8))
         name = "J / J of LQG" if len(panels) % COLUMNS == 0 else ""
-        limits = {"x_limits": (0.0, end), "y_limits": (LOWEST, HIGHEST)}
-        panels.append(Panel(f"{agent}, scenario {scenario}", "million control intervals", name, [level, *curves], **limits))
+        title, x_label, y_limits = f"{agent}, scenario {scenario}", "million control intervals", (LOWEST, HIGHEST)
+        panels.append(Panel(title, x_label, name, [level, *curves], x_limits=(0.0, end), y_limits=y_limits))
     return panels
 
 

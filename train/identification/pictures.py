@@ -1,6 +1,6 @@
 """The documentation's pictures of an identification: 40 s of ``sound-blade`` under random voltages.
 
-``python -m train.tools.identification_pictures`` writes ``identification-stabilisation.png`` and ``identification-fit.png`` into
+``python -m train.identification.pictures`` writes ``identification-stabilisation.png`` and ``identification-fit.png`` into
 ``docs/images``, or the folder that is its argument, each with another beside it for dark pages; in about a minute.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -30,8 +31,8 @@ COLLOCATED = 5.0 / 3.0
 def measured(seconds: float = SECONDS, seed: int = 0) -> Measurement:
     """Voltages and currents of the blade in white loads."""
     env = gym.make(beamenv.ENV_ID, preset="sound-blade", scenario="white", duration=seconds, physical_units=True, dtype="float64")
-    plant = env.unwrapped.plant  # type: ignore[attr-defined]
-    interval, actuators = env.unwrapped.design.config.control_interval, plant.B.shape[1]
+    blade: Any = env.unwrapped
+    interval, actuators = blade.design.config.control_interval, blade.plant.B.shape[1]
     volts = np.clip(np.random.default_rng(seed).normal(0.0, DEVIATION, (round(seconds / interval), actuators)), -LIMIT, LIMIT)
     reading, _ = env.reset(seed=seed)
     readings = []
