@@ -144,7 +144,7 @@ def why(records: Sequence[Record]) -> str:
         f"not hold of the blade. The third is what no equation explains. {found[Verdict.NOT_REPRODUCED]} do not follow from the "
         f"thesis' own equations either, and {found[Verdict.UNTESTABLE]} cannot be evaluated by them: they rest on loads, weights "
         "or lay-ups that the thesis does not print, on values read off plots, on slips in its arithmetic, or on more than its few "
-        "curves show. Some of these may be our fault, for where a configuration is not printed we had to choose one. The reverse "
+        "curves show. Some of these may be our fault: where a configuration is not printed, we had to choose one. The reverse "
         f"happens too: {lost} statements that hold in nature do not follow from the thesis' equations, or cannot be evaluated by "
         f"them.{compared}"
     )
