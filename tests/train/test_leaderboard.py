@@ -160,7 +160,7 @@ def test_the_digest_is_of_what_was_run_and_not_of_its_name(board, monkeypatch):
         (("--submit", "mine", "--scenario", "delay", "--quick"), "so leave out --scenario and --quick"),
         (("--submit", "mine", "--docs", "mine/agent.json"), "mine/agent.json"),
         (("--tier", "1"), "--tier is of an entry on the leaderboard: name that with --submit"),
-        (("--overwrite",), "overwrite = True is of an entry on the leaderboard"),
+        (("--overwrite",), "--overwrite is of an entry on the leaderboard"),
         (
             ("--submit", "narrow"),
             "submit = 'narrow' is not entered, for it could not be measured in 1 of 1 scenarios: in nominal plant",
