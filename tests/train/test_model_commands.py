@@ -78,7 +78,7 @@ def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_
         ),
         (("--scenario", "rotor"), "scenario 'rotor' cannot be had of this plant: scenario.rotor.harmonics is"),
         (("--scenario", "nominal", "--controller", "velocity"), "plant has 2 actuators and 3 sensors, which velocity feedback"),
-        (("--scenario", "nominal", "--controller", "scheduled-lqg"), "plant is a model of one's own, but scheduled-lqg asks for"),
+        (("--scenario", "nominal", "--controller", "scheduled-lqg"), "--plant is a model of one's own, but scheduled-lqg asks for"),
         (
             ("--scenario", "nominal", "--controller", "gradient-generalist"),
             "controller 'gradient-generalist' cannot be had of this plant: their training was on other plants.",
