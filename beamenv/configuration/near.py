@@ -10,6 +10,9 @@ from typing import Any
 LONGEST = 64
 """Characters of a name that is looked for: comparing takes their number squared."""
 
+ALIKE = 0.65
+"""Least share of letters in common: of three, two may be swapped; "storm" is not meant for "rotor"."""
+
 
 def near(name: Any, known: Iterable[Any], titles: Mapping[str, str] = MappingProxyType({})) -> list[str]:
     """Up to three ``known`` names that are like this one, whatever its letters' size, hyphens and underscores.
@@ -20,7 +23,7 @@ def near(name: Any, known: Iterable[Any], titles: Mapping[str, str] = MappingPro
         return []
     wanted, names = _plain(name), {_plain(each): each for each in known if isinstance(each, str)}
     begun = [each for each in names if wanted and each.startswith(wanted)]
-    alike = sorted([*get_close_matches(wanted, names), *begun], key=lambda each: sorted(each) != sorted(wanted))  # swapped first
+    alike = sorted([*get_close_matches(wanted, names, cutoff=ALIKE), *begun], key=lambda each: sorted(each) != sorted(wanted))  # swapped first
     return list(dict.fromkeys(titles.get(names[each], names[each]) for each in alike))[:3]
 
 
