@@ -22,13 +22,15 @@ def test_who_is_ahead_in_scenarios_kept_for_judging_follows_from_the_benchmarks_
     del told["scenario"]
     assert set(told) == set(UNSEEN_SCENARIOS)
     for scenario, (hardest, difference, ahead) in told.items():
-        agent, _, verdict, rival, _, to_rival = verdicts[scenario]
+        agent, _, verdict, _, rival, _, to_rival = verdicts[scenario]
         low, high = map(float, re.search(r"\[(\S+), (\S+)\]", difference).groups())
         assert agent.startswith("multiple-model-residual-generalist")
         assert (hardest, difference) == (rival, to_rival), scenario
         assert ahead == ("the agent" if high < 0.0 else "the controller" if low > 0.0 else "not told apart"), scenario
         assert (verdict == "ahead") == (ahead == "the agent"), scenario
     assert [scenario for scenario in told if verdicts[scenario][2] == "behind"] == ["two-dead-actuators"]
+    lost = [scenario for scenario in told if verdicts[scenario][2] == "ahead" != verdicts[scenario][3]]
+    assert lost == ["delay-off-model"] and "three of the four leads are left, without that in `delay-off-model`" in LEARNING
 
 
 def test_costs_on_the_solid_are_those_of_the_benchmark():

@@ -1,5 +1,7 @@
 """Who stands for agents and laws, and when one is ahead of the other."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from train.benchmark import benchmark, choice
 from train.benchmark import choose as tool
 from train.benchmark.cells import SERIES, Cell, sources_digest
 from train.benchmark.choice import SCENARIOS, Choice, choose, read_choice, write_choice
-from train.benchmark.contests import AHEAD, BEHIND, LEVEL, STALE, contests_by
+from train.benchmark.contests import AHEAD, BEHIND, LEVEL, STALE, contests_by, corrected
 from train.benchmark.listed import ListedController
 from train.benchmark.showing.report import markdown
 from train.benchmark.table import tabulate
@@ -75,6 +77,27 @@ def test_an_agent_is_ahead_only_of_all_laws_and_behind_only_where_all_agents_are
     assert verdict(lqg=0.51) == LEVEL
     assert verdict(lqg=0.49) == BEHIND
     assert verdict(told=np.full(SEEDS, np.inf), lqg=np.full(SEEDS, np.inf)) == AHEAD
+
+
+def test_an_agent_that_is_not_behind_is_overtaken_where_a_law_that_nobody_chose_is_below_it():
+    def found(**changes):
+        (one,) = contests_by(table_of(COSTS | changes), CHOSEN)
+        return one.verdict, one.overtaken
+
+    assert found(told=0.51) == (LEVEL, True)
+    assert found(lqg=0.49) == (BEHIND, True)
+    assert found() == (AHEAD, False)
+
+
+def test_a_verdict_of_one_scenario_may_not_be_left_when_many_are_judged_together():
+    weak = table_of({"none": 1.0, "lqg": 0.6, "agent-a": 0.53 + 0.5 * (noise(3) - noise(3).mean())})
+    (alone,) = contests_by(weak, None)
+    assert alone.verdict == AHEAD and 0.0 < alone.doubt < 0.05
+    assert corrected([alone]) == [AHEAD]
+    level = [replace(alone, verdict=LEVEL, doubt=1.0)] * 23
+    assert corrected([*level, alone]) == [LEVEL] * 24
+    (clear,) = contests_by(table_of({"none": 1.0, "lqg": 0.6, "agent-a": 0.5}), None)
+    assert corrected([*level, clear])[-1] == AHEAD
 
 
 def test_without_a_choice_the_least_stands_and_is_marked():

@@ -2,14 +2,17 @@
 
 import numpy as np
 import pytest
+from scipy.stats import ttest_rel
 
 from baselines.evaluation.statistics import paired_draws, resamples
 from train.benchmark.statistics import (
     better,
     difference,
+    doubt,
     interquartile_mean,
     mean,
     pooled_interquartile_mean,
+    rejected,
     relative_cost,
 )
 
@@ -94,3 +97,22 @@ def test_draws_that_every_comparison_shares_cannot_be_written_to():
     for kept in (paired_draws(5), drawn.runs, drawn.seeds, drawn.run_counts, drawn.seed_counts):
         with pytest.raises(ValueError, match="read-only"):
             kept[...] = 0
+
+
+def test_holms_method_rejects_what_his_rule_does():
+    """Of four p values 0.005 is below 0.05/4 and 0.01 below 0.05/3; 0.03 is not below 0.05/2, and ends it."""
+    assert rejected([0.01, 0.04, 0.03, 0.005]) == [True, False, False, True]
+    assert rejected([0.01, 0.04, 0.03, 0.005], level=0.1) == [True, True, True, True]
+    assert rejected([]) == []
+
+
+@pytest.mark.parametrize("shift", [0.15, 0.25])
+def test_the_doubt_of_a_paired_difference_is_near_that_of_a_t_test(shift):
+    generator = np.random.default_rng(4)
+    rival = generator.gamma(4.0, size=(1, 128))
+    cost = rival - shift + generator.normal(size=(1, 128))
+    expected = ttest_rel(cost[0], rival[0]).pvalue
+    assert expected > 1e-4
+    assert doubt(cost, rival) == pytest.approx(expected, rel=0.3)
+    assert doubt(rival, cost) == pytest.approx(doubt(cost, rival))
+    assert doubt(rival, rival) == 1.0

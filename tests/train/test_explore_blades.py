@@ -25,8 +25,8 @@ BLADES = {**PRESETS, **{path.stem: load_config(path) for path in EXAMPLES}}
 EACH = [pytest.param(name, marks=pytest.mark.slow if name == "airfoil-two-webs" else ()) for name in BLADES]
 """Two webs and tables of chord and twist take 15 s to build."""
 WITHOUT = {
-    "airfoil-blade": {"ply_angle_deg", "pretwist_deg"},
-    "airfoil-two-webs": {"ply_angle_deg", "pretwist_deg", "taper"},
+    "airfoil-blade": {"ply_angle_deg"},
+    "airfoil-two-webs": {"ply_angle_deg"},
     "channel": {"actuators", "sensors"},
     "round-tube": {"ply_angle_deg", "actuators", "sensors"},
     "t-section": {"ply_angle_deg", "actuators", "sensors"},

@@ -1,6 +1,7 @@
 """The explorer in a real browser: sliders redraw it without an error, and it can be read in both themes and on a telephone."""
 
 import threading
+import time
 from dataclasses import replace
 
 import pytest
@@ -9,8 +10,11 @@ pytest.importorskip("dash", reason="dash is not installed")
 webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
 support = pytest.importorskip("selenium.webdriver.support.ui")
 
+from train.explore.controls import THESIS_PAGE  # noqa: E402 - it needs the package asked for above
+
 pytestmark = pytest.mark.slow
 
+KEY = THESIS_PAGE.key
 MARKED_SPEED = "return document.querySelector('#campbell .js-plotly-plot').layout.shapes.at(-1).x0"
 IDLE = (
     "document.documentElement.dataset.busy === 'false' && document.documentElement.dataset.analysing === 'false' "
@@ -22,7 +26,7 @@ IDLE = (
 def address():
     from train.explore import serve
 
-    server = serve(0)
+    server = serve(0, name="thesis")
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.port}/"
     server.shutdown()
@@ -138,7 +142,7 @@ def test_a_number_is_entered_beside_its_slider_and_moves_it(show):
     wait(browser, f"{MARKED_SPEED} === 123.4 && {IDLE}")
     handle = browser.find_element("css selector", "#speed [role=slider]")
     assert float(handle.get_attribute("aria-valuenow")) == 123.4
-    assert state_of(browser) == "#speed=123.4"
+    assert state_of(browser) == f"#blade={KEY}&speed=123.4"
     press(browser, "speed", webdriver.Keys.HOME)
     wait(browser, f"{MARKED_SPEED} === 0 && {IDLE}")
     assert value_of(browser, "speed-entry") == "0"
@@ -164,7 +168,7 @@ def test_a_weight_is_entered_as_it_is_and_its_slider_shows_its_logarithm(show):
 
 
 def test_the_link_brings_back_the_state_and_reset_takes_it_away(show):
-    state = "#speed=150&actuators=50,443.7,887.4,1331.1&actuator_energy_weight=0.5&load=lag&sensor=2"
+    state = f"#blade={KEY}&speed=150&actuators=50,443.7,887.4,1331.1&actuator_energy_weight=0.5&load=lag&sensor=2"
     browser = show(state=state)
     assert browser.execute_script(MARKED_SPEED) == 150
     assert value_of(browser, "actuators-entry-0") == "50"
@@ -177,11 +181,69 @@ def test_the_link_brings_back_the_state_and_reset_takes_it_away(show):
     wait(browser, f"return document.getElementById('taper-entry').value === '2' && {IDLE}")
 
 
-def test_a_link_of_another_blade_or_with_mistakes_does_no_harm(show):
+def test_a_link_with_mistakes_says_what_of_it_is_left_out(show):
     browser = show(state="#speed=abc&pretwist_deg=1e9&actuators=1,2&load=twist&other=%3Cscript%3E&taper=")
     assert browser.execute_script(MARKED_SPEED) == 200
-    assert state_of(browser) == "#pretwist_deg=90"
+    assert state_of(browser) == f"#blade={KEY}&pretwist_deg=90"
     assert browser.find_element("id", "message").text == ""
+    said = browser.find_element("id", "notice").text
+    assert "other, speed, taper, actuators, load cannot be set here" in said
+    assert "pretwist_deg went beyond" in said and "does not say which blade" in said
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [("takacs-beam-12345678", "--preset takacs-beam"), ("my.toml-12345678", "--blade my.toml"), ("thesis-12345678", "version")],
+)
+def test_a_link_of_another_blade_is_not_applied_and_says_so(show, other, said):
+    browser = show(state=f"#blade={other}&speed=150")
+    assert browser.execute_script(MARKED_SPEED) == 200
+    assert state_of(browser) == ""
+    assert said in browser.find_element("id", "notice").text
+
+
+def test_a_twist_table_is_written_drawn_and_taken_away(show):
+    browser = show()
+    field = browser.find_element("id", "twist_table")
+    field.send_keys("0 30, 0.5 12, 1 0", webdriver.Keys.TAB)
+    wait(browser, f"return document.getElementById('along').textContent.includes('12.00°') && {IDLE}")
+    assert not browser.find_element("id", "pretwist_deg").is_displayed()
+    enter(browser, "twist_table", "0 30, x")
+    wait(browser, "return document.getElementById('message').textContent.includes('twist_table')")
+    browser.find_element("id", "reset").click()
+    wait(browser, f"return document.getElementById('message').textContent === '' && {IDLE}")
+    assert value_of(browser, "twist_table") == ""
+    assert browser.find_element("id", "pretwist_deg").is_displayed()
+
+
+def test_what_takes_long_says_so_and_is_stopped(show, monkeypatch):
+    from train.explore import app
+
+    browser = show()
+    with monkeypatch.context() as patched:
+        patched.setattr(app, "drawn", lambda *_: endless())
+        press(browser, "speed", webdriver.Keys.ARROW_RIGHT)
+        wait(browser, "return !document.getElementById('working').hidden")
+        assert browser.find_element("id", "elapsed").text.startswith("Computing for")
+        browser.find_element("id", "stop").click()
+        wait(browser, "return document.getElementById('message').textContent.startsWith('Stopped') && " + IDLE)
+    assert not browser.find_element("id", "working").is_displayed()
+    press(browser, "speed", webdriver.Keys.ARROW_RIGHT)
+    wait(browser, f"{MARKED_SPEED} === 210 && document.getElementById('message').textContent === '' && {IDLE}")
+
+
+def endless():
+    while True:
+        time.sleep(0.001)
+
+
+def test_the_panel_says_that_there_are_more_controls_below(show):
+    browser = show(1280)
+    wait(browser, "return !document.getElementById('more').hidden")
+    box = browser.execute_script("return document.getElementById('more').getBoundingClientRect().bottom")
+    assert box <= 900
+    browser.execute_script("document.getElementById('controls').scrollTop = 1e6")
+    wait(browser, "return document.getElementById('more').hidden")
 
 
 def test_the_blade_is_saved_as_a_file_that_is_read_back(show, tmp_path):
@@ -210,7 +272,7 @@ def test_all_that_takes_the_keyboard_has_a_name_of_its_own(show):
     assert browser.execute_script(NAMELESS) == []
     handles = browser.find_elements("css selector", "[role=slider]")
     names = [handle.get_attribute("aria-label") for handle in handles]
-    assert len(names) == len(set(names)) == 17
+    assert len(names) == len(set(names)) == 18
     assert handles[1].get_attribute("aria-valuetext") == "200 rad/s"
     assert "MFC actuators on the top wall" in browser.find_element("id", "picture").get_attribute("alt")
 

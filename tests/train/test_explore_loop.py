@@ -90,3 +90,17 @@ def test_noisier_sensors_make_a_slower_filter_and_more_margin():
 def test_what_has_no_loop_is_told_in_one_sentence():
     said = analyse(**THESIS_PAGE.start | {"sensors": [0.0, 20.0, 500.0, 900.0]})
     assert "overlap" in said["lost"] and said["lost"].endswith(".")
+
+
+def test_sensitivity_is_control_s_and_its_peak_that_of_the_margins(plant, thesis):
+    """S = (I + L)⁻¹ with the loops as transfer functions; the curve's grid may miss the top of a peak by a little."""
+    blade, law = sample(plant).to_control()[:, :4], lqg(plant).to_control()[:, :4]
+    drive, full = np.diag(drive_limit(plant)), np.diag(plant.sensor_full_scale)
+    for k in np.linspace(0, len(thesis.frequencies) - 2, 30).astype(int):
+        z = np.exp(1j * thesis.frequencies[k] * plant.control_interval)
+        P, K = np.linalg.solve(full, blade(z)) @ drive, np.linalg.solve(drive, law(z)) @ full
+        for where, loop_gain in (("voltages", -K @ P), ("readings", -P @ K)):
+            S = np.linalg.inv(np.eye(4) + loop_gain)
+            assert thesis.sensitivity[where][k] == pytest.approx(np.linalg.norm(S, 2), rel=1e-6)
+    for where, margins in thesis.margins.items():
+        assert 0.99 * margins.peak_sensitivity <= thesis.sensitivity[where].max() <= margins.peak_sensitivity * (1.0 + 1e-9)

@@ -10,6 +10,7 @@ import pytest
 import beamenv
 from baselines import no_control
 from beamenv.blade.shape import bodies
+from beamenv.scenarios.load_cases import static_deflection
 from train.page import record_episode
 from train.page.blade import drawn_blade, frame_times, shapes_and_amplitudes
 
@@ -94,6 +95,23 @@ def test_actuators_have_the_voltage_and_sensors_the_output_of_the_frame(page_con
         outputs = unpacked(told["outputs"], -1, 4)
         np.testing.assert_allclose(outputs, (recording.readings / episode.blade.truth.sensor_full_scale)[at], rtol=1e-6)
         assert 0.0 < np.abs(outputs).max() <= 1.0
+
+
+def test_the_load_that_is_drawn_is_the_one_that_bends_the_blade():
+    """In the mean over many periods the tip stands where the mean load alone would hold it."""
+    idle = no_control(gym.make(beamenv.ENV_ID).unwrapped.plant)
+    episode = record_episode({"duration": 1.0, "scenario": "step"}, 3, {"idle": idle})
+    told, still = episode.without_control, 200
+    held = static_deflection(episode.blade.truth, np.diag(told.load[still:].mean(axis=0)))
+    expected = (episode.blade.truth.tip_displacement @ held.T).sum(axis=1)
+    np.testing.assert_allclose(told.tip[still:].mean(axis=0), expected, rtol=0.02)
+    drawn = drawn_blade(episode)
+    at = np.rint(frame_times(episode) / episode.blade.config.control_interval).astype(int)
+    loads = unpacked(drawn["recordings"][0]["load"], -1, 2)
+    np.testing.assert_allclose(loads, told.load[at], rtol=1e-6)
+    assert drawn["arrow"]["largest"] == pytest.approx(np.linalg.norm(loads, axis=1).max())
+    length = episode.blade.config.beam.length
+    assert unpacked(drawn["stations"], -1)[drawn["arrow"]["station"]] == pytest.approx(0.88 * length, abs=0.02 * length)
 
 
 def test_what_is_dead_is_told_frame_by_frame():

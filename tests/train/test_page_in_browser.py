@@ -101,7 +101,7 @@ def test_the_slider_moves_blades_clock_cursor_and_what_is_read_aloud(show, page_
     assert all(one != other for one, other in zip(before, pictures(browser), strict=True))
     assert browser.find_element("id", "clock").text == "t = 60.0 ms"
     lag, flap = 1e6 * page_content.episode.without_control.tip[120]
-    told = f"no control: Tip: lag {lag:.0f} µm, flap {flap:.0f} µm.".replace("-", "−")
+    told = f"no control: Tip: lag {lag:.0f} µm, flap {flap:.0f} µm. Load: lag ".replace("-", "−")
     assert told in browser.find_element("id", "instant").get_attribute("aria-valuetext")
     assert browser.execute_script("return document.querySelector('canvas').ariaLabel").startswith(
         "The blade under no control at 60.0 ms"
@@ -135,6 +135,34 @@ def test_mouse_keys_and_buttons_turn_and_zoom_both_blades(show):
     left.send_keys("0")
     assert view(browser) == home
     assert pictures(browser) == seen
+
+
+def test_two_fingers_zoom_and_move_both_blades(show):
+    browser = show(400)
+    home = view(browser)
+    box = browser.execute_script(
+        "const canvas = document.querySelectorAll('.pair canvas')[1]; canvas.scrollIntoView({block: 'center'});"
+        "const {x, y, width, height} = canvas.getBoundingClientRect(); return [x + width / 2, y + height / 2, width]"
+    )
+    seen, (x, y, width) = pictures(browser), box
+
+    def touch(kind, *fingers):
+        points = [{"x": across, "y": down, "id": place} for place, (across, down) in enumerate(fingers)]
+        browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", (x - 20, y), (x + 20, y))
+    for reach in (25, 30, 35, 40):
+        touch("touchMove", (x - reach + 10, y), (x + reach + 10, y))
+    touch("touchEnd")
+    held = view(browser)
+    assert held["zoom"] == pytest.approx(2.0 * home["zoom"]) and held["azimuth"] == home["azimuth"]
+    assert held["shift"] == pytest.approx([10 / width, 0.0])
+    assert all(one != other for one, other in zip(seen, pictures(browser), strict=True))
+    touch("touchStart", (x, y))
+    touch("touchMove", (x + 30, y))
+    touch("touchMove", (x + 60, y))
+    touch("touchEnd")
+    assert view(browser)["azimuth"] != home["azimuth"] and view(browser)["zoom"] == held["zoom"]
 
 
 def test_any_two_controllers_are_chosen_and_their_curves_follow(show):
@@ -196,6 +224,20 @@ def test_the_theme_is_the_systems_until_the_button_is_pressed(show, scheme, othe
     while colours() != expected(other) and time.monotonic() < end:
         time.sleep(0.1)
     assert colours() == expected(other)
+
+
+def test_what_is_wider_than_the_screen_says_that_it_scrolls(show):
+    told, wider = (
+        f"return [...document.querySelectorAll('.scroll')].filter((each) => {condition}).map((each) => each.ariaLabel)"
+        for condition in ("!each.previousElementSibling.hidden", "each.scrollWidth > each.clientWidth + 1")
+    )
+    narrow = show(400)
+    heat_map = "document.getElementById('heat-map')"
+    narrow.execute_script(f"{heat_map}.style.minWidth = '900px'")
+    wait(narrow, f"return {heat_map}.closest('.scroll').classList.contains('cut')")
+    assert narrow.execute_script(told) == narrow.execute_script(wider) == ["Scenarios, scrolls sideways"]
+    narrow.execute_script(f"{heat_map}.closest('.scroll').scrollLeft = 10000")
+    wait(narrow, f"return !{heat_map}.closest('.scroll').classList.contains('cut')")
 
 
 @pytest.mark.parametrize("width", [400, 1200])

@@ -37,6 +37,8 @@ from train.shared.versions import versions
 from train.workers.workers import Workers
 
 Progress = Callable[[int, int, Cell], None]
+Recording = Callable[[int, int, str], None]
+"""Told how many controllers the episode of ``report.html`` is recorded under, of how many, and whose turn it is."""
 
 ARGUMENTS = ("preset", "speed", "blade", "design", "duration", "physical_units", "max_episode_steps", "plant", "spread")
 """Of the environment, that all cells may share; the scenario is each cell's own."""
@@ -58,6 +60,7 @@ def benchmark(
     environment: Mapping[str, Any] | None = None,
     validation: bool = False,
     progress: Progress | None = None,
+    recording: Recording | None = None,
 ) -> BenchmarkTable:
     """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
 
@@ -75,6 +78,7 @@ def benchmark(
     - ``environment``: further keyword arguments of the environment, such as a "blade".
     - ``validation``: on the seeds and the bank of plants that contenders are chosen on, in place of those they are compared on.
     - ``progress``: called with cells done, their number, and the cell.
+    - ``recording``: called as the page's episode is recorded, with controllers done, their number, and the next one's name.
 
     Of a model of one's own, the "plant" of the ``environment``, what can be had is run, and ``left_out`` of the table says what
     cannot and why. What is asked for by its name and cannot be had is refused before anything runs.
@@ -86,6 +90,8 @@ def benchmark(
     """
     seeds, workers, trusted = checked("seeds", seeds, SEEDS), Workers(jobs, cluster), checked("trusted", trusted, Flag())
     progress, validation = checked_progress(progress), checked("validation", validation, Flag())
+    if recording is not None and not callable(recording):
+        raise Refused("recording", recording, "None, or a function of controllers done, their number, and a name")
     runs = None if runs is None else checked("runs", runs, Count())
     arguments = environment_json({} if environment is None else environment)
     own = checked("own", {} if own is None else own, Table())
@@ -98,6 +104,7 @@ def benchmark(
     listed = [each.first(runs) for each in listed_controllers(controllers, own, models, trusted, trained)]
     asked = {*(scenarios or ()), *(controllers or ())}
     options: dict[str, Any] = {"workers": workers, "arguments": arguments, "validation": validation, "progress": progress}
+    options["recording"] = recording
     return of_listed(listed, scenarios, seeds, folder, asked=asked, **options)
 
 
@@ -119,6 +126,7 @@ def of_listed(
     arguments: str = "{}",
     validation: bool = False,
     progress: Progress | None = None,
+    recording: Recording | None = None,
     asked: Collection[str] = (),
 ) -> BenchmarkTable:
     """The same of controllers that are listed already, and of the environment's ``arguments`` as JSON; of a model of one's own what
@@ -141,7 +149,7 @@ def of_listed(
         cells = _cells(queue, folder, workers, progress or (lambda done, total, cell: None))
         table = replace(tabulate(cells, listed, refused, made), left_out=() if fit is None else fit.sentences)
         if folder is not None:
-            write_all(folder, table)
+            write_all(folder, table, listed, recording)
     return table
 
 
@@ -246,8 +254,8 @@ def about(listed: ListedController) -> dict[str, Any]:
     return {"kind": listed.kind, "tier": listed.tier, **({} if listed.at_most is None else {RUNS: listed.at_most})}
 
 
-def write_all(folder: Path, table: BenchmarkTable) -> None:
-    """Tables, heat map and page."""
+def write_all(folder: Path, table: BenchmarkTable, listed: Sequence[ListedController], recording: Recording | None = None) -> None:
+    """Tables, heat map and page, whose episode is recorded under those that are ``listed``."""
     from train.benchmark.showing.heat_map import heat_map
     from train.benchmark.showing.page import write_report
     from train.figures.paper import save
@@ -255,4 +263,4 @@ def write_all(folder: Path, table: BenchmarkTable) -> None:
 
     write_files(folder, table)
     save(drawn(heat_map(table)), folder / "heat_map.png")
-    write_report(folder / "report.html", table)
+    write_report(folder / "report.html", table, listed, recording)

@@ -20,9 +20,11 @@ RULE = (
     "least interquartile mean of J / J₀ over the others, among those that are the same everywhere: a controller made from what "
     "it is told of a scenario is told nothing there. A name in brackets was not chosen: it has the least J on these very seeds, "
     "which favours it.\n\n"
-    "Ahead: the agent's J is below that of every classical controller told no more. Behind: the J of the "
-    "chosen classical controller is below that of every agent. Each by the paired interval. The hardest is the classical "
-    "controller that the agent is least clearly ahead of."
+    "Ahead: the agent's J is below that of every classical controller told no more. Behind: the J of the chosen classical "
+    "controller is below that of every agent. Each by the paired interval, which is not corrected for the number of scenarios. "
+    "The column beside it has the verdict that is left when all scenarios are judged together, at 5 % by Holm's method. The "
+    "hardest is the classical controller that the agent is least clearly ahead of. Where its whole interval is above zero, it has "
+    "overtaken the agent: that makes no verdict by itself, because which controller does so is seen on these very seeds only."
 )
 """How agents and laws are compared, for whoever shows it."""
 
@@ -55,7 +57,11 @@ class Contest:
     """The law that the agent is least clearly ahead of."""
     least_clear: Estimate
     """J / J₀ of the agent less that law's."""
+    overtaken: bool
+    """Whether any law is below the agent, by the paired interval."""
     verdict: str
+    doubt: float
+    """p value of the pair that the verdict hangs on; 1 where there is none."""
 
 
 @lru_cache(maxsize=1)
@@ -78,9 +84,33 @@ def _contest(scenario: str, rows: Sequence[Row], chosen: Choice | None) -> Conte
     law, law_chosen = _champion(laws, "" if chosen is None else chosen.name("laws", scenario))
     gaps = [(other, gap(agent, other)) for other in laws]
     hardest, least_clear = max(gaps, key=lambda each: each[1].high)
-    behind = all(gap(other, law).low > 0.0 for other in agents)
-    verdict = AHEAD if least_clear.high < 0.0 else BEHIND if behind else LEVEL
-    return Contest(scenario, agent, law, agent_chosen, law_chosen, gap(agent, law), hardest, least_clear, verdict)
+    nearest, least_behind = min(((other, gap(other, law)) for other in agents), key=lambda each: each[1].low)
+    verdict = AHEAD if least_clear.high < 0.0 else BEHIND if least_behind.low > 0.0 else LEVEL
+    pair = {AHEAD: (agent, hardest), BEHIND: (nearest, law)}.get(verdict)
+    return Contest(
+        scenario,
+        agent,
+        law,
+        agent_chosen,
+        law_chosen,
+        gap(agent, law),
+        hardest,
+        least_clear,
+        any(each.low > 0.0 for _, each in gaps),
+        verdict,
+        1.0 if pair is None else _doubt(*pair),
+    )
+
+
+def corrected(found: Sequence[Contest]) -> list[str]:
+    """The verdicts that are left when all scenarios are judged together."""
+    holds = statistics.rejected([each.doubt for each in found])
+    return [each.verdict if held else LEVEL for each, held in zip(found, holds, strict=True)]
+
+
+def _doubt(row: Row, other: Row) -> float:
+    assert row.cost is not None and other.cost is not None
+    return statistics.doubt(row.cost, other.cost)
 
 
 def _champion(rows: Sequence[Row], name: str) -> tuple[Row, bool]:

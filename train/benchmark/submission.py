@@ -14,7 +14,7 @@ from beamenv.configuration import Count, FileName, Flag, Number, Refused, Text, 
 from beamenv.configuration.files import of_file
 from beamenv.knowledge import TRUTH
 from train.benchmark.bench import Setting
-from train.benchmark.campaign import Progress, checked_progress, jobs_of, of_listed, read_scenarios
+from train.benchmark.campaign import Progress, Recording, checked_progress, jobs_of, of_listed, read_scenarios
 from train.benchmark.leaderboard import NAME, Entry, check_entry, enter
 from train.benchmark.listed import ListedController, agents, listed_controllers, of_folder
 from train.benchmark.score import SPLITS, aggregates
@@ -55,6 +55,7 @@ def submit(
     jobs: int | None = None,
     cluster: str | None = None,
     progress: Progress | None = None,
+    recording: Recording | None = None,
 ) -> tuple[Entry, BenchmarkTable]:
     """Run an entry in all scenarios beside no control, LQG and the clairvoyant law, and append its row to the leaderboard.
 
@@ -64,7 +65,7 @@ def submit(
     - ``folder``: where the run's cells, tables and page are written; an earlier one's are resumed.
     - ``tier``: of information, 0, 1 or 2; what the entry says of itself if None, and else ``LEARNT``.
     - ``overwrite``: whether to replace another entry of this name.
-    - ``jobs``, ``cluster``: who measures, as in ``benchmark``.
+    - ``jobs``, ``cluster``: who measures, as in ``benchmark``; so are ``progress`` and ``recording``.
 
     Raises ValueError of one sentence, and leaves the leaderboard as it is, for what is none of these, an entry of tier 3, one that
     is on the leaderboard already, and one that could not be measured in every scenario.
@@ -87,7 +88,14 @@ def submit(
         check_folder(folder)
     beside = [each for each in listed_controllers([CLAIRVOYANT], {}, [], False) if each.name != listed.name]
     table = of_listed(
-        [*beside, listed], SCENARIOS, SEEDS, folder, workers=workers, arguments=ENVIRONMENT, progress=checked_progress(progress)
+        [*beside, listed],
+        SCENARIOS,
+        SEEDS,
+        folder,
+        workers=workers,
+        arguments=ENVIRONMENT,
+        progress=checked_progress(progress),
+        recording=recording,
     )
     row = Entry({**measured(table, listed), "training_seconds": trained, "digest": mark, **today()})
     enter(place, row, overwrite)

@@ -178,21 +178,26 @@ def explore(
 ) -> None:
     """Serve a page that shows a blade and its LQG, and redraws what its controls change. Ctrl-C ends it.
 
-    Frequencies, mode shapes, damping, step response, poles, margins, Bode diagram and singular values, by the blade's geometry,
-    plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file for --blade.
+    Section, frequencies, mode shapes, damping, step response, poles, margins, sensitivity, Bode diagram and singular values, by
+    the blade's geometry, plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file
+    for --blade.
     """
     with one_sentence():
         check_names(preset, blade=blade)
         from dataclasses import replace
 
+        from rich.console import Console
+
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
         from train.explore import serve
 
-        base = blade_config(preset, load_config(blade) if blade else None)
-        server = serve(port, host, base if speed is None else replace(base, speed=speed))
-    name = f"[{host}]" if ":" in host else host
-    say(f"http://{name}:{server.port} (Ctrl-C ends it)")
+        with Console(stderr=True).status("building the blade"):
+            base = blade_config(preset, load_config(blade) if blade else None)
+            name = Path(blade).name if blade else preset
+            server = serve(port, host, base if speed is None else replace(base, speed=speed), name)
+    place = f"[{host}]" if ":" in host else host
+    say(f"open http://{place}:{server.port} in a browser (Ctrl-C ends it)")
     server.serve_forever()
 
 

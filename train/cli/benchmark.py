@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TaskID, TextColumn, TimeRemainingColumn
 
 from beamenv.configuration.files import ENDINGS, content_of
 from train.cli.bars import Bars
@@ -171,7 +171,7 @@ def entered(submit: str, asked: Asked, folder: Path | None, docs: Path | None, a
     board = Path("results") if docs is None else docs
     home = default_folder((), ("submit", submit), SEEDS, ()) if folder is None else folder
     with _Bar() as bar:
-        entry, table = run(submit, board, folder=home, progress=bar.show, **arguments)
+        entry, table = run(submit, board, folder=home, progress=bar.show, recording=bar.record, **arguments)
         bar.end()
     if as_json:
         print_json(finite_row(entry))
@@ -184,7 +184,7 @@ def _measured(**arguments: Any) -> BenchmarkTable:
     from train.benchmark.campaign import benchmark as run
 
     with _Bar() as bar:
-        table = run(**arguments, progress=bar.show)
+        table = run(**arguments, progress=bar.show, recording=bar.record)
         bar.end()
     return table
 
@@ -216,6 +216,7 @@ class _Bar(Bars):
         super().__init__(name, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
         self._task = self._bars.add_task("building the blades", total=None)
         self._begun = False
+        self._page: TaskID | None = None
 
     def show(self, done: int, total: int, cell: object) -> None:
         if not self._begun and done > 1:
@@ -223,6 +224,11 @@ class _Bar(Bars):
         self._begun = True
         name = " ".join(getattr(cell, part) for part in ("scenario", "controller", "run"))
         self.update(self._task, description=name.strip(), completed=done, total=total)
+
+    def record(self, done: int, total: int, name: str) -> None:
+        if self._page is None:
+            self._page = self._bars.add_task("", total=total)
+        self.update(self._page, description=f"report.html: recording {name}", completed=done)
 
     def end(self) -> None:
         """Where no cell was left to be measured, say so."""

@@ -22,13 +22,15 @@ class Progressbar(Bars, Listener):
         super().__init__(
             TextColumn("{task.description:>10}", markup=False),
             BarColumn(),
-            TextColumn("{task.completed:.0f} of {task.total:.0f} " + unit),
-            TextColumn("J / no control {task.fields[cost]}  {task.fields[rate]}"),
+            TextColumn("{task.completed:.0f} of {task.total:.0f} {task.fields[unit]}"),
+            TextColumn("{task.fields[about]}", markup=False),
             TimeRemainingColumn(),
         )
         self._tasks: dict[str, TaskID] = {
-            name: self._bars.add_task(name, total=seconds, start=False, cost="–", rate="") for name, seconds in budget.items()
+            name: self._bars.add_task(name, total=seconds, start=False, unit=unit, about="J / no control –")
+            for name, seconds in budget.items()
         }
+        self._page: TaskID | None = None
 
     def training(self, name: str, budget: float, progress: TrainingProgress) -> None:
         """Move an agent's bar."""
@@ -38,8 +40,7 @@ class Progressbar(Bars, Listener):
         self.update(
             task,
             completed=min(progress.elapsed if self._unit == "s" else progress.updates, budget),
-            cost=f"{progress.cost:.3f}",
-            rate=rate,
+            about=f"J / no control {progress.cost:.3f}  {rate}",
         )
 
     def resumed(self, name: str, finished: bool) -> None:
@@ -49,6 +50,12 @@ class Progressbar(Bars, Listener):
     def evaluated(self, evaluation: Evaluation) -> None:
         """Say how a controller did."""
         self._bars.console.print(f"{evaluation.name:>36}  J / no control {evaluation.relative_cost.value:.3f}", markup=False)
+
+    def recording(self, done: int, total: int, name: str) -> None:
+        """Move the page's bar."""
+        if self._page is None:
+            self._page = self._bars.add_task("report.html", total=total, unit="recordings", about="")
+        self.update(self._page, completed=done, about=name)
 
     def left_out(self, name: str, sentence: str) -> None:
         """Say which law there is not, and why."""

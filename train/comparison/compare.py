@@ -110,6 +110,9 @@ class Listener:
     def evaluated(self, evaluation: Evaluation) -> None:
         """After each controller."""
 
+    def recording(self, done: int, total: int, name: str) -> None:
+        """Before the episode that the page shows is run under a controller."""
+
     def left_out(self, name: str, sentence: str) -> None:
         """Before anything else, of each law that cannot be had of what moves."""
 
@@ -160,7 +163,19 @@ def _compare(comparison: Comparison, folder: Path, listener: Listener) -> list[E
     drawn: list[LinearController] = [laws[name] for name in DRAWN if name in laws]
     write_figures(folder, plant, evaluations, drawn, curves, levels)
     episodes = comparison.environment
-    write_comparison_page(folder, plant, evaluations, {**laws, **agents}, curves, levels, content, episodes, tiers, left_out)
+    write_comparison_page(
+        folder,
+        plant,
+        evaluations,
+        {**laws, **agents},
+        curves,
+        levels,
+        content,
+        episodes,
+        tiers,
+        left_out,
+        listener.recording,
+    )
     return evaluations
 
 

@@ -17,6 +17,7 @@ from train.comparison.figures import clearest_episode, which_episode
 from train.comparison.table import Tiers, caption, cells, headings, notes, ranked
 from train.page import Cell, Lead, LearningCurves, PageContent, RecordedEpisode, Table, record_episode, write_page
 from train.page.lead import COST, blade_in_words, load_in_words
+from train.page.recording import RecordingProgress
 from train.shared.columns import EVALUATION
 
 Array = NDArray[np.float64]
@@ -37,17 +38,18 @@ def write_comparison_page(
     environment: Mapping[str, Any],
     tiers: Tiers = None,
     left_out: Mapping[str, str] = MappingProxyType({}),
+    progress: RecordingProgress | None = None,
 ) -> None:
     """Write ``report.html``; ``controllers`` are in the order of the ``evaluations``, ``curves`` and ``levels`` as in ``figures``.
 
     The blade is shown in the episode of ``figures``, first without control beside the best controller; readers choose among all.
-    A model of one's own, which has no shape, shows the signals of that episode alone.
+    A model of one's own, which has no shape, shows the signals of that episode alone. ``progress`` is called before each recording.
     """
     seed = evaluations[0].episodes.seeds[clearest_episode(evaluations[0])]
     linear = {law.name: law for law in controllers.values() if isinstance(law, LinearController)}
     best = best_rival(evaluations, controllers, tiers)
     ordered = sorted(zip(evaluations, controllers.values(), strict=True), key=lambda each: each[0].relative_cost.value)
-    episode = record_episode(environment, seed, {evaluation.name: law for evaluation, law in ordered}, best.name)
+    episode = record_episode(environment, seed, {evaluation.name: law for evaluation, law in ordered}, best.name, progress)
     content = PageContent(
         title=f"Controllers compared on a {'rotating blade' if episode.has_shape else 'model'}",
         lead=lead(evaluations, best, episode, environment),

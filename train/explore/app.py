@@ -7,12 +7,12 @@ from importlib.resources import files
 from threading import Lock
 from typing import Any
 
-from dash import ClientsideFunction, Dash, Input, Output, State, no_update
+from dash import ClientsideFunction, Dash, Input, Output, State, html, no_update
 from dash.exceptions import DashException
 from werkzeug.exceptions import HTTPException, NotFound
 from werkzeug.wrappers import Response
 
-from train.explore import figures, loop_figures
+from train.explore import along, figures, loop_figures
 from train.explore.blade import CAMPBELL_MODES, blade_of, view
 from train.explore.controls import THESIS_PAGE, Page
 from train.explore.hertz import hertz
@@ -21,7 +21,9 @@ from train.explore.loop import loop
 from train.explore.picture import picture, said
 from train.explore.requests import ANSWERED, OnlyThePage, told
 from train.explore.saved import saved
-from train.explore.tables import cost_note, damping_rows, filter_note, heading, margin_rows
+from train.explore.section_picture import Cut, first_patch, plies_picture, section_picture, section_said
+from train.explore.stoppable import Stopped, stop, stoppable
+from train.explore.tables import along_rows, cost_note, damping_rows, filter_note, heading, margin_rows, peaks, title
 from train.figures.themes import THEMES
 from train.shared.threads import one_thread
 
@@ -29,6 +31,7 @@ SHAPES = tuple(f"shape-{mode}" for mode in range(CAMPBELL_MODES))
 """Ids of the small figures."""
 
 ONE_AT_A_TIME = Lock()
+STOPPED = "Stopped: what is shown is of the values before. Move a control, or reset, to compute again."
 
 PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -53,7 +56,7 @@ def create_app(page: Page = THESIS_PAGE) -> Dash:
         __name__,
         assets_folder=str(files("beamenv.train.explore") / "assets"),
         serve_locally=True,
-        title="beamenv explore",
+        title=f"{page.name} – beamenv explore",
         update_title="",
         compress=False,
     )
@@ -67,6 +70,7 @@ def create_app(page: Page = THESIS_PAGE) -> Dash:
     for asked, busy, outputs, answer in (
         ("wanted", "busy", quick_outputs(page), redraw),
         ("settled", "analysing", thorough_outputs(), analyse),
+        ("stopping", "ending", {"stopped": Output("stopped", "data")}, stop_all),
     ):
         before = set(app.callback_map)
         app.callback(outputs, Input(asked, "data"), running=[(Output(busy, "data"), True, False)], prevent_initial_call=True)(
@@ -83,13 +87,18 @@ def _in_the_browser(app: Dash, page: Page) -> None:
     fields = [field for name, entry in page.controls.items() for field in entry.entries(name)]
     values = [(name, "value") for name in (*page.controls, *fields)]
     triggers = [Input("link", "data"), Input("reset", "n_clicks"), *(Input(*value) for value in values)]
-    kept = [State("about", "data"), State("state", "data")]
+    kept = [State("blade", "data"), State("about", "data"), State("state", "data")]
     for name, outputs, inputs in (
-        ("settle", [*(Output(*value) for value in values), Output("state", "data")], [*triggers, *kept]),
+        (
+            "settle",
+            [*(Output(*value) for value in values), Output("state", "data"), Output("notice", "children")],
+            [*triggers, *kept],
+        ),
         ("newest", Output("wanted", "data"), [Input("state", "data")]),
         ("rested", Output("settled", "data"), [Input("busy", "data"), State("wanted", "data")]),
         ("analysed", Output("named", "data"), [Input("analysing", "data")]),
-        ("copied", Output("done", "children"), [Input("copy", "n_clicks")]),
+        ("ended", Output("stopping", "data"), [Input("stop", "n_clicks"), State("state", "data")]),
+        ("copied", Output("done", "children"), [Input("copy", "n_clicks"), State("blade", "data")]),
         ("saved", Output("done", "children", allow_duplicate=True), [Input("save", "n_clicks"), State("file", "data")]),
     ):
         app.clientside_callback(ClientsideFunction("explore", name), outputs, *inputs, prevent_initial_call=name == "saved")
@@ -110,6 +119,7 @@ def theme() -> str:
 def quick_outputs(page: Page = THESIS_PAGE) -> dict[str, Any]:
     """What is given while a control moves, by the names that ``redraw`` uses."""
     return {
+        "title": Output("title", "children"),
         "hertz": [Output("speed-value", "children")] if "speed" in page.ranges else [],
         "message": Output("message", "children"),
         "results": Output("results", "hidden"),
@@ -117,6 +127,11 @@ def quick_outputs(page: Page = THESIS_PAGE) -> dict[str, Any]:
         "save": Output("save", "children"),
         "picture": Output("picture", "src"),
         "said": Output("picture", "alt"),
+        "section": Output("section", "src"),
+        "plies": Output("plies", "src"),
+        "walls": Output("walls", "children"),
+        "planform": Output("planform", "figure"),
+        "along": Output("along", "children"),
         "campbell": Output("campbell", "figure"),
         "response": Output("response", "figure"),
         "damping": Output("damping", "children"),
@@ -133,6 +148,8 @@ def thorough_outputs() -> dict[str, Any]:
         "poles": Output("poles", "figure"),
         "bode": Output("bode", "figure"),
         "singular": Output("singular", "figure"),
+        "sensitivity": Output("sensitivity", "figure"),
+        "peaks": Output("peaks", "children"),
         "margins": Output("margins", "children"),
         "cost": Output("cost", "children"),
     }
@@ -145,19 +162,25 @@ def redraw(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:
     limit is the whole process'.
     """
     with ONE_AT_A_TIME, one_thread():
-        return drawn(values, page)
+        try:
+            return stoppable(lambda: drawn(values, page))
+        except Stopped:
+            return {**_kept(page), "message": STOPPED}
 
 
 def drawn(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]:
     """What ``redraw`` gives, on as many threads as there are."""
-    kept = {name: [no_update] * len(each) if isinstance(each, list) else no_update for name, each in quick_outputs(page).items()}
+    kept = _kept(page)
     try:
         wanted = page.settings(values)
         seen, blade = view(wanted, page.base), blade_of(wanted, page.base)
+        at = first_patch(page.base) if wanted.station is None else wanted.station
+        cut = Cut.at(blade.config, blade.beam, at)
     except ValueError as error:
         return {**kept, "message": str(error), "results": True, "file": None}
     name, text = saved(blade.config)
     return {
+        "title": title(seen, page.name),
         "hertz": [hertz(seen.speed)] * len(kept["hertz"]),
         "message": "",
         "results": False,
@@ -165,6 +188,11 @@ def drawn(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]
         "save": f"Save as {name}",
         "picture": picture(blade.config, blade.beam),
         "said": said(blade.config),
+        "section": section_picture(cut),
+        "plies": plies_picture(cut),
+        "walls": [html.Li(line) for line in section_said(cut)],
+        "planform": along.planform(blade.beam, at),
+        "along": along_rows(blade.beam),
         "campbell": figures.campbell_diagram(seen),
         "response": figures.step_response(seen),
         "damping": damping_rows(seen),
@@ -174,10 +202,23 @@ def drawn(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]
     }
 
 
+def _kept(page: Page) -> dict[str, Any]:
+    return {name: [no_update] * len(each) if isinstance(each, list) else no_update for name, each in quick_outputs(page).items()}
+
+
+def stop_all(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:  # noqa: ARG001 - as the page asks for all else
+    """End what is being computed."""
+    stop()
+    return {"stopped": None}
+
+
 def analyse(page: Page = THESIS_PAGE, **values: Any) -> dict[str, Any]:
     """What is said of the loop for the controls' values; where there is none, one sentence beside what was said last."""
     with ONE_AT_A_TIME, one_thread():
-        return analysed(values, page)
+        try:
+            return stoppable(lambda: analysed(values, page))
+        except Stopped:
+            return {**dict.fromkeys(thorough_outputs(), no_update), "lost": STOPPED}
 
 
 def analysed(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, Any]:
@@ -191,6 +232,8 @@ def analysed(values: Mapping[str, Any], page: Page = THESIS_PAGE) -> dict[str, A
         "poles": loop_figures.poles(closed),
         "bode": loop_figures.bode(closed),
         "singular": loop_figures.singular_values(closed),
+        "sensitivity": loop_figures.sensitivity(closed),
+        "peaks": peaks(closed),
         "margins": margin_rows(closed),
         "cost": cost_note(closed),
     }

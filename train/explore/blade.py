@@ -19,18 +19,21 @@ from beamenv.structure import RotatingBeam
 from beamenv.structure.sweep import frequency_sweep
 from train.explore.loops import Damping, StepResponses, damping, step_responses
 from train.explore.settings import Settings
+from train.explore.units import nearest_round, one_digit
 
 Array = NDArray[np.float64]
 
-HIGHEST_SPEED = 400.0
-"""rad/s: where the Campbell diagram ends."""
-CAMPBELL_SPEEDS = np.linspace(0.0, HIGHEST_SPEED, 21)
+ABOVE_ITS_OWN, ABOVE_THE_LOWEST = 2.0, 4.0
+"""How far the Campbell diagram goes at least: times the blade's own speed, and times its lowest frequency at rest."""
+SPEEDS = 21
 CAMPBELL_MODES = 6
 STATIONS = 33
 MOTIONS = ("lag u", "flap v", "extension s", "twist φ·c/2")
 """Twist as the displacement of the root chord's ends, so that all four are lengths."""
-STEP_DURATION = 0.5
-"""s."""
+PERIODS = 14.0
+"""Of the lowest mode, about: how long step responses are."""
+MOST_SAMPLES = 20_000
+"""Of a step response."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,8 +44,10 @@ class View:
     """rad/s."""
     critical_speed: float
     """rad/s."""
+    speeds: Array
+    """(k,), rad/s, of the Campbell diagram."""
     campbell: Array
-    """(speeds, modes), rad/s, at ``CAMPBELL_SPEEDS``."""
+    """(k, modes), rad/s, at ``speeds``."""
     natural_frequencies: Array
     """(n,), rad/s, with gyroscopic coupling and all trial functions."""
     families: tuple[str, ...]
@@ -66,13 +71,14 @@ def view(settings: Settings, base: BladeConfig = THESIS) -> View:
     return View(
         speed=config.speed,
         critical_speed=beam.critical_speed,
-        campbell=campbell(beam),
+        speeds=campbell_speeds(base),
+        campbell=campbell(beam, highest_speed(base)),
         natural_frequencies=modes.natural_frequencies,
         families=modes.families,
         stations=stations,
         shapes=shapes,
         damping=damping(plant, held, K, L),
-        response=step_responses(plant, held, K, L, line_load, STEP_DURATION),
+        response=step_responses(plant, held, K, L, line_load, step_duration(base)),
     )
 
 
@@ -100,9 +106,28 @@ def width(beam: RotatingBeam) -> float:
 
 
 @lru_cache(maxsize=16)
-def campbell(beam: RotatingBeam) -> Array:
+def highest_speed(base: BladeConfig) -> float:
+    """rad/s: where the Campbell diagram and the slider of the speed end, a number of one digit."""
+    at_rest = float(built(base).beam.natural_frequencies(0.0, 1)[0])
+    return one_digit(max(ABOVE_ITS_OWN * base.speed, ABOVE_THE_LOWEST * at_rest))
+
+
+def campbell_speeds(base: BladeConfig) -> Array:
+    """(k,), rad/s, from rest."""
+    return np.linspace(0.0, highest_speed(base), SPEEDS)
+
+
+@lru_cache(maxsize=16)
+def step_duration(base: BladeConfig) -> float:
+    """s: some periods of the blade's lowest mode, 1, 2 or 5 times a power of ten."""
+    lowest = float(built(base).beam.natural_frequencies(base.speed, 1)[0])
+    return nearest_round(min(2.0 * np.pi * PERIODS / lowest, MOST_SAMPLES * base.control_interval))
+
+
+@lru_cache(maxsize=16)
+def campbell(beam: RotatingBeam, highest: float) -> Array:
     """Natural frequencies (speeds, modes), rad/s."""
-    return sealed(frequency_sweep(beam, CAMPBELL_SPEEDS, CAMPBELL_MODES))
+    return sealed(frequency_sweep(beam, np.linspace(0.0, highest, SPEEDS), CAMPBELL_MODES))
 
 
 def mode_shapes(beam: RotatingBeam, coefficients: NDArray[Any], half_chord: float) -> tuple[Array, NDArray[np.complex128]]:

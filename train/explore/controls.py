@@ -6,27 +6,37 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, get_args
+from typing import Any, TypeAlias, get_args
 
 from beamenv.blade.config import BladeConfig
+from beamenv.blade.files import departures
 from beamenv.blade.layouts import SIDES, Side
 from beamenv.blade.presets import THESIS
-from beamenv.configuration import Choice, Number, Numbers, checked
+from beamenv.configuration import Choice, Number, Numbers, Text, checked
+from beamenv.configuration.cache import key_of
 from beamenv.patches.group import PatchGroup
-from train.explore.blade import HIGHEST_SPEED, built
+from train.explore.along import as_table, as_text
+from train.explore.blade import built, highest_speed
+from train.explore.section_picture import first_patch
 from train.explore.settings import Direction, Settings
+from train.explore.units import unit_of
 
 Value = float | list[float] | str
+Control: TypeAlias = "Range | Options | Words"
 
 ROUND_OFF = 1e-6
 """How far a slider's last step may lie beyond its end, over the end's size where that is more than 1."""
 STEPS = 153
 """Of a slider for patches: the thesis' four, 51 of them apart, lie on its grid. Dash 4 counts what handles are apart in steps,
 whatever it says."""
+SPEED_STEPS = 80
 PER_DECADE = 20
 """Steps of a logarithmic slider."""
 BLADE, PATCHES, NOISE, WEIGHTS, LOAD = "Blade", "Patches", "Noise", "Weights of LQG", "Load"
 GROUPS = (BLADE, PATCHES, NOISE, WEIGHTS, LOAD)
+TABLES = {"twist_table": "twist table: share of span, degrees", "chord_table": "chord table: share of span, size over the root's"}
+SHOWN = "Shown"
+"""Group of what changes the picture and not the blade."""
 PAIR = ("actuator", "sensor")
 
 
@@ -95,23 +105,55 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True)
+class Words:
+    """A table that is written as text; empty for none."""
+
+    label: str
+    name: str
+    value: str
+    group: str = BLADE
+
+    @property
+    def kind(self) -> Text:
+        """What its value may be."""
+        return Text()
+
+    def setting(self, value: Any) -> Any:
+        """The table."""
+        return as_table(self.name, value)
+
+    def entries(self, name: str) -> list[str]:  # noqa: ARG002 - as a Range has it
+        """It takes no single numbers."""
+        return []
+
+
+@dataclass(frozen=True, slots=True)
 class Page:
     """The blade that a page begins with, and its controls: of what it has, and has in one way that a control can change."""
 
     base: BladeConfig
     ranges: Mapping[str, Range]
     choices: Mapping[str, Options]
+    tables: Mapping[str, Words]
+    name: str = "blade"
+    """What the blade is called: a preset, or a file."""
 
     @classmethod
-    def of(cls, base: BladeConfig) -> Page:
-        """That of a blade."""
-        beam = base.beam
-        found = {"ply_angle_deg": _plies(base), "speed": _within("rotor speed", "rad/s", 0.0, HIGHEST_SPEED, 5.0, base.speed)}
-        if beam.twist_table is None:
-            found["pretwist_deg"] = _within("pretwist", "°", 0.0, 90.0, 1.0, beam.pretwist_deg)
-        if beam.chord_table is None:
-            found["taper"] = _within("taper, root chord over tip chord", "", 1.0, 3.0, 0.05, beam.taper)
+    def of(cls, base: BladeConfig, name: str = "blade") -> Page:
+        """That of a blade, and what it is called."""
+        beam, highest = base.beam, highest_speed(base)
+        found = {
+            "ply_angle_deg": _plies(base),
+            "speed": _within("rotor speed", "rad/s", 0.0, highest, highest / SPEED_STEPS, base.speed),
+            "pretwist_deg": _within(
+                "pretwist", "°", min(0.0, beam.pretwist_deg), max(90.0, beam.pretwist_deg), 1.0, beam.pretwist_deg
+            ),
+            "taper": _within("taper, root chord over tip chord", "", min(1.0, beam.taper), max(3.0, beam.taper), 0.05, beam.taper),
+        }
         found |= dict(_all_patches(base))
+        length = unit_of(0.1 * beam.length, "m")
+        last = _rounded(length.per * beam.length)
+        where = _rounded(length.per * first_patch(base))
         found |= {
             "white_load": _decades("white load, standard deviation", "N/m", base.white_load, NOISE, 100.0),
             "sensor_noise_fraction": _decades(
@@ -120,18 +162,27 @@ class Page:
             "strain_energy_weight": _decades("Q: weight of strain energy", "×", 1.0, WEIGHTS, 1000.0),
             "kinetic_energy_weight": _decades("Q: weight of kinetic energy", "×", 1.0, WEIGHTS, 1000.0),
             "actuator_energy_weight": _decades("R: weight of the actuators' energy", "×", 1.0, WEIGHTS, 1000.0),
+            "station": Range("section at, from the root", length.name, 0.0, last, last / STEPS, where, 0, SHOWN, times=length.per),
         }
         blade = built(base)
-        choices = {"load": Options(f"step load of {blade.reference_load:.3g} N/m in", get_args(Direction), "flap")}
-        for name, count in zip(PAIR, (blade.plant.B.shape[1], len(blade.plant.C)), strict=True):
-            choices[name] = Options(name, tuple(str(k + 1) for k in range(count)), "1", "Bode")
-        ranges = {name: entry for name, entry in found.items() if entry is not None}
-        return cls(base, MappingProxyType(ranges), MappingProxyType(choices))
+        load = unit_of(blade.reference_load, "N/m")
+        choices = {"load": Options(f"step load of {load(blade.reference_load, 3)} in", get_args(Direction), "flap")}
+        for end, count in zip(PAIR, (blade.plant.B.shape[1], len(blade.plant.C)), strict=True):
+            choices[end] = Options(end, tuple(str(k + 1) for k in range(count)), "1", "Bode")
+        ranges = {each: entry for each, entry in found.items() if entry is not None}
+        whole = {each: Words(label, each, as_text(getattr(beam, each))) for each, label in TABLES.items()}
+        tables = whole if base.model != "thesis" else {}
+        return cls(base, MappingProxyType(ranges), MappingProxyType(choices), MappingProxyType(tables), name)
 
     @property
-    def controls(self) -> Mapping[str, Range | Options]:
-        """Sliders and choices by their ids."""
-        return {**self.ranges, **self.choices}
+    def key(self) -> str:
+        """The blade's name with some digits that tell it from every other blade, as the page's link says it."""
+        return f"{self.name}-{key_of(departures(self.base))[:8]}"
+
+    @property
+    def controls(self) -> Mapping[str, Control]:
+        """Sliders, choices and tables by their ids."""
+        return {**self.ranges, **self.choices, **self.tables}
 
     @property
     def start(self) -> dict[str, Value]:
@@ -193,15 +244,20 @@ def _all_patches(base: BladeConfig) -> Iterator[tuple[str, Range | None]]:
 
 def _patches(base: BladeConfig, side: Side, group: PatchGroup, number: str) -> Range | None:
     length = base.beam.length
-    last = round(1e3 * (group.outermost * length - group.length), 6)
-    step = round(last / STEPS, 6)
+    unit = unit_of(0.1 * length, "m")
+    last = _rounded(unit.per * (group.outermost * length - group.length))
+    step = _rounded(last / STEPS)
     where = {"top": "on top", "bottom": "below"}.get(group.wall, f"on the {group.wall} wall")
-    edges = [round(1e3 * edge, 6) for edge in group.at(side, length)]
+    edges = [_rounded(unit.per * edge) for edge in group.at(side, length)]
     if step <= 0.0:
         return None
-    apart = math.ceil(1e3 * group.length / step)
-    return Range(f"{side}{number} {where}, from the root at", "mm", 0.0, last, step, edges, apart, PATCHES, times=1e3)
+    apart = math.ceil(unit.per * group.length / step)
+    return Range(f"{side}{number} {where}, from the root at", unit.name, 0.0, last, step, edges, apart, PATCHES, times=unit.per)
 
 
-THESIS_PAGE = Page.of(THESIS)
+def _rounded(value: float) -> float:
+    return round(value, 6)
+
+
+THESIS_PAGE = Page.of(THESIS, "thesis")
 RANGES = THESIS_PAGE.ranges

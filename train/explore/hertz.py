@@ -6,21 +6,33 @@ from typing import Any
 
 import numpy as np
 
+from train.explore.units import Unit, number
+
 TURN = 2.0 * np.pi
 TICKS = 5
 """Of a linear axis, about."""
+PLAIN = Unit("rad/s", 1.0)
 ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
 def hertz(speed: float) -> str:
     """Of a rotor speed in rad/s: in Hz and in revolutions per minute."""
-    return f"{speed / TURN:.1f} Hz, {60.0 * speed / TURN:.0f} rpm"
+    turns = 60.0 * speed / TURN
+    return (
+        f"{number(speed / TURN, 3)} Hz, {turns:.0f} rpm"
+        if turns >= 100.0
+        else f"{number(speed / TURN, 3)} Hz, {number(turns, 3)} rpm"
+    )
 
 
-def beside(axis: str, low: float, high: float, logarithmic: bool = False) -> dict[str, Any]:
-    """An axis of plotly in Hz on the other side of one in rad/s, "x" or "y", that shows ``low`` to ``high`` and zooms with it."""
+def beside(axis: str, low: float, high: float, logarithmic: bool = False, unit: Unit = PLAIN, cycles: str = "Hz") -> dict[str, Any]:
+    """An axis of plotly in Hz on the other side of one in rad/s, "x" or "y", that shows ``low`` to ``high`` and zooms with it.
+
+    Both ends are in rad/s; the axis may be in another ``unit``, and its own in as many ``cycles``.
+    """
+    low, high = unit.per * low, unit.per * high
     ticks = _decades(low / TURN, high / TURN) if logarithmic else _even(high / TURN)
-    side, title = ("top", "Hz") if axis == "x" else ("right", "Hz")
+    side, title = ("top", cycles) if axis == "x" else ("right", cycles)
     return {
         "overlaying": axis,
         "matches": axis,

@@ -51,6 +51,8 @@ class Loop:
     """(k, min(m, p)): singular values from voltages to readings, full scales per drive limit, without control."""
     load_gains: Mapping[str, Array]
     """(k,), m per N/m: the largest singular value from line loads to the tip, by the controller."""
+    sensitivity: Mapping[str, Array]
+    """(k,), by where the loops are broken: the largest singular value of S, in units of the drive limits or of full scales."""
     pair: tuple[int, int]
     """Numbers of the voltage and the reading of the Bode diagram."""
 
@@ -77,6 +79,7 @@ def loop(settings: Settings, base: BladeConfig = THESIS) -> Loop:
         bode={name: each[:, reading - 1, voltage - 1] for name, each in responses.items()},
         plant_gains=np.asarray(np.linalg.svd(responses[idle.name], compute_uv=False), dtype=np.float64),
         load_gains={name: _load_gains(plant, each, angles) for name, each in laws.items()},
+        sensitivity=_sensitivity(plant, law, angles),
         pair=(voltage, reading),
     )
 
@@ -94,6 +97,17 @@ def _answers(plant: Plant, law: LinearController, angles: Array) -> Complex:
     added = _padded(held.B * drive_limit(plant), law)
     seen = _padded((held.C / plant.sensor_full_scale[:, None]).T, law).T
     return frequency_response(closed_loop(held, law)[0], added, seen, np.zeros((len(seen), added.shape[1])), angles)
+
+
+def _sensitivity(plant: Plant, law: LinearController, angles: Array) -> dict[str, Array]:
+    """(k,): of S = (I − K P)⁻¹ at the voltages and (I − P K)⁻¹ at the readings."""
+    held, drive, full = sampled(plant, law), drive_limit(plant), plant.sensor_full_scale
+    (m, p), K = (held.B.shape[1], len(held.C)), law.measurement_gain
+    A, B = law.transition + law.voltage_input @ law.state_gain, law.measurement_input + law.voltage_input @ K
+    P = frequency_response(held.A, held.B * drive, held.C / full[:, None], np.zeros((p, m)), angles)
+    answer = frequency_response(A, B * full, law.state_gain / drive[:, None], K * full / drive[:, None], angles)
+    loops = dict(zip((where for where, _ in PLACES), (answer @ P, P @ answer), strict=True))
+    return {where: 1.0 / np.linalg.svd(np.eye(each.shape[-1]) - each, compute_uv=False)[:, -1] for where, each in loops.items()}
 
 
 def _load_gains(plant: Plant, law: LinearController, angles: Array) -> Array:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from train.explore.figures import Figure, shown
+from train.explore.figures import Figure, shown, with_room_for_its_legend
 from train.explore.hertz import beside, carrier
 from train.explore.loop import Array, Complex, Loop
-from train.figures.figure import Curve, Look, Panel
-from train.figures.palette import NEUTRAL, PALETTE
+from train.explore.units import angular, unit_of
+from train.figures.figure import Curve, Look, Marker, Panel
+from train.figures.palette import LINES, NEUTRAL, PALETTE, colour
 from train.figures.panels import pole_panel
 
-ACROSS = "frequency, rad/s"
 HALF_A_TURN = 180.0
+HERTZ_ROOM = 46
+"""Pixels that the axis in Hz takes."""
+STEEP = 20.0
+"""From a peak of S as high on it is drawn in its logarithm."""
 MOST_TICKS = 4
 """Of a logarithmic axis, about."""
 BY_CONTROLLER = ((Look(NEUTRAL, 1.2), "solid"), (Look(PALETTE[0], 2.2), "dashed"))
@@ -29,13 +34,13 @@ def poles(loop: Loop) -> Figure:
 
 def bode(loop: Loop) -> Figure:
     """Magnitude and phase from one voltage to one reading."""
-    magnitudes, phases = [], []
+    frequencies, magnitudes, phases = _scaled(loop), [], []
     for (name, response), (look, line) in zip(loop.bode.items(), BY_CONTROLLER, strict=True):
-        magnitudes.append(Curve(loop.frequencies, np.abs(response), name, line, look))
-        phases.append(Curve(loop.frequencies, _phase(response), name, line, look, listed=False))
+        magnitudes.append(Curve(frequencies, np.abs(response), name, line, look))
+        phases.append(Curve(frequencies, _phase(response), name, line, look, listed=False))
     panels = [
-        Panel("", "", "reading per voltage", magnitudes, logarithmic=True),
-        Panel("", ACROSS, "phase, °", phases, y_limits=(-HALF_A_TURN, HALF_A_TURN)),
+        Panel("", "", "magnitude", magnitudes, logarithmic=True),
+        Panel("", "", "phase, °", phases, y_limits=(-HALF_A_TURN, HALF_A_TURN)),
     ]
     figure = over_frequency(panels, loop)
     figure["layout"]["yaxis2"] |= {"tickvals": [-180, -90, 0, 90, 180]}
@@ -51,36 +56,58 @@ def _phase(response: Complex) -> Array:
 
 def singular_values(loop: Loop) -> Figure:
     """From voltages to readings, and from line loads to the tip."""
+    frequencies = _scaled(loop)
     own = [
-        Curve(loop.frequencies, gains, "voltages to readings", "solid", BY_CONTROLLER[0][0], listed=False)
+        Curve(frequencies, gains, "voltages to readings", "solid", BY_CONTROLLER[0][0], listed=False)
         for gains in loop.plant_gains.T
     ]
+    first = float(next(iter(loop.load_gains.values()))[0])
+    unit = unit_of(first, "m")
     tips = [
-        Curve(loop.frequencies, 1e6 * gains, name, line, look)
+        Curve(frequencies, unit.per * gains, name, line, look)
         for (name, gains), (look, line) in zip(loop.load_gains.items(), BY_CONTROLLER, strict=True)
     ]
     panels = [
-        Panel("", "", "readings per voltages", own, logarithmic=True),
-        Panel("", ACROSS, "tip per load, µm m/N", tips, logarithmic=True),
+        Panel("", "", "readings", own, logarithmic=True),
+        Panel("", "", f"tip, {unit.name} per N/m", tips, logarithmic=True),
     ]
     return over_frequency(panels, loop)
 
 
+def sensitivity(loop: Loop) -> Figure:
+    """The largest singular value of S where the loops are broken, with its peaks, beside 1."""
+    frequencies, curves = _scaled(loop), []
+    for k, (where, gains) in enumerate(loop.sensitivity.items()):
+        look, at = Look(colour(k), 2.0), int(np.argmax(gains))
+        curves.append(Curve(frequencies, gains, f"at the {where}", LINES[k], look))
+        peak = replace(look, marker=Marker(("circle", "square")[k], 10))
+        curves.append(Curve(frequencies[at : at + 1], gains[at : at + 1], f"at the {where}", "points", peak, listed=False))
+    one = Curve(frequencies[[0, -1]], np.ones(2), "neither more nor less", "dotted", Look(NEUTRAL, 1.2))
+    highest = max(float(gains.max()) for gains in loop.sensitivity.values())
+    steep = highest > STEEP
+    limits = (None, None) if steep else (0.0, 1.1 * highest)
+    return over_frequency([Panel("", "", "largest singular value", [*curves, one], steep, y_limits=limits)], loop)
+
+
+def _scaled(loop: Loop) -> Array:
+    return angular(float(loop.frequencies[-1]))[0].per * loop.frequencies
+
+
 def over_frequency(panels: Sequence[Panel], loop: Loop) -> Figure:
     """Panels over one logarithmic axis of frequency, with Hz above them."""
-    figure = shown(list(panels), gap=0.12, even=False)
     low, high = float(loop.frequencies[0]), float(loop.frequencies[-1])
+    unit, cycles = angular(high)
+    named = [*panels[:-1], replace(panels[-1], x_label=f"frequency, {unit.name}")]
+    figure = shown(named, gap=0.12, even=False)
     layout: dict[str, Any] = figure["layout"]
     decades = {"type": "log", "dtick": 1, "minor": {"showgrid": True}, "exponentformat": "none"}
-    layout["xaxis"] |= {**decades, "range": [float(np.log10(low)), float(np.log10(high))]}
-    layout["xaxis2"] = {**beside("x", low, high, logarithmic=True), "anchor": "y"}
-    for name, panel in zip(("yaxis", "yaxis2"), panels, strict=True):
-        layout[name] |= {"automargin": True} | ({"dtick": _decades_a_tick(panel)} if panel.logarithmic else {})
-    layout["margin"] = {**layout["margin"], "t": 76}
-    layout["legend"] = {**layout["legend"], "yref": "container", "y": 1.0, "yanchor": "top"}
+    layout["xaxis"] |= {**decades, "range": [float(np.log10(unit.per * each)) for each in (low, high)]}
+    layout["xaxis2"] = {**beside("x", low, high, logarithmic=True, unit=unit, cycles=cycles), "anchor": "y"}
+    for name, panel in zip(("yaxis", "yaxis2"), panels, strict=False):
+        layout[name] |= {"dtick": _decades_a_tick(panel)} if panel.logarithmic else {}
     first = panels[0].curves[0].y
-    figure["data"].append(carrier("x", low, float(first[0])))
-    return figure
+    figure["data"].append(carrier("x", unit.per * low, float(first[0])))
+    return with_room_for_its_legend(figure, HERTZ_ROOM)
 
 
 def _decades_a_tick(panel: Panel) -> int:

@@ -36,7 +36,12 @@ SHADES = 8
 
 def picture(config: BladeConfig, beam: RotatingBeam) -> str:
     """The picture as the address of an image that stands in itself."""
-    return "data:image/svg+xml;base64," + b64encode(drawn(config, beam).encode()).decode()
+    return as_address(drawn(config, beam))
+
+
+def as_address(drawing: str) -> str:
+    """An SVG as the address of an image that stands in itself."""
+    return "data:image/svg+xml;base64," + b64encode(drawing.encode()).decode()
 
 
 def said(config: BladeConfig) -> str:
@@ -45,7 +50,7 @@ def said(config: BladeConfig) -> str:
     for side in SIDES:
         for group in config.patches.groups(side):
             edges = ", ".join(f"{1e3 * edge:.0f}" for edge in group.at(side, beam.length))
-            parts.append(f"{_name(group)} {side} on the {group.wall} wall at {edges} mm from the root")
+            parts.append(f"{name_of(group)} {side} on the {group.wall} wall at {edges} mm from the root")
     shape = "box" if beam.section is None else beam.section.shape
     twist = "twisted along its span" if beam.twist_table is not None else f"pretwist {beam.pretwist_deg:g}°"
     return f"Blade with a section of the shape {shape}, {beam.length:g} m long, {twist}: {'; '.join(parts)}."
@@ -139,7 +144,7 @@ def _sheets(camera: Camera, patches: Sequence[tuple[PatchGroup, Array]], kind: s
         corners, _ = camera.project(face)
         behind = " behind" if kind == "actuator" and not _is_seen(camera, face) else ""
         x, y = corners.mean(axis=0)
-        yield f'<polygon class="{kind}{behind}" style="--own:{_colour(group)}" points="{_points(corners)}"/>'
+        yield f'<polygon class="{kind}{behind}" style="--own:{colour_of(group)}" points="{_points(corners)}"/>'
         yield f'<text class="{kind}{behind}" x="{x:.1f}" y="{y + 4.0:.1f}">{number}</text>'
 
 
@@ -147,17 +152,36 @@ def _points(corners: Array) -> str:
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in corners)
 
 
-def _name(group: PatchGroup) -> str:
-    return group.material if isinstance(group.material, str) else "other"
+def name_of(group: PatchGroup) -> str:
+    """Of its material."""
+    return group.material if isinstance(group.material, str) else "own"
 
 
-def _colour(group: PatchGroup) -> str:
-    return PATCH_COLOURS.get(_name(group), PATCHES_OF_YOUR_OWN)
+def colour_of(group: PatchGroup) -> str:
+    """Of its material."""
+    return PATCH_COLOURS.get(name_of(group), PATCHES_OF_YOUR_OWN)
 
 
 def key(config: BladeConfig) -> Mapping[str, str]:
     """The colour of each kind of patch there is."""
-    return {_name(group): _colour(group) for side in SIDES for group in config.patches.groups(side)}
+    return {name_of(group): colour_of(group) for side in SIDES for group in config.patches.groups(side)}
+
+
+def which(config: BladeConfig, name: str) -> str:
+    """The numbers of the patches of a kind: actuators 1–4, sensors 1–4."""
+    found = []
+    for side in SIDES:
+        groups = config.patches.groups(side)
+        owners = [name_of(group) for group in groups for _ in range(group.count)]
+        numbers = [k for k, owner in enumerate(owners, start=1) if owner == name]
+        if numbers:
+            found.append(f"{side} {_numbers(numbers)}")
+    return ", ".join(found)
+
+
+def _numbers(numbers: Sequence[int]) -> str:
+    whole = len(numbers) > 2 and numbers[-1] - numbers[0] + 1 == len(numbers)
+    return f"{numbers[0]}–{numbers[-1]}" if whole else ", ".join(map(str, numbers))
 
 
 def _document(parts: Sequence[str], points: Array, title: str) -> str:

@@ -9,7 +9,7 @@ from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.presets import THESIS
-from beamenv.configuration import Count, Instance, Refused, checked
+from beamenv.configuration import Count, Instance, Refused, Text, checked
 from train.explore.app import create_app
 from train.explore.controls import Page
 from train.explore.requests import is_loopback
@@ -25,15 +25,16 @@ class _Quiet(WSGIRequestHandler):
         """No line for every slider's move."""
 
 
-def serve(port: int, host: str = LOOPBACK, base: BladeConfig = THESIS) -> BaseWSGIServer:
-    """A server of a blade's page that is bound and waits for ``serve_forever``; port 0 takes a free one: ``server.port``.
+def serve(port: int, host: str = LOOPBACK, base: BladeConfig = THESIS, name: str = "blade") -> BaseWSGIServer:
+    """A server of the page of a blade of that name, bound and waiting for ``serve_forever``; port 0 takes a free one:
+    ``server.port``.
 
     Raises ``ValueError`` for a host that is not loopback, and for a port that is none or cannot be had.
     """
     if not is_loopback(host):
         raise Refused("host", host, f"a loopback address such as {LOOPBACK}, for the page is for this computer alone")
     port = checked("port", port, Count(0, 65535))
-    page = Page.of(checked("base", base, Instance(BladeConfig)))
+    page = Page.of(checked("base", base, Instance(BladeConfig)), checked("name", name, Text(line=True)))
     try:
         bound = socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except OSError as error:

@@ -59,7 +59,7 @@ def draw_on(axis: Any, config: BladeConfig, found: SectionProperties, elements: 
     extent, wall = float(np.ptp(elements.points[0], axis=0).max()), THEMES[theme]["wall"]
     for k in range(len(elements.edges)):
         half = 0.5 * elements.thickness[k]
-        axis.fill(*(1e3 * _piece(elements, k, -half, half)).T, facecolor=wall, edgecolor=wall, linewidth=0.3)
+        axis.fill(*(1e3 * piece(elements, k, -half, half)).T, facecolor=wall, edgecolor=wall, linewidth=0.3)
     beneath: list[Inlay] = []
     for side, colour in zip(SIDES, PALETTE[:2], strict=True):
         inlays = [group.inlay(0.0, 1.0) for group in config.patches.groups(side)]
@@ -88,12 +88,12 @@ def _draw_patches(
                 low, high = (low, low + least) if inlay.bonded == (inlay.face == "outer") else (high - least, high)
             if any(other.face == inlay.face and edge.lies_under(other) for other in beneath):
                 low, high = (0.5 * (low + high), high) if inlay.face == "outer" else (low, 0.5 * (low + high))
-            axis.fill(*(1e3 * _piece(elements, k, low, high)).T, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label)
+            axis.fill(*(1e3 * piece(elements, k, low, high)).T, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label)
             label = None
 
 
-def _piece(elements: Mesh, k: int, low: float, high: float) -> Array:
-    """(4, 2), m: an element between two distances from the mid-line."""
+def piece(elements: Mesh, k: int, low: float, high: float) -> Array:
+    """(4, 2), m: an element of the first size between two distances from the mid-line."""
     P, d, Q, e = elements.points[0, k], elements.directions[0, k], elements.last_points[0, k], elements.last_directions[0, k]
     return np.array([P + low * d, Q + low * e, Q + high * e, P + high * d])
 

@@ -15,7 +15,7 @@ function readBlade(content) {
   const blade = { ...content, stations: unpacked(content.stations), shapes: unpacked(content.shapes) };
   for (const name of ["station", "along", "across", "angle"]) blade[name] = unpacked(content.vertices[name]);
   for (const each of blade.recordings) {
-    for (const name of ["amplitudes", "tip", "volts", "outputs"]) each[name] = unpacked(each[name]);
+    for (const name of ["amplitudes", "tip", "load", "volts", "outputs"]) each[name] = unpacked(each[name]);
   }
   blade.frames = blade.recordings[0].tip.length / 2;
   blade.rest = vertices(blade, null, 0, 0);
@@ -143,7 +143,17 @@ function extremes(blade) {
     const last = first + (stations - 1) * corners;
     return blade.rest.slice(last, last + corners).flatMap((point) => [-1, 1].map((side) => plus(point, [0, side * blade.shownDeflection, 0])));
   });
-  return [...blade.rest, ...dropped, ...tips, ...blade.hub.flat()];
+  const tails = blade.recordings[0].load.length ? [0, 1].flatMap((axis) => furthestTails(blade, axis)) : [];
+  return [...blade.rest, ...dropped, ...tips, ...tails, ...blade.hub.flat()];
+}
+
+// Where the longest arrows of the load begin, those to either side along an axis, while the blade is at rest.
+
+function furthestTails(blade, axis) {
+  const { load } = blade.recordings[0];
+  let [low, high] = [0, 0];
+  for (let k = axis; k < load.length; k += 2) [low, high] = [Math.min(low, load[k]), Math.max(high, load[k])];
+  return [low, high].map((value) => arrow(blade, blade.rest, axis ? [0, value] : [value, 0])[0]);
 }
 
 function drawBlade(canvas, blade, recording, frame, magnification, camera, theme) {
@@ -177,6 +187,7 @@ function drawBlade(canvas, blade, recording, frame, magnification, camera, theme
   if (view.eye[2] < 0) steps.push(hub);
   else steps.unshift(hub);
   for (const step of steps) step();
+  drawLoad(pen, view, arrow(blade, points, recording.load.slice(2 * frame, 2 * frame + 2)), blade.arrow, theme);
   const held = view.project(blade.hub[0][0])[0];
   drawAxes(pen, view, [held < width / 2 ? width - 2 * margin - 60 : 60, height - 2 * margin - 30], theme);
 }
@@ -255,6 +266,26 @@ function drawPoints(pen, blade, { project }, points, output, dead, theme) {
     polygon(pen, diamond, css(coloured(blade.scales.output, output(channel))), theme.outline, 1);
     if (dead(channel)) crossOut(pen, diamond, theme);
   });
+}
+
+// Tail and head of the arrow of a line load (lag, flap): it ends in the middle of the blade near its tip.
+
+function arrow(blade, points, load) {
+  const { station, length, largest } = blade.arrow;
+  const head = middleOf(blade.bodies.map(({ first, corners }) => middleOf(points.slice(first + station * corners, first + (station + 1) * corners))));
+  return [plus(head, [load[0], load[1], 0], largest ? -length / largest : 0), head];
+}
+
+function drawLoad(pen, { project }, ends, { head, shaft, shortest }, theme) {
+  const [from, to] = ends.map(project);
+  const [right, down] = [to[0] - from[0], to[1] - from[1]];
+  const size = Math.hypot(right, down);
+  if (!(size > shortest)) return;
+  const [x, y] = [right / size, down / size];
+  const part = Math.min(head, size);
+  const back = [to[0] - part * x, to[1] - part * y];
+  line(pen, [from, back], theme.load, shaft);
+  polygon(pen, [to, [back[0] - 0.45 * part * y, back[1] + 0.45 * part * x], [back[0] + 0.45 * part * y, back[1] - 0.45 * part * x]], theme.load);
 }
 
 // Which way lag, flap and span are.

@@ -15,7 +15,7 @@ from beamenv.patches.layout import SIDES
 from beamenv.plant.plant import drive_limit
 from beamenv.rendering import scene
 from beamenv.rendering.deformation import Deformation
-from beamenv.rendering.palette import INK, LIGHT, OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
+from beamenv.rendering.palette import DARK, INK, LIGHT, OUTPUT_SCALE, VOLTAGE_SCALE, colour_table
 from beamenv.rendering.solid import SHOWN_DEFLECTION, BladeSolid
 from train.figures.themes import THEMES, Theme
 from train.page.recording import RecordedEpisode, Recording
@@ -75,6 +75,7 @@ def drawn_blade(episode: RecordedEpisode) -> dict[str, Any]:
     return {
         **_surface(blade, solid),
         **_view(blade),
+        "arrow": _arrow(episode, solid),
         "shapes": packed(shapes),
         "shownDeflection": SHOWN_DEFLECTION * blade.config.beam.length,
         "limit": float(drive_limit(blade.truth).max()),
@@ -99,6 +100,7 @@ def _motion(episode: RecordedEpisode, recording: Recording, moved: Array, amplit
         "amplitudes": packed(amplitudes),
         "largest": float(np.linalg.norm(moved[:, :2], axis=1).max()),
         "tip": packed(1e6 * recording.tip[rows]),
+        "load": packed(recording.load[rows]),
         "volts": packed(np.broadcast_to(volts, (len(rows), actuators))),  # ganged actuators share one voltage
         "outputs": packed(outputs),
         "dead": _dead(episode, recording)[rows].tolist() if recording.truth.size else [],
@@ -165,14 +167,29 @@ def _view(blade: Blade) -> dict[str, Any]:
         "distance": scene.DISTANCE * beam.length,
         "drop": scene.SENSOR_DROP * beam.length,
         "ribs": scene.RIBS,
-        "themes": {name: _colours(theme) for name, theme in THEMES.items()},
+        "themes": {name: _colours(name, theme) for name, theme in THEMES.items()},
     }
 
 
-def _colours(theme: Theme) -> dict[str, Any]:
+def _arrow(episode: RecordedEpisode, solid: BladeSolid) -> dict[str, Any]:
+    """The line load: the station where its arrow ends, how long the largest of the episode is drawn (m), and its size (N/m)."""
+    length = episode.blade.config.beam.length
+    sizes = [np.linalg.norm(recording.load[frame_rows(episode, recording)], axis=1).max() for recording in episode.recordings]
+    return {
+        "station": int(np.abs(solid.stations - scene.ARROW_AT * length).argmin()),
+        "length": scene.ARROW * length,
+        "largest": float(max(sizes)),
+        "head": scene.HEAD,
+        "shaft": scene.SHAFT,
+        "shortest": scene.SHORTEST,
+    }
+
+
+def _colours(name: str, theme: Theme) -> dict[str, Any]:
     """Of what stands for no value."""
     body, hub = ([list(shade) for shade in shades] for shades in (LIGHT.body, LIGHT.hub))
-    return {"ink": theme.ink, "rest": theme.faint, "outline": INK, "body": body, "hub": hub}
+    load = {"light": LIGHT, "dark": DARK}[name].load
+    return {"ink": theme.ink, "rest": theme.faint, "load": load, "outline": INK, "body": body, "hub": hub}
 
 
 def _scale(name: str) -> list[list[int]]:

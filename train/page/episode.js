@@ -33,7 +33,9 @@ function magnified(deflection, drawn) {
   return power * [5, 2, 1].find((digit) => digit * power <= wanted);
 }
 
-const number = (value) => (Math.abs(value) < 0.5 ? "0" : value.toFixed(0)).replace("-", "−");
+const minus = (text) => text.replace("-", "−");
+const digits = (value) => minus(String(Number(value.toPrecision(3))));
+const number = (value) => minus(Math.abs(value) < 0.5 ? "0" : value.toFixed(0));
 
 function startBlade(content, toPrint) {
   const blade = readBlade(content);
@@ -43,9 +45,7 @@ function startBlade(content, toPrint) {
   const play = document.getElementById("play");
   const series = document.getElementById("time-series");
   const times = JSON.parse(slider.dataset.times);
-  const [x, y, z] = blade.towards;
-  const home = { azimuth: Math.atan2(x, z), elevation: Math.atan2(y, Math.hypot(x, z)), zoom: 1, shift: [0, 0] };
-  const camera = structuredClone(home);
+  const camera = cameraTowards(blade.towards);
   const perFrame = 50;
   let timer = null;
   let asked = false;
@@ -57,11 +57,12 @@ function startBlade(content, toPrint) {
   function told(recording, frame) {
     const lost = recording.failed !== null && times[frame] > recording.failed ? `, failed at ${number(recording.failed)} ms` : "";
     const [lag, flap] = recording.tip.slice(2 * frame, 2 * frame + 2);
+    const load = [...recording.load.slice(2 * frame, 2 * frame + 2)].map(digits);
     const count = blade.actuators.length;
     const volts = [...recording.volts.slice(count * frame, count * (frame + 1))].map(number).join(", ");
     const dead = recording.dead[frame] ?? [];
     const broken = [...dead.filter((k) => k < count).map((k) => `actuator ${k + 1}`), ...dead.filter((k) => k >= count).map((k) => `sensor ${k - count + 1}`)];
-    return `Tip: lag ${number(lag)} µm, flap ${number(flap)} µm${lost}. Voltages: ${volts} V.${broken.length ? ` Dead: ${broken.join(", ")}.` : ""}`;
+    return `Tip: lag ${number(lag)} µm, flap ${number(flap)} µm${lost}. Load: lag ${load[0]} N/m, flap ${load[1]} N/m. Voltages: ${volts} V.${broken.length ? ` Dead: ${broken.join(", ")}.` : ""}`;
   }
 
   function paint() {
@@ -140,55 +141,8 @@ function startBlade(content, toPrint) {
     return best;
   }
 
-  // One camera for both.
-
-  const moves = {
-    left: () => { camera.azimuth -= 0.15; },
-    right: () => { camera.azimuth += 0.15; },
-    up: () => { camera.elevation += 0.15; },
-    down: () => { camera.elevation -= 0.15; },
-    nearer: () => { camera.zoom *= 1.2; },
-    farther: () => { camera.zoom /= 1.2; },
-    reset: () => Object.assign(camera, structuredClone(home)),
-  };
-  const keys = { ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down", "+": "nearer", "=": "nearer", "-": "farther", 0: "reset" };
-
-  function look(change) {
-    change();
-    camera.elevation = Math.max(-1.5, Math.min(1.5, camera.elevation));
-    camera.zoom = Math.max(0.3, Math.min(20, camera.zoom));
-    show();
-  }
-
-  for (const button of document.querySelectorAll("[data-move]")) button.addEventListener("click", () => look(moves[button.dataset.move]));
-  for (const canvas of canvases) {
-    let last = null;
-    canvas.addEventListener("keydown", (event) => {
-      if (!(event.key in keys)) return;
-      event.preventDefault();
-      look(moves[keys[event.key]]);
-    });
-    canvas.addEventListener("wheel", (event) => {
-      if (document.activeElement !== canvas && !event.ctrlKey) return;
-      event.preventDefault();
-      look(() => { camera.zoom *= Math.exp(-0.002 * event.deltaY); });
-    }, { passive: false });
-    canvas.addEventListener("pointerdown", (event) => {
-      last = [event.clientX, event.clientY];
-      canvas.setPointerCapture(event.pointerId);
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      if (!last) return;
-      const [across, downwards] = [event.clientX - last[0], event.clientY - last[1]];
-      last = [event.clientX, event.clientY];
-      look(() => {
-        if (event.shiftKey) camera.shift = [camera.shift[0] + across / canvas.clientWidth, camera.shift[1] + downwards / canvas.clientHeight];
-        else [camera.azimuth, camera.elevation] = [camera.azimuth - 0.01 * across, camera.elevation + 0.01 * downwards];
-      });
-    });
-    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { last = null; });
-    new ResizeObserver(show).observe(canvas);
-  }
+  steer(canvases, camera, show);
+  for (const canvas of canvases) new ResizeObserver(show).observe(canvas);
   document.addEventListener("themed", show);
   document.addEventListener("picked", show);
   for (const [name, begins] of [["beforeprint", true], ["afterprint", false]]) {

@@ -69,6 +69,27 @@ function redraw(figure) {
   return Plotly.react(figure, asShown(figure));
 }
 
+// What is wider than the screen says so, and fades where it is cut.
+
+const sideways = "Wider than the screen: scroll sideways for the rest.";
+
+function hint(region) {
+  const note = document.createElement("p");
+  note.className = "more";
+  note.textContent = sideways;
+  region.before(note);
+  const check = () => {
+    const rest = region.scrollWidth - region.clientWidth;
+    note.hidden = rest < 2;
+    region.classList.toggle("cut", region.scrollLeft < rest - 1);
+  };
+  region.addEventListener("scroll", check, { passive: true });
+  const watcher = new ResizeObserver(check);
+  for (const each of [region, ...region.children]) watcher.observe(each);
+}
+
+document.querySelectorAll(".scroll").forEach(hint);
+
 // The table: numbers by their value, what has none last.
 
 function sortBy(table, column) {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -20,7 +20,8 @@ from beamenv.configuration import Choice, checked
 from beamenv.task import Task
 
 Array = NDArray[np.float64]
-
+RecordingProgress = Callable[[int, int, str], None]
+"""Told how many episodes are recorded, of how many, and whose is next."""
 
 IDLE = ("none", "no control")
 """What no control is called: its id, and the name of its law."""
@@ -46,6 +47,8 @@ class Recording:
     """(K, 2 + m + 2 p), as ``Blades.truth``: which plant moves and what is wrong; empty where it is the first and all is well."""
     cost: float = float("nan")
     """J s: the cost J of the episode, infinite where the blade failed."""
+    load: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    """(K, 2), N/m: the line loads in lag and flap of the interval that begins at each instant."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,23 +97,27 @@ def record(
         cost += float(instant.info["cost_increment"][0]) if rows else 0.0
         cost = float("inf") if instant.failed[0] else cost
         told = instant.info["tip_displacement"][0], instant.info["volts"][0], np.asarray(instant.observation[0])
-        rows.append((state, *told, inner.episode_truth))
-    states, tip, volts, observed, truth = (np.stack(series) for series in zip(*rows, strict=True))
+        rows.append((state, *told, inner.episode_truth, inner.coming_loads))
+    states, tip, volts, observed, truth, load = (np.stack(series) for series in zip(*rows, strict=True))
     name = name_of(as_controller(controller))
     scale = 1.0 if inner.task.physical_units else inner.plant.sensor_full_scale
     readings = scale * observed if env.observation_space == inner.observation_space else np.zeros((0, 0))
     time = inner.plant.control_interval * np.arange(len(rows))
-    return Recording(name, time, states, tip, volts, readings, truth, cost)
+    return Recording(name, time, states, tip, volts, readings, truth, cost, load)
 
 
 def record_episode(
-    arguments: Mapping[str, Any], seed: int, controllers: Mapping[str, Controller], opens: str | None = None
+    arguments: Mapping[str, Any],
+    seed: int,
+    controllers: Mapping[str, Controller],
+    opens: str | None = None,
+    progress: RecordingProgress | None = None,
 ) -> RecordedEpisode:
     """The episode of ``seed`` in the environment with these keyword arguments, without control and under each of the controllers.
 
     They are called by their keys. One whose own name is in ``IDLE`` counts as the episode without control, and is
-    not run. ``opens`` is the key of the one that is shown first, None that of the first. Raises ``ValueError``
-    for a key that there is not.
+    not run. ``opens`` is the key of the one that is shown first, None that of the first. ``progress`` is called before each
+    recording. Raises ``ValueError`` for a key that there is not.
     """
     env = gym.make(beamenv.ENV_ID, **{"dtype": "float64", **arguments})
     try:
@@ -118,7 +125,11 @@ def record_episode(
         idle = no_control(inner.plant)
         others = {name: law for name, law in controllers.items() if name_of(law) not in IDLE}
         place = 1 + list(others).index(checked("opens", opens, Choice(tuple(others)))) if opens is not None else min(1, len(others))
-        recordings = [replace(record(law, env, seed), name=name) for name, law in others.items()]
-        return RecordedEpisode(inner.task, (record(idle, env, seed), *recordings), place)
+        recordings = []
+        for done, (name, law) in enumerate([(idle.name, idle), *others.items()]):
+            if progress is not None:
+                progress(done, 1 + len(others), name)
+            recordings.append(replace(record(law, env, seed), name=name))
+        return RecordedEpisode(inner.task, tuple(recordings), place)
     finally:
         env.close()

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from beamenv.titles import TIERS
-from train.benchmark.contests import Contest, contests, rule
+from train.benchmark.contests import Contest, contests, corrected, rule
 from train.benchmark.showing.section import Entry, Section, gap, words
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import leaders_of
 from train.shared.columns import number, share
 
 LEADERS = (
-    "The controller with the least mean J of each tier, of any kind and on these very seeds, with its J / J₀. Clearly: it is below "
-    "every other of its tier, each by the paired interval. Alone: its tier has no other."
+    "The controller with the least mean J of each tier, of any kind and on these very seeds, with its J / J₀. By the paired "
+    "intervals it is below every other of its tier, unless the cell says “not clearly”, or “the only one” of its tier."
 )
 
 
@@ -27,7 +27,7 @@ def _leader(table: BenchmarkTable, scenario: str, tier: int) -> str:
     first = leaders_of(table).get((scenario, tier))
     if first is None:
         return "–"
-    how = "" if first.rivals and not first.clear else ", clearly" if first.rivals else ", alone"
+    how = ", the only one" if not first.rivals else "" if first.clear else ", not clearly"
     return f"{first.row.controller} {number(first.row.estimates['relative_cost'].value, '{:.3f}')}{_unstable(first.row)}{how}"
 
 
@@ -38,13 +38,16 @@ def _unstable(row: Row) -> str:
 
 def agents_and_laws(table: BenchmarkTable) -> Section:
     """One of each against the other in each scenario."""
-    headings = ["scenario", "agent", "classical", "verdict", "hardest", "J / J₀, agent less classical", "agent less the hardest"]
-    return Section("Agents against classical controllers", rule(), headings, [_contest(each) for each in contests(table)], 5)
+    found = contests(table)
+    headings = ["scenario", "agent", "classical", "verdict", "all judged together", "hardest"]
+    headings += ["J / J₀, agent less classical", "agent less the hardest"]
+    rows = [_contest(each, left) for each, left in zip(found, corrected(found), strict=True)]
+    return Section("Agents against classical controllers", rule(), headings, rows, 6)
 
 
-def _contest(one: Contest) -> list[Entry]:
+def _contest(one: Contest, left: str) -> list[Entry]:
     names = _name(one.agent, one.agent_chosen), _name(one.law, one.law_chosen)
-    return [*words(one.scenario, *names, one.verdict, one.hardest.controller), gap(one.gap), gap(one.least_clear)]
+    return [*words(one.scenario, *names, one.verdict, left, one.hardest.controller), gap(one.gap), gap(one.least_clear)]
 
 
 def _name(row: Row, chosen: bool) -> str:

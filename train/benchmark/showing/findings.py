@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from beamenv.titles import TIERS
-from train.benchmark.contests import AHEAD, BEHIND, contests
+from train.benchmark.contests import AHEAD, BEHIND, Contest, contests, corrected
 from train.benchmark.score import by_split, split_of
 from train.benchmark.showing.section import Entry, Section, words
 from train.benchmark.table import BenchmarkTable
@@ -13,9 +13,18 @@ from train.benchmark.targets import Leader, ahead_and_behind, leaders_of, reache
 
 TEXT = (
     "Agents are the learned controllers of tier 1, which are told no more than the scenario's distribution. They are compared with "
-    "the classical controllers of tiers 0 and 1, and the best of these is the one with the least J on these very seeds. Ahead, "
-    "behind and clearly mean by the paired interval. Who leads a tier does so clearly, or is alone in it, unless the table says "
-    "otherwise."
+    "the classical controllers of tiers 0 and 1. What is compared with what, each by the paired interval:\n\n"
+    "- Ahead: the chosen agent with every classical controller, also with those that nobody would have chosen.\n"
+    "- Behind: the chosen classical controller with every agent.\n"
+    "- Overtaken: the chosen agent with every classical controller again; one at least is below it. Which one is seen on these "
+    "very seeds only, so that an agent can be overtaken and not be behind.\n"
+    "- The best classical controller of a target is the one with the least J on these very seeds.\n"
+    "- Who has the least J of a tier is below every other of it, or the only one, unless the table says in how many scenarios this "
+    "is clear."
+)
+TOGETHER = (
+    "The intervals hold for one scenario at a time. Where all {scenarios} scenarios are judged together, at 5 % by Holm's method, "
+    "the agent is ahead in {ahead} and behind in {behind}."
 )
 NOTHING = "–"
 
@@ -25,18 +34,27 @@ def findings_table(table: BenchmarkTable) -> Section:
     splits = list(dict.fromkeys(by_split(table).values()))
     rows = [*_ahead(table, splits), *_reaches(table, splits), *_leaders(table, splits)]
     said = ahead_and_behind(table, contests(table), named=False)
-    text = f"{said[0].upper()}{said[1:]}.\n\n{TEXT}" if said else TEXT
+    text = f"{said[0].upper()}{said[1:]}.\n\n{_together(table)}\n\n{TEXT}" if said else TEXT
     return Section("Findings", text, ["question", *splits], rows, len(splits) + 1)
 
 
 def _ahead(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entry]]:
-    """In how many scenarios of each split the agent is ahead of all, and behind."""
-    verdicts: dict[str, list[str]] = {}
+    """In how many scenarios of each split the agent is ahead of all, behind, and overtaken by any."""
+    found: dict[str, list[Contest]] = {}
     for each in contests(table):
-        verdicts.setdefault(split_of(table, each.scenario) or "other", []).append(each.verdict)
-    if verdicts:
+        found.setdefault(split_of(table, each.scenario) or "other", []).append(each)
+    if found:
+        verdicts = {name: [each.verdict for each in those] for name, those in found.items()}
         told = {name: f"ahead in {v.count(AHEAD)} of {len(v)}, behind in {v.count(BEHIND)}" for name, v in verdicts.items()}
         yield _row("Is the chosen agent ahead of every classical controller?", splits, told)
+        overtaken = {name: f"in {sum(each.overtaken for each in those)} of {len(those)}" for name, those in found.items()}
+        yield _row("Is it overtaken by any of them?", splits, overtaken)
+
+
+def _together(table: BenchmarkTable) -> str:
+    """How many verdicts are left when all scenarios are judged together."""
+    left = corrected(contests(table))
+    return TOGETHER.format(scenarios=len(left), ahead=left.count(AHEAD), behind=left.count(BEHIND))
 
 
 def _reaches(table: BenchmarkTable, splits: Sequence[str]) -> Iterator[list[Entry]]:

@@ -2,35 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from baselines import Estimate
 from beamenv.knowledge import TRUTH
+from train.benchmark.listed import ListedController
 from train.benchmark.showing.episode import ShownEpisode, shown_episode
+from train.benchmark.showing.findings import findings_table
 from train.benchmark.showing.heat_map import RULE, heat_map
 from train.benchmark.showing.legend import legend
 from train.benchmark.showing.report import COLUMNS, HEADINGS, about, sections
 from train.benchmark.showing.section import Section
 from train.benchmark.table import RIVAL, BenchmarkTable, Row
-from train.benchmark.targets import findings
 from train.controllers.shipped import shipped_agents
 from train.page import Cell, Lead, LearningCurves, PageContent, Table, write_page
 from train.page.lead import COST, blade_in_words, counted, load_in_words
+from train.page.recording import RecordingProgress
 from train.shared.curve import drawn_as, read_curve
 
 COLUMN = next(column for column in COLUMNS if column.name == "relative_cost")
 
 
-def write_report(path: Path, table: BenchmarkTable) -> None:
-    """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration."""
-    shown = shown_episode(table)
+def write_report(
+    path: Path,
+    table: BenchmarkTable,
+    listed: Sequence[ListedController],
+    progress: RecordingProgress | None = None,
+) -> None:
+    """Findings, heat map, every row, the blade where an agent gains most, learning curves, what went wrong, the configuration.
+
+    Readers choose among those that are ``listed`` and measured in the episode's scenario; ``progress`` as in ``record_episode``.
+    """
+    shown = shown_episode(table, listed, progress)
     wrong = [f"{where}: {sentence}" for where, sentence in table.sentences.items()]
     content = PageContent(
         title=f"Controllers of a {'model' if of_model(table) else 'rotating blade'} across scenarios",
         lead=None if shown is None else lead(table, shown),
-        note="\n".join([*(each.sentence for each in findings(table)), *table.left_out, *wrong]),
+        note="\n".join([*table.left_out, *wrong]),
         table=page_table(table),
-        further={each.heading: further_table(each) for each in sections(table)},
+        further={each.heading: further_table(each) for each in (findings_table(table), *sections(table))},
         heat_map=heat_map(table),
         episode=None if shown is None else shown.episode,
         episode_note="" if shown is None else shown.note,
@@ -50,11 +61,11 @@ def lead(table: BenchmarkTable, shown: ShownEpisode) -> Lead:
     first, last = table.configuration["seeds"]
     names = dict.fromkeys(["nominal" if "nominal" in table.scenarios else table.scenarios[0], shown.scenario])
     first_best, *further = [each for name in names if (each := least_rival(table, name)) is not None]
-    others = [f"; in {row.scenario} it is {row.controller}, with {_of_without(table, row)}" for row in further]
+    others = [f"; in {row.scenario} it is {row.controller}: {_of_without(table, row)}" for row in further]
     moved, load = blade_in_words(shown.episode.blade), load_in_words(shown.episode.task.scenario)
     return Lead(
         f"In {first_best.scenario}, {first_best.controller} has the least {COST} of all controllers that see no more than a real "
-        f"blade shows, {_of_without(table, first_best)} of that without control{''.join(others)}.",
+        f"blade shows: {_of_without(table, first_best)}{''.join(others)}.",
         f"What moves is {moved}, in {shown.scenario} under {load}; {counted(len(table.controllers), 'controller')} went through "
         f"{counted(len(table.scenarios), 'scenario')} of {last - first + 1} held-out episodes each.",
     )
@@ -68,8 +79,8 @@ def least_rival(table: BenchmarkTable, scenario: str) -> Row | None:
 
 def _of_without(table: BenchmarkTable, row: Row) -> str:
     rival = table.row(row.scenario, RIVAL)
-    beside = "" if rival is None or not rival.measured or rival is row else f" (LQG: {COLUMN.text(_relative(rival))})"
-    return COLUMN.text(_relative(row)) + beside
+    beside = "" if rival is None or not rival.measured or rival is row else f", where LQG has {COLUMN.text(_relative(rival))}"
+    return f"{COLUMN.text(_relative(row))} of what it is without control{beside}"
 
 
 def _relative(row: Row) -> Estimate:

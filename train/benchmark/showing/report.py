@@ -9,7 +9,7 @@ from typing import Any
 from baselines import Estimate
 from baselines.evaluation.metrics import finite
 from beamenv.configuration.writing import write_whole
-from train.benchmark.contests import Contest, contests
+from train.benchmark.contests import Contest, contests, corrected
 from train.benchmark.score import Aggregate, Headroom, aggregates, by_split, headrooms
 from train.benchmark.showing.contests import agents_and_laws, leaders
 from train.benchmark.showing.legend import legend
@@ -83,7 +83,7 @@ def as_json(table: BenchmarkTable) -> dict[str, Any]:
         "findings": judged,
         "refused": dict(table.refused),
         "left_out": list(table.left_out),
-        "contests": [contest_json(each) for each in contests(table)],
+        "contests": [contest_json(*each) for each in zip(contests(table), corrected(contests(table)), strict=True)],
         "aggregates": [aggregate_json(each) for each in aggregates(table)],
         "headroom": [headroom_json(each) for each in headrooms(table)],
         "rows": rows,
@@ -95,12 +95,12 @@ def estimate_json(estimate: Estimate | None) -> dict[str, float | None] | None:
     return None if estimate is None else {name: finite(getattr(estimate, name)) for name in ("value", "low", "high")}
 
 
-def contest_json(one: Contest) -> dict[str, Any]:
-    """An agent against the laws of a scenario."""
+def contest_json(one: Contest, left: str) -> dict[str, Any]:
+    """An agent against the laws of a scenario, with the verdict that is ``left`` when all scenarios are judged together."""
     names = {name: getattr(one, name).controller for name in ("agent", "law", "hardest")}
     gaps = {name: estimate_json(getattr(one, name)) for name in ("gap", "least_clear")}
     said = {name: getattr(one, name) for name in ("scenario", "verdict", "agent_chosen", "law_chosen")}
-    return {**said, **names, **gaps}
+    return {**said, "all_judged_together": left, "overtaken": one.overtaken, **names, **gaps}
 
 
 def aggregate_json(one: Aggregate) -> dict[str, Any]:
