@@ -20,9 +20,11 @@ INTRODUCTION = (
     "and 6 again, and judges every statement that it makes of them. Each verdict follows from numbers by a fixed rule; numbers and "
     "rule stand beside it."
 )
-DEFINITIONS = (
-    "Each statement has two verdicts. In nature: is it true of the blade? By the thesis' equations: does it follow from what the "
-    "thesis itself prints?"
+DEFINITIONS: tuple[Text, ...] = (
+    "Each statement has two verdicts. In nature: is it true of the blade? Nobody has measured this blade, so our corrected model "
+    "of it answers, which was checked against what others measured and computed (",
+    Link("Validation", "validation.md"),
+    "). By the thesis' equations: does it follow from what the thesis itself prints?",
 )
 SYMBOLS = (
     f"{shown_verdict(Verdict.REPRODUCED)}: it holds.",
@@ -70,7 +72,7 @@ def opening(records: Sequence[Record], markup: Markup) -> list[str]:
     """What is judged, the counts, and why so many are negative."""
     return [
         markup.paragraph(INTRODUCTION),
-        markup.paragraph(DEFINITIONS),
+        markup.paragraph(*DEFINITIONS),
         markup.listed(SYMBOLS),
         markup.paragraph(WEAKEST),
         *overview(records, markup),
@@ -142,7 +144,7 @@ def why(records: Sequence[Record]) -> str:
         f"not hold of the blade. The third is what no equation explains. {found[Verdict.NOT_REPRODUCED]} do not follow from the "
         f"thesis' own equations either, and {found[Verdict.UNTESTABLE]} cannot be evaluated by them: they rest on loads, weights "
         "or lay-ups that the thesis does not print, on values read off plots, on slips in its arithmetic, or on more than its few "
-        "curves show. Some of these may be our fault, for where a configuration is not printed we had to choose one. The reverse "
+        "curves show. Some of these may be our fault: where a configuration is not printed, we had to choose one. The reverse "
         f"happens too: {lost} statements that hold in nature do not follow from the thesis' equations, or cannot be evaluated by "
         f"them.{compared}"
     )

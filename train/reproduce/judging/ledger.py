@@ -96,8 +96,9 @@ ROWS = (
         "5.6",
         "Inclusion of MFC reduces the natural frequencies significantly",
         of("figure-5.3", "softened", "significant") + of("figure-5.4", "softened", "significant"),
-        "Twelve sheets of 0.3 mm change no frequency by more than 0.8 %, with the printed density and shear flow neither, and "
-        "stiffen wherever the host is softer than they are.",
+        "Twelve sheets of 0.3 mm change no frequency by more than 0.8 %, nor do they "
+        "with the printed density and shear flow. They stiffen a host that is softer "
+        "than they are.",
     ),
     Row(
         "5.6",

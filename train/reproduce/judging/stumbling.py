@@ -36,8 +36,9 @@ STUMBLING = (
         "Figures 5.3, 5.4, 5.6",
         "Patches lower the frequencies, and significantly",
         of("figure-5.3", "softened", "significant") + of("figure-5.4", "softened", "significant") + of("figure-5.6", "softened"),
-        "Twelve sheets of 0.3 mm change no frequency by more than 0.8 %, by the printed density and shear flow neither, and "
-        "stiffen where the host is softer than they are.",
+        "Twelve sheets of 0.3 mm change no frequency by more than 0.8 %, nor do they "
+        "with the printed density and shear flow. They stiffen a host that is softer "
+        "than they are.",
     ),
     Row(
         "Figure 5.5",

@@ -154,8 +154,9 @@ WHY_PEAKS = (
     "and 47 %, near what the thesis prints. That, by its own equations, is the likely origin of its figure."
 )
 WHY_TURN = (
-    "The modulus along the span, Q̄22 − Q̄12²/Q̄11, rises without a minimum from 5.2 GPa at 0° to 207 GPa at 90° for this lamina; "
-    "so do ours with the thesis' own shear flow. With Q22 in place of Q12 in Q̄12 (Eq. 4.5) it falls by 8 % to a minimum, but at "
+    "The modulus along the span, Q̄22 − Q̄12²/Q̄11, rises without a minimum from 5.2 GPa at 0° to 207 GPa at 90° for this "
+    "lamina. What we compute rises with it, with the thesis' own shear "
+    "flow as well. With Q22 in place of Q12 in Q̄12 (Eq. 4.5) it falls by 8 % to a minimum, but at "
     "25°, and Tables 3.3 and 3.4 were not computed so."
 )
 UNNAMED = f"θ = 30°, untwisted, 200 rad/s (the thesis names none); {BENT}"

@@ -143,8 +143,8 @@ def exchange_study(name: str, title: str, which: int) -> Study:
     """Figure 3.9 or 3.10."""
     wide = (
         "The loci stay a wide gap apart (Figure 3.8's CSV): gyroscopic coupling is strong there, so the modes change over "
-        "hundreds of rad/s. "
-        "MAC weighted with the mass matrix."
+        "hundreds of rad/s. Shapes are compared by the modal "
+        "assurance criterion (MAC), weighted with the mass matrix."
     )
     return Study(
         name,

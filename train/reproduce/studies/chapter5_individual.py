@@ -121,8 +121,8 @@ def turning_time(times: Array, tip: Array, turn: int = 3) -> float:
 
 
 WHY_PULSE = (
-    "The thesis names neither pulse nor weights; most of what differs, differs by 10 to 20 %. The order of its voltages comes of "
-    "Eq. 5.9, which weighs volts by stiffness."
+    "The thesis names neither pulse nor weights; most differences are 10 to 20 %. "
+    "The order of its voltages comes from Eq. 5.9, which weighs volts by stiffness."
 )
 
 STUDIES = (

@@ -139,9 +139,10 @@ WHY_PZT = (
     "With one Q, R rule it therefore takes less voltage. Eq. 5.2 divides the MFC's voltage by its thickness too."
 )
 WHY_PLIES = (
-    "The input weight is the energy the actuators store, less in a stiffer blade: the same rule then asks for more voltage. Eq. "
-    "5.9 has K where K⁻¹ belongs, so that stiff modes weigh more; with the thesis' shear flow that turns the order of 30° and "
-    "60° round."
+    "The input weight is the energy that the actuators store. In a stiffer blade "
+    "they store less, so the same rule asks for more voltage. Eq. 5.9 has K where "
+    "K⁻¹ belongs, so stiff modes weigh more; with the thesis' shear flow that "
+    "reverses the order of 30° and 60°."
 )
 
 

@@ -141,10 +141,10 @@ def shear_bending(model: Model) -> Outcome:
 
 PATCHES = "six MFC or PZT actuators and sensors of 80 mm × 57 mm, equally spaced over 0 … 0.7 L; untwisted"
 WHY_STIFFENED = (
-    "A host of hoop plies (E = 5.2 GPa along the span at θ = 0°) is stiffened by sheets of 30 GPa (MFC) and 124 GPa (PZT), one of "
-    "spanwise "
-    "plies (207 GPa at θ = 90°) is softened: the other way round than the thesis has it, whose text contradicts itself on what "
-    "happens beyond 75°."
+    "Sheets of 30 GPa (MFC) and 124 GPa (PZT) stiffen a wall of hoop plies (5.2 GPa "
+    "along the span at θ = 0°) and soften one of spanwise plies (207 GPa at θ = "
+    "90°). The thesis has it the other way round, and its text contradicts itself "
+    "on what happens beyond 75°."
 )
 WHY_LESS = (
     "As speed grows, centrifugal tension takes over from bending stiffness, and modes change places (at about 130 and 220 rad/s)."
@@ -169,7 +169,7 @@ def ply_angle_study(name: str, title: str, rotating: bool, extra: tuple[Statemen
                 "significant",
                 "The change is significant",
                 Large(),
-                "Sheets of 0.3 mm in walls of 10 mm can hardly do more, with the thesis' shear flow and 8528 kg/m³ neither.",
+                "Sheets of 0.3 mm in walls of 10 mm can hardly do more; nor do they with the thesis' shear flow and 8528 kg/m³.",
             ),
             *extra,
         ),
@@ -190,8 +190,8 @@ STUDIES = (
                 "alike",
                 "The trends at rest and rotating are similar: the same sign of each change",
                 Holds(),
-                remark="All changes rotating are below 1.2 %; and flap and lag have changed places, so that the first frequency "
-                "is another mode's.",
+                remark="While the blade turns all changes are below 1.2 %. Flap and lag have changed "
+                "places, so the first frequency is that of another mode.",
             ),
         ),
     ),

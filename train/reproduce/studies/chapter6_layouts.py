@@ -193,7 +193,7 @@ UNDER = (
     "200 rad/s; four actuators with a voltage each and four sensors, equally spaced or placed by GA then SQP; sampled LQG; "
     "30 N/m in flap"
 )
-WHY_TIP = "The first peak is the load's: ±1500 V change it little wherever the patches are."
+WHY_TIP = "The load makes the first peak: ±1500 V change it little, wherever the patches are."
 WHY_VOLTS = (
     "With R = ρFᵀK⁻¹F a volt is weighed by the energy that it stores, which differs from place to place: the effort falls although "
     "the voltages rise. The thesis' peaks are below 500 V; it prints neither its weights nor, for the pulse, its load."

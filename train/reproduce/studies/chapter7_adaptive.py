@@ -187,16 +187,17 @@ STUDIES = (
     Study(
         "adaptive-feedback",
         "an LQG that a neural network augments",
-        f"the default blade, its law designed for {DESIGNED:g} rad/s and run at {TURNING:g}; a step of {LOAD[1]:g} N/m in flap, "
+        f"the default blade, its controller designed for {DESIGNED:g} rad/s and run at {TURNING:g}; a step of {LOAD[1]:g} N/m in "
+        f"flap, "
         "white load, sensor noise",
         (
             Statement("off", "Switched off it is LQG to the last bit", Small(0.0, 0.0)),
             Statement("cost", "On, it lowers LQG's J on the blade that turns slower", Holds()),
             Statement("nominal", "On the design it costs what LQG costs, within 2 %", Small(0.02, 0.05)),
             Statement("error", "It lowers the energy of the model's error, in the mean over the second half", Holds()),
-            Statement("bounds", "Weights stay on their balls and the adaptive voltage within its share of the drive", Holds()),
+            Statement("bounds", "Weights stay within their bounds and the adaptive voltage within its share of the drive", Holds()),
             Statement("bumpless", "Switched off in mid-episode, the voltage of that instant is what it would have been", Holds()),
-            Statement("back", "and at the end the adaptive voltage is below 1 % of the drive", Holds()),
+            Statement("back", "At the end of that episode the adaptive voltage is below 1 % of the drive", Holds()),
         ),
         adapted,
     ),
@@ -206,15 +207,17 @@ STUDIES = (
         "`gradient` trained on all scenarios, run 0, 48 units; ridge probes of the units over 50 ms, on episodes they were not "
         "fitted to; 128 validation episodes each, as `python -m train.probing` recorded them",
         (
-            Statement("above", "Speed, delay and dead actuator are told better than by guessing, always after 0.1 s", Holds()),
-            Statement("window", "The memory tells more than as many of the latest readings and voltages do", Holds()),
+            Statement(
+                "above", "The memory tells speed, delay and dead actuator better than guessing does, always after 0.1 s", Holds()
+            ),
+            Statement("window", "It tells more than as many of the latest readings and voltages do", Holds()),
             Statement(
                 "magnitudes",
-                "and of speed and dead actuator more, at best, than their magnitudes do",
+                "Of speed and dead actuator it tells more, at best, than the magnitudes of readings and voltages do",
                 Holds(),
                 "The delay shows in magnitudes as well as in the memory: it lets vibration grow.",
             ),
-            Statement("shuffled", "Shuffled answers are told no better than by guessing", Holds()),
+            Statement("shuffled", "From shuffled answers nothing is learnt that is better than a guess", Holds()),
         ),
         remembered,
     ),

@@ -259,10 +259,10 @@ STUDIES = (
         f"{BLADE}; 200 rad/s, all modes and the electronics, step of 30 N/m in flap; J under the white load",
         (
             Statement("forced", "The warmer the blade, the further the load throws its tip", Changes(+1)),
-            Statement("plain", "LQG of all modes at 27 °C is stable from −50 to 50 °C, and no more at 75 and 100 °C", Holds()),
+            Statement("plain", "LQG of all modes at 27 °C is stable from −50 to 50 °C, but not at 75 and 100 °C", Holds()),
             Statement("robust", "Robust LQG of 27 °C is stable at all of them", Holds()),
             Statement("better", "It leaves less than 45 % of J at all of them", Holds()),
-            Statement("told", "To know the temperature never costs", Holds()),
+            Statement("told", "Knowing the temperature never costs anything", Holds()),
         ),
         controlled,
         rows_on_page=True,

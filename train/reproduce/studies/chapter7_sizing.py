@@ -158,10 +158,10 @@ STUDIES = (
         "alike in all designs; designs as found by beamenv place --size, evaluated anew",
         (
             Statement("front", "The closed loop's cost falls with the mass of the patches", Changes(-1)),
-            Statement("cheaper", "No heavier than the thesis' layout it is substantially cheaper", Substantial(-1, 0.2)),
-            Statement("lighter", "What the thesis' layout costs is had for substantially less mass", Substantial(-1, 0.2)),
+            Statement("cheaper", "With no more mass than the thesis' layout the cost is substantially lower", Substantial(-1, 0.2)),
+            Statement("lighter", "The cost of the thesis' layout is reached with substantially less mass", Substantial(-1, 0.2)),
             Statement("plants", "Costs are those of the plants built of the designs", Small(0.02, 0.05)),
-            Statement("slopes", "Slopes by place and length are their differences", Small(1e-4, 1e-3)),
+            Statement("slopes", "Slopes by place and length agree with finite differences", Small(1e-4, 1e-3)),
             Statement("made", "Every design lies on the blade, without overlaps, within the sizes", Small(0.0, 0.0)),
         ),
         front,
@@ -171,7 +171,7 @@ STUDIES = (
         "both sides placed at once",
         "four and four patches of the blade's own size, by the stationary cost of LQG; layouts as found by beamenv place "
         "--together, evaluated anew",
-        (Statement("gain", "At once they cost a little less than one side after the other", Marginal(-1)),),
+        (Statement("gain", "Placed at once they cost a little less than placed one side after the other", Marginal(-1)),),
         together,
         rows_on_page=True,
     ),
@@ -184,7 +184,9 @@ STUDIES = (
             Statement("slopes", "Authority over a mode is the difference of its slopes at the patch's ends", Small(0.02, 0.05)),
             Statement("root", "Over the first mode it is greatest at the root, and next to nothing at the tip", Changes(-1)),
             Statement(
-                "node", "Over the second, a patch to the tip begins best where there is no curvature", Matches((NODE,), 0.02, 0.1)
+                "node",
+                "Over the second it is greatest for a patch that reaches from the point without curvature to the tip",
+                Matches((NODE,), 0.02, 0.1),
             ),
         ),
         one_patch,
