@@ -195,15 +195,16 @@ class Scene:
         for k in np.flatnonzero(faces_camera(corners)).tolist():
             canvas.polygon(corners[k], colours[k])
             canvas.line(corners[k], self._theme.outline, closed=True)
+            ink = "#ffffff" if abs(values[k]) > DARK else INK
             if dead[k]:
-                self._cross_out(canvas, corners[k])
+                self._cross_out(canvas, corners[k], ink)
             elif np.linalg.norm(corners[k, 3] - corners[k, 0]) > NARROW:
                 x, y = corners[k].mean(axis=0).tolist()
-                canvas.write(f"{k + 1}", x, y, "white" if abs(values[k]) > DARK else INK, "number", anchor=0.5)
+                canvas.write(f"{k + 1}", x, y, ink, "number", anchor=0.5)
 
-    def _cross_out(self, canvas: Canvas, corners: Array) -> None:
+    def _cross_out(self, canvas: Canvas, corners: Array, ink: str = INK) -> None:
         for line in (corners[[0, 2]], corners[[1, 3]]):
-            canvas.line(line, INK, CROSS)
+            canvas.line(line, ink, CROSS)
 
     def _seen(self, surfaces: Sequence[Array], colours: Shades, corners_around: int = 0) -> list[Face]:
         """Faces (k, c, 3) of some surfaces, the farthest first, those turned away left out. Of a body with so many corners around

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 LEFT_AS_THEY_ARE = {"README.md", "agents.md", "libraries.md"}
 """Pages whose Python blocks the commands do not need, and which take long."""
 SMALLER = {
-    "train": {"--minutes": None, "--updates": "1", "--jobs": "1"},
+    "train": {"--minutes": None, "--updates": "1", "--jobs": "1", "--looks": "0"},
     "tune": {"--trials": "2", "--updates": "2", "--jobs": "1"},
     "evaluate": {"--episodes": "2"},
     "record": {"--episodes": "2"},
@@ -176,7 +176,7 @@ def test_a_command_that_a_page_has_wrong_is_found(tmp_path, monkeypatch):
 
 def test_work_is_made_smaller_and_nothing_else_is_changed():
     assert smaller(["train", "ppo", "--minutes", "2", "--cluster", "ray://x", "--seed", "1"])[0] == [
-        *("train", "ppo", "--seed", "1", "--updates", "1", "--jobs", "1")
+        *("train", "ppo", "--seed", "1", "--updates", "1", "--jobs", "1", "--looks", "0")
     ]
     assert smaller(["benchmark", "--scenario", "delay"])[0][:3] == ["benchmark", "--scenario", "delay"]
     assert smaller(["benchmark", "--quick"]) == (["benchmark", "--quick"], True)

@@ -1,7 +1,9 @@
 """What the pages take from the package when they are built."""
 
+import re
 import runpy
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -84,3 +86,26 @@ def test_public_names_that_the_list_gives_are_those_that_python_gives():
             value = getattr(importlib.import_module(package), name)
             module, _, own = home.rpartition(".")
             assert getattr(importlib.import_module(module), own) is value, home
+
+
+SHOWN = runpy.run_path(str(ROOT / "docs" / "hooks" / "pictures.py"))
+
+
+def test_a_picture_is_shown_in_the_page_s_colours_and_at_half_of_its_fine_pixels():
+    page = SimpleNamespace(file=SimpleNamespace(src_uri="tutorials/airfoil-blade.md"))
+    shown = SHOWN["on_page_markdown"]("before ![a](../images/airfoil-section.png){ .wide }, ![b](../images/blade.svg)", page)
+    light, dark = re.findall(r"!\[a\]\((\S+)\)\{ \.wide width=(\d+) \}", shown)
+    assert [light[0], dark[0]] == ["../images/airfoil-section.png#only-light", "../images/airfoil-section-dark.png#only-dark"]
+    assert int(light[1]) == int(dark[1]) and 650 < int(light[1]) < 760
+    assert shown.endswith(", ![b](../images/blade.svg)")
+
+
+def test_every_picture_that_pages_show_has_one_for_dark_pages():
+    """But for drawings in colours, and the examples' on transparent ground, that are read on both."""
+    missing = []
+    for page in sorted((ROOT / "docs").rglob("*.md")):
+        for place in re.findall(r"!\[[^\]]*\]\(([^)\s#:]+)", page.read_text(encoding="utf-8")):
+            picture = page.parent / place
+            if picture.suffix in (".png", ".webp") and not picture.with_stem(f"{picture.stem}-dark").is_file():
+                missing.append(place)
+    assert missing == []

@@ -149,6 +149,15 @@ def test_dead_patches_are_crossed_out_and_no_others():
             assert (np.abs(crossed[y - 1 : y + 2, x - 1 : x + 2] - ink).max(axis=-1) < 90).any() == is_dead
 
 
+def test_a_cross_is_seen_on_the_darkest_colours_too():
+    scene, nothing = Scene(Blade(blade_config())), np.zeros(4, dtype=bool)
+    crossed = sheet(scene, Values(np.full(4, -1.0), np.ones(4), ~nothing, ~nothing))
+    for patches in (scene._rest.actuators, scene._dropped(scene._rest)):
+        for patch in scene._camera.project(patches)[0]:
+            x, y = np.rint(0.75 * patch[0] + 0.25 * patch[2]).astype(int)
+            assert crossed[y - 1 : y + 2, x - 1 : x + 2].min(axis=-1).max() > 180
+
+
 @pytest.mark.parametrize(("load", "side"), [((0.0, 1.0), 1.0), ((0.0, -1.0), -1.0)])
 def test_an_arrow_pushes_the_blade_the_way_the_load_does(load, side):
     scene = Scene(Blade(blade_config()))

@@ -53,6 +53,7 @@ COMMANDS = {
             "--folder": "made",
             "--recipe": None,
             "--from": None,
+            "--looks": "1",
             "--device": "cpu",
             "--jobs": "1",
             "--cluster": None,

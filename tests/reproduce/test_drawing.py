@@ -8,6 +8,8 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from train.figures.figure import Curve, Look, Marker, Panel
+from train.figures.palette import contrast
+from train.figures.paper import THEMES
 from train.reproduce.drawing import appearances, dressed, legend_entries, lightnesses
 from train.reproduce.judging.study import Outcome
 
@@ -30,6 +32,14 @@ def test_mfc_and_pzt_look_alike_in_every_figure(labels):
 
 def test_without_materials_lightness_is_evenly_spread():
     assert np.ptp(np.diff(lightnesses(["a", "b", "c", "d"]))) < 1e-12
+
+
+@pytest.mark.parametrize("theme", THEMES)
+@pytest.mark.parametrize("labels", ["abcdefgh", ("MFC", "PZT", "bare", "printed")])
+def test_lines_stand_out_from_the_paper_of_both_themes(theme, labels):
+    looks = appearances(outcome(*labels), theme)
+    assert min(contrast(look.colour, THEMES[theme]["paper"]) for look in looks.values()) >= 3.0  # WCAG 2.1 (1.4.11)
+    assert len({look.colour for look in looks.values()}) == len(labels)
 
 
 def test_only_where_a_panel_has_dotted_curves_are_solid_ones_broad_and_pale():

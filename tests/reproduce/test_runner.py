@@ -151,7 +151,9 @@ def test_an_interrupted_run_keeps_what_it_finished(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         run([first, second], tmp_path, finished=stop)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-3.2.csv", "figure-3.2.json", "figure-3.2.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        *("figure-3.2-dark.png", "figure-3.2.csv", "figure-3.2.json", "figure-3.2.png")
+    ]
     run([first, second], tmp_path)
     assert len(calls) == 1
 
@@ -178,7 +180,9 @@ def test_command_writes_the_page_and_the_documentation(tmp_path):
     )
     assert result.exit_code == 0, result.output
     index, page = ((tmp_path / "docs" / name).read_text() for name in ("thesis.md", "thesis-chapter-3.md"))
-    assert "](figures/figure-3.3.png)" in page and (tmp_path / "docs" / "figures" / "figure-3.3.png").exists()
+    assert "](figures/figure-3.3.png)" in page and all(
+        (tmp_path / "docs" / "figures" / f"figure-3.3{end}.png").exists() for end in ("", "-dark")
+    )
     assert "not run" in index and "Chapter 6: " not in index and not (tmp_path / "docs" / "thesis-chapter-6.md").exists()
     assert (tmp_path / "out" / "report.html").exists() and (tmp_path / "out" / "report.md").exists()
     assert "resumed" not in result.stderr
@@ -243,4 +247,4 @@ def test_ctrl_c_writes_the_page_of_what_is_finished_and_says_how_to_go_on(tmp_pa
     assert result.exit_code == 130
     assert "beamenv: interrupted: what was finished is kept, and the same command resumes." in result.output
     names = sorted(path.name for path in tmp_path.iterdir())
-    assert names == ["report.html", "report.md", "table-3.4.csv", "table-3.4.json", "table-3.4.png"]
+    assert names == ["report.html", "report.md", *(f"table-3.4{end}" for end in ("-dark.png", ".csv", ".json", ".png"))]

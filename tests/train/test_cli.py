@@ -97,6 +97,8 @@ def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
     (tmp_path / "brief.toml").write_text(BRIEF)
     trained = run("train", "gradient", "--recipe", str(tmp_path / "brief.toml"), "--folder", str(tmp_path / "agent"))
     assert trained.exit_code == 0, trained.output
+    assert (tmp_path / "agent" / "learning.csv").read_text().startswith("elapsed,steps,updates,cost,looked\n")
+    assert (tmp_path / "agent" / "learning.png").read_bytes().startswith(b"\x89PNG")
     result = run("evaluate", str(tmp_path / "agent"), "--episodes", "2", "--json")
     assert result.exit_code == 0
     assert json.loads(result.stdout)["controller"] == "agent"
@@ -108,8 +110,9 @@ def test_a_trained_agent_is_evaluated_from_its_folder(tmp_path):
 def test_a_training_goes_on_where_it_stopped(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "brief.toml").write_text(BRIEF)
-    arguments = ("train", "gradient", "--recipe", "brief.toml", "--scenario", "white", "--seed", "7")
+    arguments = ("train", "gradient", "--recipe", "brief.toml", "--scenario", "white", "--looks", "0", "--seed", "7")
     assert run(*arguments).exit_code == 0
+    assert "looked" not in (tmp_path / "results/agents/gradient-white-7/learning.csv").read_text()
     home = tmp_path / "results/agents/gradient-white-7"
     weights = (home / "weights.npz").read_bytes()
     again = run(*arguments)

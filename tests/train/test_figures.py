@@ -7,17 +7,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from train.comparison.figures import learning_figure
 from train.comparison.learning_curves import learning_curves
 from train.figures import paper, paper_heat_map, screen, screen_heat_map
 from train.figures.figure import Curve, Look, Marker, Note, Panel
 from train.figures.heat_map import HeatMap
+from train.figures.learning import learning_figure
 from train.figures.palette import LINES, NEUTRAL, PALETTE, SIGNS, contrast
 from train.figures.panels import LearningCurves, actuator, learning_panel, pole_panel, voltage_curves
 from train.figures.patches import rows_of
 
 pyplot = pytest.importorskip("matplotlib.pyplot", reason="matplotlib is not installed")
 matplotlib = pytest.importorskip("matplotlib")
+pytest.importorskip("matplotlib.offsetbox")
 Image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
 go = pytest.importorskip("plotly.graph_objects", reason="plotly is not installed")
 colors = pytest.importorskip("plotly.colors", reason="plotly is not installed")
@@ -174,11 +175,19 @@ def test_nothing_that_is_learnt_or_compared_lies_below_the_figure_and_all_lines_
     pyplot.close(figure)
 
 
-def test_learning_curves_of_shipped_agents_name_their_axis_once_a_row():
-    panels = [Panel(f"ppo, {k}", "million intervals", "" if k % 3 else "J / J of LQG", [Curve(X, X, "seed 0")]) for k in range(4)]
+def test_learning_curves_of_shipped_agents_name_their_axis_once_a_row_and_each_curve_at_its_end():
+    curves = [Curve(X, X / 4.0, "LQG"), *(Curve(X, X / (4.0 + 0.01 * k), f"seed {k}", LINES[k]) for k in range(4))]
+    panels = [Panel(f"ppo, {k}", "million intervals", "" if k % 2 else "J / J of LQG", curves) for k in range(3)]
     figure = learning_curves(panels, "dark")
-    assert [axis.get_ylabel() for axis in figure.axes[:4]] == ["J / J of LQG", "", "", "J / J of LQG"]
+    assert [axis.get_ylabel() for axis in figure.axes[:3]] == ["J / J of LQG", "", "J / J of LQG"]
     assert "lower is better" in figure.get_suptitle()
+    figure.canvas.draw()
+    held = [each for each in figure.axes[0].artists if isinstance(each, matplotlib.offsetbox.AnnotationBbox)]
+    names = [each.findobj(matplotlib.text.Text)[0].get_text() for each in held]
+    boxes = [each.get_window_extent() for each in held]
+    assert names == ["LQG", *(f"seed {k}" for k in range(4))]
+    assert all(figure.axes[0].bbox.x1 < box.x0 and box.x1 < figure.axes[1].get_tightbbox().x0 for box in boxes)
+    assert not any(box.overlaps(other) for index, box in enumerate(boxes) for other in boxes[index + 1 :])
     pyplot.close(figure)
 
 

@@ -52,6 +52,7 @@ def test_a_column_writes_value_interval_and_what_is_infinite():
     assert Column("tip", "tip, µm", 1e6, "{:.1f}", interval=True).text(estimate) == "1.5 [1.0, ∞]"
     assert Column("tip", "tip, µm", 1e6, "{:.1f}").text(None) == "–"
     assert number(12345.0, "{:.1f}") == "1.23e+04"
+    assert number(-0.5, "{:.2f}") == "−0.50"  # a minus sign, not a hyphen
     assert number(12345.0, "{:.0f}") == "12345"
 
 

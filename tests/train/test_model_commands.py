@@ -117,7 +117,7 @@ def test_laws_of_the_true_state_are_left_out_where_several_plants_move(uneven, t
 
 
 def test_a_training_on_a_model_that_has_changed_is_not_resumed(file, tmp_path):
-    words = ("train", "gradient", "--plant", file, "--updates", 1, "--folder", tmp_path / "agent")
+    words = ("train", "gradient", "--plant", file, "--updates", 1, "--looks", 0, "--folder", tmp_path / "agent")
     assert run(*words).exit_code == 0
     content = dict(np.load(file))
     assert run("evaluate", tmp_path / "agent", "--plant", file, "--episodes", 2).exit_code == 0

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import signal
+import time
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 
@@ -286,6 +287,24 @@ def test_looks_go_on_where_a_training_was_interrupted(tmp_path):
     run(rest, tmp_path / "parts", ignore, resume=True)
     seen = [[row["looked"] for row in curve(tmp_path / name)] for name in ("whole", "parts")]
     assert seen[0] == seen[1]
+
+
+def test_sparing_looks_that_are_dear_are_the_first_and_the_last_and_take_no_time_of_the_training(tmp_path, monkeypatch):
+    looks = []
+
+    def dear(validation, policy):
+        time.sleep(0.5)
+        looks.append(policy)
+        return 1.0
+
+    monkeypatch.setattr(Validation, "cost", dear)
+    (place,) = run(replace(job(GRADIENT), looks=6, sparing=True), tmp_path, ignore)
+    rows = curve(place)
+    assert [row["updates"] for row in rows if row["looked"] != "nan"] == ["1", "6"]
+    looks.clear()
+    begin = time.monotonic()
+    run(replace(job(GRADIENT), budget=Budget(seconds=0.6), looks=6), tmp_path / "by the clock", ignore)
+    assert looks and time.monotonic() - begin > 0.6 + 0.5 * len(looks)
 
 
 def test_a_training_that_looks_itself_is_not_looked_at(tmp_path):

@@ -136,13 +136,15 @@ def test_each_agent_scenario_and_seed_has_a_folder_of_its_own(tmp_path, monkeypa
         "4",
         "--jobs",
         "1",
+        "--looks",
+        "0",
     )
     result = command(*words)
     assert result.exit_code == 0, result.output
     names = {f"mine-{scenario}-{seed}" for scenario in ("white", "pulse") for seed in (3, 4)}
     assert {each.name for each in (tmp_path / "results" / "agents").iterdir()} == names
     assert {name for name in names if f"{name} saved in results/agents/{name}" in result.output} == names
-    assert command(*words[:3], "--scenario", "pulse", "--seed", "4", "--folder", "alone").exit_code == 0
+    assert command(*words[:3], "--scenario", "pulse", "--seed", "4", "--looks", "0", "--folder", "alone").exit_code == 0
     assert_same(weights(tmp_path / "alone"), weights(tmp_path / "results/agents/mine-pulse-4"))
     assert command(*words, "--resume").exit_code == 0
     assert "holds a training already" in command(*words).stderr
@@ -168,7 +170,7 @@ def test_what_no_training_can_be_made_of_is_refused_before_any_begins(words, sai
 def test_the_command_says_of_each_that_failed_why_and_saves_the_others(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "brief.toml").write_text(BRIEF)
-    words = ["mine", "--recipe", "brief.toml", "--scenario", "quiet", "--scenario", "white", "--jobs", "1"]
+    words = ["mine", "--recipe", "brief.toml", "--scenario", "quiet", "--scenario", "white", "--jobs", "1", "--looks", "0"]
     result = command(*words)
     assert result.exit_code == 1
     assert result.stdout == "mine-white-0 saved in results/agents/mine-white-0\n"

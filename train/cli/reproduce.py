@@ -19,7 +19,7 @@ from train.reproduce.judging.study import Study
 from train.reproduce.judging.verdicts import Verdict
 from train.reproduce.overview import verdicts_of
 from train.reproduce.report import documentation, html_page, markdown_page
-from train.reproduce.runner import Record, load, run, source_fingerprint
+from train.reproduce.runner import Record, load, pictures_in, run, source_fingerprint
 from train.reproduce.section import OWN_WORDS
 from train.reproduce.thesis import Model
 from train.shared.files import check_folder
@@ -116,7 +116,8 @@ def write_pages(output: Path, records: list[Record], docs: Path | None) -> None:
             write_whole(docs / name, content)
         for record in shown:
             if not record.error:
-                write_whole(docs / "figures" / f"{record.name}.png", (output / f"{record.name}.png").read_bytes())
+                for picture in pictures_in(output, record.name).values():
+                    write_whole(docs / "figures" / picture.name, picture.read_bytes())
 
 
 def with_earlier(output: Path, records: list[Record]) -> list[Record]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -34,6 +35,7 @@ from train.cli.train_options import (
     AgentsArgument,
     DeviceOption,
     FolderOption,
+    LooksOption,
     MinutesOption,
     RecipeOption,
     ResumeOption,
@@ -64,6 +66,7 @@ def train(
     folder: FolderOption = None,
     recipe: RecipeOption = None,
     start: StartOption = None,
+    looks: LooksOption = None,
     resume: ResumeOption = False,
     overwrite: Annotated[bool, overwriting("the training or agent that the folder holds")] = False,
     device: DeviceOption = None,
@@ -77,9 +80,9 @@ def train(
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
-    The folder gets the policy, its learning curve, checkpoints and TensorBoard's files. Of several agents, scenarios and seeds each
-    with each is a training, by several processes or a cluster; --resume then begins those that have not begun. One that fails
-    costs no other.
+    The folder gets the policy, its learning curve (learning.csv, learning.png), checkpoints and TensorBoard's files. Of several
+    agents, scenarios and seeds each with each is a training, by several processes or a cluster; --resume then begins those that
+    have not begun. One that fails costs no other.
     """
     homes: dict[Path, tuple[str, str, int]] = {}
     with one_sentence(lambda: _resumed_by(context, list(homes))):
@@ -92,14 +95,25 @@ def train(
         budgets = {each: _budget(minutes, updates, recipes[each].updates) for each in agent}
         environment = environment_arguments(preset, speed, blade, plant)
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
-        trainings = {home: _job(each, recipes, budgets, environment, start) for home, each in homes.items()}
+        trainings = {home: _job(each, recipes, budgets, environment, start, looks) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
         trained, already, whole = _trained(trainings, names, workers, resume, overwrite)
+        _draw(homes, trained)
         _tell(homes, names, trained, already, as_json)
         if not whole:
             raise KeyboardInterrupt
     if trained.failed:
         raise typer.Exit(1)
+
+
+def _draw(homes: Mapping[Path, tuple[str, str, int]], trained: Trained) -> None:
+    """The learning curve of each training."""
+    from train.figures.learning import draw_learning
+
+    for home, places in trained.places.items():
+        agent = homes[home][0]
+        named = {agent: places[0]} if len(places) == 1 else {f"{agent}, run {place.name}": place for place in places}
+        draw_learning(named, home)
 
 
 def _tell(
@@ -192,11 +206,13 @@ def _job(
     budgets: Mapping[str, Budget],
     environment: Mapping[str, Any],
     start: Path | None,
+    looks: int | None,
 ) -> Job:
-    from train.learning.job import Job
+    from train.learning.job import LOOKS, Job
 
     agent, scenario, seed = training
-    return Job(agent, recipes[agent], scenario, seed, budgets[agent], environment, start)
+    job = Job(agent, recipes[agent], scenario, seed, budgets[agent], environment, start)
+    return replace(job, looks=LOOKS if looks is None else looks, sparing=looks is None)
 
 
 def _total(budget: Budget) -> float:

@@ -34,6 +34,15 @@ RecipeOption = Annotated[Path | None, typer.Option(help="A recipe of your own, a
 StartOption = Annotated[
     Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune; its best run of several.")
 ]
+LooksOption = Annotated[
+    int | None,
+    typer.Option(
+        min=0,
+        max=10_000,
+        help="At the policy without exploration, on validation episodes, for its learning curve; 0: none. Twelve if left out, or "
+        "fewer where they would take more than a tenth of the training's time. Recipes with validation look by themselves.",
+    ),
+]
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments, to the same result.")
 ]

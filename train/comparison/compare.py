@@ -27,7 +27,7 @@ from train.controllers.sources import Trained
 from train.controllers.tiers import LEARNT
 from train.learning.agents import AGENTS
 from train.learning.checkpoint import NAME as CHECKPOINT
-from train.learning.job import Job, run
+from train.learning.job import LOOKS, Job, run
 from train.learning.recipe import Recipe, named_recipe
 from train.learning.recipes import NAMES
 from train.learning.session import Budget
@@ -42,9 +42,6 @@ from train.shared.lock import alone_in
 
 CLASSICAL = ("none", "velocity", "positive-position-feedback", "lqg-thesis", "lqg", "lqg-load", "lqr", "lqr-load")
 """The controllers that the two agents are compared with here; ``beamenv benchmark`` takes them all."""
-
-LOOKS = 12
-"""At the policy on validation seeds, for the learning curve of an agent that never looks itself."""
 
 DRAWN = ("none", "velocity", "positive-position-feedback", "lqg")
 """Whose loops' poles are drawn."""

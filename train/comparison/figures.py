@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from baselines import Evaluation, LinearController, closed_loop_poles
 from beamenv.plant.plant import Plant
 from train.figures.figure import Curve, Look, Panel
+from train.figures.learning import learning_figure, with_a_cost
 from train.figures.palette import BEHIND, INK, LINES
-from train.figures.panels import LearningCurves, learning_panel, pole_panel, voltage_curves
-from train.figures.paper import STYLE, draw_panel, handles, plain, save
+from train.figures.panels import pole_panel, voltage_curves
+from train.figures.paper import draw_panel, handles, plain, save, styled
 
 Array = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ def episode_figure(evaluations: Sequence[Evaluation], episode: int) -> Any:
 
     columns = 3
     rows = -(-len(evaluations) // columns)
-    with plt.rc_context(STYLE):
+    with styled():
         figure = plt.figure(figsize=(11.0, 3.1 * rows), layout="constrained")
         cells = figure.subfigures(rows, columns, squeeze=False).ravel()
         upper = _cost_panel if not tells_displacements(evaluations[0]) else _tip_panel
@@ -101,27 +102,13 @@ def _voltage_panel(evaluation: Evaluation, episode: int) -> Panel:
     return Panel("", "time, ms", f"voltage, {unit}", curves, x_limits=(0.0, time[-1]), y_limits=(low, high))
 
 
-def learning_figure(curves: Mapping[str, Array], levels: Mapping[str, float]) -> Any:
-    """Cost of each agent's policy over training time, (k, 3) of seconds, steps and cost, against controllers' lines."""
-    import matplotlib.pyplot as plt
-
-    panel = learning_panel(LearningCurves(curves, {f"{name}, held-out episodes": level for name, level in levels.items()}))
-    with plt.rc_context(STYLE):
-        figure, axis = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
-        draw_panel(axis, panel)
-        lowest = min(float(np.nanmin(curve.y, initial=np.inf)) for curve in panel.curves)
-        axis.set(ylabel=f"{panel.y_label}\nvalidation episodes, lower is better", ylim=(np.floor(9.0 * lowest) / 10.0, None))
-        axis.legend(handles=handles([panel]), loc="best")
-    return figure
-
-
 def pole_figure(plant: Plant, controllers: Sequence[LinearController]) -> Any:
     """Poles of the sampled loops as their continuous equivalents, upper half plane."""
     import matplotlib.pyplot as plt
 
     poles = {controller.name: closed_loop_poles(plant, controller) for controller in controllers}
     panel = pole_panel(poles, highest=1.08 * plant.natural_frequencies[-1])
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axis = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
         draw_panel(axis, panel)
         axis.set_xlim(right=5.0)
@@ -140,8 +127,7 @@ def write_figures(
     """``episode.png``, ``poles.png`` and, when training reported any progress, ``learning.png``."""
     save(episode_figure(evaluations, clearest_episode(evaluations[0])), folder / "episode.png")
     save(pole_figure(plant, controllers), folder / "poles.png")
-    reported = {name: curve for name, curve in curves.items() if len(curve)}
-    if reported:
+    if reported := with_a_cost(curves):
         save(learning_figure(reported, levels), folder / "learning.png")
 
 

@@ -20,7 +20,7 @@ from train.controllers.shipped import FOLDER as SHELF
 from train.controllers.shipped import Shipped, shipped
 from train.figures.figure import Curve, Look, Panel
 from train.figures.palette import LINES, NEUTRAL, colour
-from train.figures.paper import draw_panel, handles, save_themes, styled
+from train.figures.paper import draw_panel, name_ends, save_themes, styled
 from train.learning.validation import Validation
 from train.shared.curve import read_curve
 
@@ -29,9 +29,9 @@ Array = NDArray[np.float64]
 FOLDER = Path("docs/images")
 AGENTS = ("ppo", "ppo-belief-idle", "ppo-belief", "sac")
 """Whose runs are drawn, where they ship."""
-HIGHEST = 2.5
+LOWEST, HIGHEST = 0.9, 2.0
 """Of J over that of LQG: what is above is a blade that shakes itself."""
-COLUMNS, WIDTH, HEIGHT = 3, 8.4, 2.5
+COLUMNS, WIDTH, HEIGHT = 2, 8.4, 2.1
 """Inches: of the figure, as wide as a page, and of a row."""
 
 
@@ -43,7 +43,7 @@ def reference_cost(scenario: str) -> float:
 
 
 def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
-    """One for each agent and scenario: J over LQG's, against control intervals, a curve for each run."""
+    """One for each recipe and scenario, named so: J over LQG's, against control intervals, a curve for each run."""
     panels: list[Panel] = []
     for agent, scenario in sorted({(run.agent, run.scenario) for run in runs}, key=lambda pair: (AGENTS.index(pair[0]), pair[1])):
         own = [run for run in runs if (run.agent, run.scenario) == (agent, scenario)]
@@ -56,8 +56,8 @@ def learning_panels(runs: Sequence[Shipped]) -> list[Panel]:
         end = max(float(curve.x[-1]) for curve in curves)
         level = Curve(np.array([0.0, end]), np.ones(2), "LQG", "solid", Look(NEUTRAL, width=0.8))
         name = "J / J of LQG" if len(panels) % COLUMNS == 0 else ""
-        x_limits, y_limits, title = (0.0, end), (0.8, HIGHEST), f"{agent}, {scenario}"
-        panels.append(Panel(title, "million intervals", name, [level, *curves], x_limits=x_limits, y_limits=y_limits))
+        title, x_label, y_limits = f"{agent}, scenario {scenario}", "million control intervals", (LOWEST, HIGHEST)
+        panels.append(Panel(title, x_label, name, [level, *curves], x_limits=(0.0, end), y_limits=y_limits))
     return panels
 
 
@@ -67,15 +67,16 @@ def learning_curves(panels: Sequence[Panel], theme: str = "light") -> Any:
 
     rows = -(-len(panels) // COLUMNS)
     with styled(theme):
-        size = (WIDTH, HEIGHT * rows + 0.6)
+        size = (WIDTH, HEIGHT * rows + 0.3)
         figure, axes = plt.subplots(rows, COLUMNS, figsize=size, layout="constrained", squeeze=False)
         for axis, panel in zip(axes.ravel(), panels, strict=False):
             draw_panel(axis, panel)
         for axis in axes.ravel()[len(panels) :]:
             axis.set_axis_off()
         figure.suptitle("The policy without exploration on validation episodes: lower is better", fontsize=10, x=0.01, ha="left")
-        entries = handles(panels)
-        figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+        figure.draw_without_rendering()
+        for axis, panel in zip(axes.ravel(), panels, strict=False):
+            name_ends(axis, panel)
     return figure
 
 

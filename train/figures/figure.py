@@ -26,6 +26,7 @@ class Marker:
     size: float | None = None
     """Points of a PNG, pixels on a screen; None for the usual."""
     fill: Literal["full", "none", "white"] = "full"
+    """White is the paper's colour."""
     every: tuple[int, int] = (0, 1)
     """First point that has it, and from there every n-th."""
 

@@ -7,8 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from beamenv.configuration.writing import write_whole
+from beamenv.rendering.charts import spread
 from train.figures.figure import Curve, Marker, Panel, listed
+from train.figures.palette import BEHIND, INK
 from train.shared.files import on_one_line
 
 STYLE: Mapping[str, Any] = {
@@ -19,15 +23,14 @@ STYLE: Mapping[str, Any] = {
     "legend.frameon": False,
     "lines.linewidth": 1.0,
     "lines.markersize": 5,
-    "savefig.dpi": 160,
 }
 THEMES: Mapping[str, Mapping[str, str]] = {
-    "light": {"paper": "#ffffff", "ink": "#1a1a1a", "wall": "#cccccc"},
-    "dark": {"paper": "#0d1117", "ink": "#e6eaef", "wall": "#6b7684"},
+    "light": {"paper": "#ffffff", "ink": INK, "behind": BEHIND, "wall": "#cccccc", "cell": "#ededed", "grid": "#e0e0e0"},
+    "dark": {"paper": "#0d1117", "ink": "#e6eaef", "behind": "#5f6b78", "wall": "#6b7684", "cell": "#212b36", "grid": "#27303b"},
 }
 """What is no datum, on the paper of a light and of a dark page."""
 DOTS = 200
-"""An inch, of what is written by ``save_themes``: a picture is shown at half its size, sharp on fine screens too."""
+"""An inch, which the file tells: pages show a picture at half its pixels, sharp on fine screens too."""
 DASHES: Mapping[str, Any] = {
     "solid": "-",
     "dotted": (0, (1.2, 1.4)),
@@ -36,6 +39,8 @@ DASHES: Mapping[str, Any] = {
     "points": "",
     "bars": "-",
 }
+END, PIECE = 10.5, 18.0
+"""Points: from one curve's name at its end to the next, at least, and how long the piece of line beside it is."""
 BAR = 3.5
 """Points: how broad bars are."""
 DECADES = 500.0
@@ -58,11 +63,6 @@ SIGNS = {
     "x-thin": "x",
 }
 """By plotly's names."""
-FILLS: Mapping[str, Mapping[str, str]] = {
-    "full": {},
-    "none": {"markerfacecolor": "none"},
-    "white": {"markerfacecolor": "white"},
-}
 STEPS = {"ends": "steps-pre", "begins": "steps-post"}
 
 
@@ -70,38 +70,54 @@ def styled(theme: str = "light") -> Any:
     """The context in which figures of a theme are made."""
     import matplotlib.pyplot as plt
 
-    paper, ink = THEMES[theme]["paper"], THEMES[theme]["ink"]
+    return plt.rc_context({**STYLE, **themed(theme)})
+
+
+def themed(theme: str) -> dict[str, str]:
+    """Matplotlib's settings for ink and paper of a theme."""
     inked = ("text.color", "axes.edgecolor", "axes.labelcolor", "axes.titlecolor", "xtick.color", "ytick.color")
     papered = ("figure.facecolor", "axes.facecolor", "savefig.facecolor")
-    return plt.rc_context({**STYLE, **dict.fromkeys(inked, ink), **dict.fromkeys(papered, paper)})
+    colours = THEMES[theme]
+    return {**dict.fromkeys(inked, colours["ink"]), **dict.fromkeys(papered, colours["paper"]), "grid.color": colours["grid"]}
+
+
+def on_paper(colour: str) -> str:
+    """A colour as the theme that is drawn in has it: ink, and what lies behind ink, follow the paper."""
+    from matplotlib import rcParams
+
+    theme = next((each for each in THEMES.values() if each["paper"] == rcParams["axes.facecolor"]), THEMES["light"])
+    return {INK: theme["ink"], BEHIND: theme["behind"]}.get(colour, colour)
 
 
 def save(figure: Any, path: Path) -> None:
-    """A PNG, whole or not at all."""
-    import matplotlib.pyplot as plt
-
-    picture = io.BytesIO()
-    figure.savefig(picture, format="png", bbox_inches="tight")
-    plt.close(figure)
-    write_whole(path, picture.getvalue())
+    """A PNG without margins, whole or not at all."""
+    _save(figure, path, tight=True)
 
 
-def save_themes(drawn: Callable[[str], Any], path: Path) -> None:
-    """A figure, drawn in the theme that is named, as a PNG for light pages and one beside it, ``…-dark.png``, for dark ones."""
+def save_themes(drawn: Callable[[str], Any], path: Path, tight: bool = False) -> None:
+    """A figure, drawn in the theme that is named, as a PNG for light pages and one beside it for dark ones.
+
+    Of the figure's own size, or ``tight``: without margins.
+    """
     for theme in THEMES:
-        _save_fine(drawn(theme), path if theme == "light" else path.with_stem(f"{path.stem}-{theme}"))
+        _save(drawn(theme), path if theme == "light" else dark(path), tight)
 
 
-def _save_fine(figure: Any, path: Path) -> None:
-    """A PNG of the figure's own size, at ``DOTS``, in 256 colours: a third of the bytes, and no difference to the eye."""
+def dark(path: Path) -> Path:
+    """Where the picture for dark pages lies: beside the one for light pages, as ``…-dark.png``."""
+    return path.with_stem(f"{path.stem}-dark")
+
+
+def _save(figure: Any, path: Path, tight: bool) -> None:
+    """At ``DOTS``, in 256 colours: a third of the bytes, and no difference to the eye."""
     import matplotlib.pyplot as plt
     from PIL import Image
 
     picture, compact = io.BytesIO(), io.BytesIO()
-    figure.savefig(picture, format="png", dpi=DOTS)
+    figure.savefig(picture, format="png", dpi=DOTS, bbox_inches="tight" if tight else None)
     plt.close(figure)
     few = Image.open(picture).convert("RGB").quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-    few.save(compact, format="png", optimize=True)
+    few.save(compact, format="png", optimize=True, dpi=(DOTS, DOTS))
     write_whole(path, compact.getvalue())
 
 
@@ -165,7 +181,7 @@ def draw_curve(axis: Any, curve: Curve) -> None:
 def appearance(curve: Curve) -> dict[str, Any]:
     """How matplotlib draws a curve's line and markers, in the axes and in the legend."""
     look = curve.look
-    style: dict[str, Any] = {"color": look.colour, "linestyle": DASHES[curve.line], "alpha": look.opacity}
+    style: dict[str, Any] = {"color": on_paper(look.colour), "linestyle": DASHES[curve.line], "alpha": look.opacity}
     if look.width is not None:
         style["linewidth"] = look.width
     if curve.line == "bars":
@@ -177,8 +193,33 @@ def appearance(curve: Curve) -> dict[str, Any]:
 
 def marking(marker: Marker) -> dict[str, Any]:
     """How matplotlib draws a sign."""
+    from matplotlib import rcParams
+
     size = {} if marker.size is None else {"markersize": marker.size}
-    return {"marker": SIGNS[marker.sign], **FILLS[marker.fill], **size}
+    fills = {"none": {"markerfacecolor": "none"}, "white": {"markerfacecolor": rcParams["axes.facecolor"]}}
+    return {"marker": SIGNS[marker.sign], **fills.get(marker.fill, {}), **size}
+
+
+def name_ends(axis: Any, panel: Panel) -> None:
+    """The names of curves right of the axes, each at the height at which its curve ends or near it, with a piece of its line.
+
+    Of a figure whose layout is there, as ``draw_without_rendering`` finds it.
+    """
+    from matplotlib.lines import Line2D
+    from matplotlib.offsetbox import AnnotationBbox, DrawingArea, HPacker, TextArea
+
+    curves, box = listed([panel]), axis.get_window_extent()
+    ends = [axis.transData.transform((curve.x[-1], curve.y[np.isfinite(curve.y)][-1]))[1] for curve in curves]
+    heights = spread(np.array(ends), box.y0, box.y1, END / 72.0 * axis.figure.dpi) if curves else np.empty(0)
+    for curve, height in zip(curves, ((heights - box.y0) / box.height).tolist(), strict=True):
+        piece = DrawingArea(PIECE, 4.0)
+        piece.add_artist(Line2D([0.0, PIECE], [2.0, 2.0], **appearance(curve)))
+        name = TextArea(plain(curve.label), textprops={"fontsize": 8})
+        beside = HPacker(children=[piece, name], align="center", pad=0.0, sep=4.0)
+        held = AnnotationBbox(
+            beside, (1.0, height), (5.0, 0.0), "axes fraction", "offset points", box_alignment=(0.0, 0.5), frameon=False, pad=0.0
+        )
+        axis.add_artist(held)
 
 
 def handles(panels: Sequence[Panel]) -> list[Any]:

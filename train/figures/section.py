@@ -31,15 +31,15 @@ def draw_section(config: BladeConfig, found: SectionProperties, at: float, path:
     save(section_figure(config, found, at), path)
 
 
-def section_figure(config: BladeConfig, found: SectionProperties, at: float) -> Any:
+def section_figure(config: BladeConfig, found: SectionProperties, at: float, theme: str = "light") -> Any:
     """Walls in grey, actuators and sensors in colours, centres by their signs."""
     import matplotlib.pyplot as plt
 
     elements = elements_of(config, at)
-    with styled():
+    with styled(theme):
         figure, axis = plt.subplots(figsize=_shape(elements), layout="constrained")
-        draw_on(axis, config, found, elements)
-        axis.set_title(f"section at {at:g} of the span, patches of every station")
+        draw_on(axis, config, found, elements, theme)
+        axis.set_title(f"section {'at the root' if at == 0.0 else f'at {at:g} of the span'}, patches of every station")
         axis.margins(0.06, 0.15)
         figure.legend(handles=axis.get_legend_handles_labels()[0], loc="outside lower center", **LEGEND)
     return figure

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from baselines.identification.identified import Identified
 from train.figures.figure import Curve, Look, Marker, Panel
 from train.figures.palette import INK, LINES, NEUTRAL, colour
-from train.figures.paper import STYLE, draw_panel, handles, save
+from train.figures.paper import draw_panel, handles, save, styled
 
 Array = NDArray[np.float64]
 
@@ -28,19 +28,26 @@ LEAST = 1e-5
 
 def draw_figures(found: Identified, folder: Path) -> list[Path]:
     """Write ``stabilisation.png`` and ``fit.png`` into a folder; their paths."""
-    drawn = {
-        "stabilisation.png": [stabilisation_panel(found), spectrum_panel(found)],
-        "fit.png": [history_panel(found), whiteness_panel(found), order_panel(found)],
-    }
-    for name, panels in drawn.items():
-        save(_figure(panels, share_x=name == "stabilisation.png"), folder / name)
+    drawn = {"stabilisation.png": stabilisation_figure, "fit.png": fit_figure}
+    for name, figure in drawn.items():
+        save(figure(found), folder / name)
     return [folder / name for name in drawn]
 
 
-def _figure(panels: Sequence[Panel], share_x: bool) -> Any:
+def stabilisation_figure(found: Identified, theme: str = "light") -> Any:
+    """Poles over the order of the model, above the spectra."""
+    return _figure([stabilisation_panel(found), spectrum_panel(found)], True, theme)
+
+
+def fit_figure(found: Identified, theme: str = "light") -> Any:
+    """How well rows held back are met: readings, errors, orders."""
+    return _figure([history_panel(found), whiteness_panel(found), order_panel(found)], False, theme)
+
+
+def _figure(panels: Sequence[Panel], share_x: bool, theme: str) -> Any:
     import matplotlib.pyplot as plt
 
-    with plt.rc_context(STYLE):
+    with styled(theme):
         size = {"figsize": (7.6, 2.7 * len(panels)), "sharex": share_x, "squeeze": False, "layout": "constrained"}
         figure, axes = plt.subplots(len(panels), 1, **size)
         for axis, panel in zip(axes[:, 0], panels, strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from hashlib import sha256
@@ -42,6 +43,12 @@ NAMES = tuple(name for name in (*BENCHMARK, *OPEN) if name not in UNSEEN)
 CURVE_POINTS = 200
 """Rows of a learning curve, about."""
 
+LOOKS = 12
+"""At the policy on validation seeds, for the learning curve of an agent that never looks itself."""
+
+PART = 0.1
+"""Of the time spent on training: what looks may take where they are to be sparing."""
+
 STATE = ("identity", "training", "seconds", "curve")
 """What a checkpoint holds of a training."""
 
@@ -65,6 +72,8 @@ class Job:
     """What the scenario's file says, for where it is not."""
     looks: int = 0
     """How many times a training that never looks at its policy on validation seeds is looked at, for its learning curve alone."""
+    sparing: bool = False
+    """Whether there are fewer looks where these would take more than ``PART`` of the training's time; the first and last stay."""
 
     def tasks(self) -> dict[str, Task]:
         """The task of each scenario; of a model of one's own a generalist has those that can be of it."""
@@ -153,10 +162,10 @@ def _run(job: Job, folder: Path, report: Report, before: Mapping[str, Any] | Non
         training = start(list(tasks.values()), job.recipe.settings, job.seed, teacher_for(job.teacher, tasks))
         looks = 0 if getattr(job.recipe.settings, "validation", 0) else job.looks
         validation = Validation(list(tasks.values())) if looks else None
-        journal = Journal(folder, job.budget, training, job.told(tasks), report, validation, looks)
+        journal = Journal(folder, job.budget, training, job.told(tasks), report, validation, looks, job.sparing)
         try:
             elapsed = journal.begin() if before is None else journal.resume(before)
-            policies = follow(training, job.budget, journal.note, journal.keep, elapsed)
+            policies = follow(training, job.budget, journal.note, journal.keep, elapsed, aside=lambda: journal.looking)
         except Interrupted as error:
             ending, policies = error, training.policies()
         finally:
@@ -193,10 +202,11 @@ class Journal:
         report: Report,
         validation: Validation | None = None,
         looks: int = 0,
+        sparing: bool = False,
     ) -> None:
         self.curve: list[Progress] = []
-        self.seconds = 0.0
-        self._validation, self._looks = validation, looks
+        self.seconds, self.looking = 0.0, 0.0
+        self._validation, self._looks, self._sparing = validation, looks, sparing
         self.scalars = Scalars(folder / "tensorboard")
         self._folder, self._budget, self._training, self._identity, self._report = folder, budget, training, identity, report
 
@@ -229,13 +239,24 @@ class Journal:
         """A point of the curve where it is time, and report."""
         self.seconds = progress.elapsed
         share = self._budget.share(progress.updates, progress.elapsed)
-        if share * self._looks >= sum(bool(each.looked) for each in self.curve) + 1 and self._validation is not None:
-            costs = tuple(self._validation.cost(policy) for policy in self._training.policies())
-            progress = replace(progress, looked=costs)
+        if self._validation is not None and self._looks_now(share):
+            progress = replace(progress, looked=self._look(self._validation))
         if share * CURVE_POINTS >= len(self.curve) + 1 or progress.looked or np.isfinite(progress.validated):
             self.curve.append(progress)
             self.scalars.write(progress, self._training.losses)
         self._report(progress)
+
+    def _looks_now(self, share: float) -> bool:
+        """Whether one more look is due and not too dear."""
+        due = share * self._looks >= sum(bool(each.looked) for each in self.curve) + 1
+        return due and (not self._sparing or share >= 1.0 or self.looking <= PART * self.seconds)
+
+    def _look(self, validation: Validation) -> tuple[float, ...]:
+        """Cost of each policy; the time that it takes is not the training's."""
+        begin = time.monotonic()
+        costs = tuple(validation.cost(policy) for policy in self._training.policies())
+        self.looking += time.monotonic() - begin
+        return costs
 
     def keep(self, elapsed: float) -> None:
         """Write a checkpoint."""

@@ -50,18 +50,19 @@ def follow(
     keep: Callable[[float], None] | None = None,
     elapsed: float = 0.0,
     interval: float = CHECKPOINT_INTERVAL,
+    aside: Callable[[], float] = lambda: 0.0,
 ) -> list[Policy]:
     """Train until the budget is spent, or until Ctrl-C; the policies learnt by then.
 
-    ``elapsed`` s were spent before. ``keep`` is called with the seconds spent about every ``interval`` s and at the end; never
-    after half an update. A signal to end does as Ctrl-C, and then raises ``Interrupted``; so does a
-    second one, at once and without ``keep``.
+    ``elapsed`` s were spent before; what ``aside`` tells, s, is no part of the training. ``keep`` is called with the seconds spent
+    about every ``interval`` s and at the end; never after half an update. A signal to end does as Ctrl-C, and then raises
+    ``Interrupted``; so does a second one, at once and without ``keep``.
     """
     begin, kept = time.monotonic() - elapsed, elapsed
     with Deferred() as interruption:
         while (spent := budget.share(training.updates, elapsed)) < 1.0 and not interruption.asked:
             training.update(1.0 - spent)
-            elapsed = time.monotonic() - begin
+            elapsed = time.monotonic() - begin - aside()
             try:
                 report(progress(training, elapsed))
             except KeyboardInterrupt:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from train.figures.figure import Curve, Look, Marker, Panel
 from train.figures.palette import INK, PALETTE, SIGNS
-from train.figures.paper import STYLE, draw_panel, handles, save
+from train.figures.paper import draw_panel, handles, save, styled
 from train.figures.patches import patches_panel
 from train.placement.sized import SizedFront
 
@@ -21,7 +21,7 @@ def draw_front(sized: SizedFront, path: Path) -> None:
     import matplotlib.pyplot as plt
 
     panels = front_panels(sized)
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axes = plt.subplots(1, 2, figsize=(11.0, 4.2), layout="constrained")
         for axis, panel in zip(axes, panels, strict=True):
             draw_panel(axis, panel)

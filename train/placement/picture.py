@@ -14,7 +14,7 @@ from beamenv.blade.build import build_beam
 from train.figures.figure import Curve, Look, Marker, Panel
 from train.figures.palette import INK
 from train.figures.panels import actuator
-from train.figures.paper import STYLE, draw_panel, handles, save
+from train.figures.paper import draw_panel, handles, save, styled
 from train.placement.placed import PlacedSide
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ def placement_figure(sides: Sequence[PlacedSide]) -> Any:
     """A column for each side: its wall with the patches, and the cost as each patch alone moves past the others."""
     import matplotlib.pyplot as plt
 
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axes = plt.subplots(
             2,
             len(sides),

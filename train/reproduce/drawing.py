@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from train.figures.figure import PLAIN, Curve, Look, Marker, Panel
-from train.figures.paper import draw_panel, handles
+from train.figures.paper import THEMES, draw_panel, handles, themed
 from train.reproduce.judging.study import Grid, Outcome
 from train.reproduce.thesis.points import is_printed
 
@@ -22,24 +22,31 @@ SIGNS = (
 PALE = replace(PLAIN, width=2.6, opacity=0.5)
 NOTHING = np.empty(0)
 Looks = dict[str, Look]
-MATERIALS = {"MFC": (0.0, "circle"), "PZT": (0.4, "square")}
+MATERIALS = {"MFC": (0.0, "circle"), "PZT": (0.3, "square")}
 """Lightness and sign of patches of a material, the same in all figures."""
-LIGHTEST = 0.78
+LIGHTEST = 0.59
+"""Contrast of 3 on white, as lines must have."""
+DIMMEST = 0.32
+"""Likewise on dark paper, where the darkest of white paper is the lightest."""
 PAGE_WIDTH, SINGLE_WIDTH, PANEL_HEIGHT, LOW_PANEL_HEIGHT, LEGEND_ROW = 8.6, 6.2, 2.7, 1.9, 0.22
 """Inches."""
 
 
-def draw(outcome: Outcome, title: str) -> bytes:
-    """The outcome's panels as one PNG."""
-    from matplotlib import style
+def draw(outcome: Outcome, title: str, theme: str = "light") -> bytes:
+    """The outcome's panels as one PNG, for light or for dark pages."""
+    from matplotlib import rc_context, style
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    with as_file(files("beamenv.train.reproduce").joinpath("look.mplstyle")) as look, style.context(str(look)):
+    with (
+        as_file(files("beamenv.train.reproduce").joinpath("look.mplstyle")) as look,
+        style.context(str(look)),
+        rc_context(themed(theme)),
+    ):
         columns = len(outcome.panels) if len(outcome.panels) <= 3 else 2
         rows = -(-len(outcome.panels) // columns)
         width = PAGE_WIDTH if columns > 1 else SINGLE_WIDTH
-        looks = appearances(outcome)
+        looks = appearances(outcome, theme)
         entries = handles([Panel("", "", "", legend_entries(outcome, looks))])
         per_row = max(1, int(width // 2.1))
         height = (PANEL_HEIGHT if rows < 4 else LOW_PANEL_HEIGHT) * rows + 0.3 + LEGEND_ROW * (-(-len(entries) // per_row))
@@ -47,7 +54,7 @@ def draw(outcome: Outcome, title: str) -> bytes:
         axes = figure.subplots(rows, columns, squeeze=False)
         for axis, panel in zip(axes.flat, outcome.panels, strict=False):
             if isinstance(panel, Grid):
-                draw_grid(axis, panel)
+                draw_grid(axis, panel, theme)
             else:
                 dotted = any(curve.line == "dotted" for curve in panel.curves)
                 draw_panel(axis, dressed(panel, looks, in_pairs=dotted and "dotted" in outcome.lines))
@@ -84,8 +91,11 @@ def labels_of(panels: Sequence[Panel | Grid]) -> list[str]:
     return list(dict.fromkeys(curve.label for curve in curves_of(panels) if curve.label))
 
 
-def appearances(outcome: Outcome) -> Looks:
-    """Colour and sign of each label: a sign of its own, and a lightness from dark to light within the panels that share labels."""
+def appearances(outcome: Outcome, theme: str = "light") -> Looks:
+    """Colour and sign of each label: a sign of its own, and a lightness from dark to light within the panels that share labels.
+
+    On dark paper from light to dark: what stands out on white does so on black.
+    """
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
@@ -97,7 +107,8 @@ def appearances(outcome: Outcome) -> Looks:
     for together in shared_labels(outcome.panels):
         for label, lightness in zip(together, lightnesses(together), strict=True):
             marker = replace(own.get(label, Marker()), sign=sign_of(label, labels))
-            looks[label] = Look(to_hex(colormaps["viridis"](lightness)), marker=marker)
+            shade = lightness if theme == "light" else 1.0 - (1.0 - DIMMEST) * lightness / LIGHTEST
+            looks[label] = Look(to_hex(colormaps["viridis"](shade)), marker=marker)
     return looks
 
 
@@ -210,13 +221,17 @@ def line_look(curve: Curve, looks: Looks, in_pairs: bool, marked: bool) -> Look:
     return look
 
 
-def draw_grid(axis: Any, grid: Grid) -> None:
+def draw_grid(axis: Any, grid: Grid, theme: str) -> None:
     """A table of text cells."""
+    paper, cell = THEMES[theme]["paper"], THEMES[theme]["cell"]
     axis.set_axis_off()
     axis.set_title(grid.title)
     cells = [[grid.cells.get((row, column), "") for column in grid.names] for row in grid.names]
-    shade = [["0.93" if cell else "white" for cell in line] for line in cells]
-    table = axis.table(cells, cellColours=shade, rowLabels=grid.names, colLabels=grid.names, loc="center", cellLoc="center")
+    shade = [[cell if text else paper for text in line] for line in cells]
+    heads = {"rowColours": [paper] * len(grid.names), "colColours": [paper] * len(grid.names)}
+    table = axis.table(cells, shade, rowLabels=grid.names, colLabels=grid.names, loc="center", cellLoc="center", **heads)
+    for each in table.get_celld().values():
+        each.set_edgecolor(THEMES[theme]["ink"])
     table.scale(1.0, 1.25)
     table.auto_set_font_size(False)
     table.set_fontsize(8)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from beamenv.configuration.writing import write_whole
+from train.figures.paper import THEMES, dark
 from train.reproduce.drawing import curve_rows, draw
 from train.reproduce.judging.second import Results, Second, judged_again
 from train.reproduce.judging.study import Outcome, Part, Study
@@ -28,7 +29,7 @@ DEPENDS_ON = ("beamenv", "baselines", "train.reproduce", "train.figures.figure",
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """What is kept of a study: enough for the page, beside its CSV and PNG."""
+    """What is kept of a study: enough for the page, beside its CSV and PNGs."""
 
     name: str
     seconds: float
@@ -166,7 +167,8 @@ class Made:
 
     record: Record
     csv: str = ""
-    picture: bytes = b""
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
+    """For light and for dark pages."""
 
 
 def made_of(study: Study, model: Model, fingerprint: str, results: Results) -> Made:
@@ -178,7 +180,7 @@ def made_of(study: Study, model: Model, fingerprint: str, results: Results) -> M
         outcome = study.compute(model, own)
         judgements = study.judge(outcome)
         second = judged_again(study, model, judgements, results)
-        picture = draw(outcome, study.heading)
+        pictures = {theme: draw(outcome, study.heading, theme) for theme in THEMES}
     except Exception as error:  # noqa: BLE001 - as above
         seconds, told = time.perf_counter() - start, f"{type(error).__name__}: {error}"
         return Made(Record(study.name, seconds, {}, error=told, fingerprint=fingerprint))
@@ -192,7 +194,7 @@ def made_of(study: Study, model: Model, fingerprint: str, results: Results) -> M
         rows=tuple(tuple(map(shown, row)) for row in outcome.rows) if study.tabulated else (),
         fingerprint=fingerprint,
     )
-    return Made(record, csv_text(outcome), picture)
+    return Made(record, csv_text(outcome), pictures)
 
 
 def write(folder: Path, made: Made) -> None:
@@ -201,8 +203,15 @@ def write(folder: Path, made: Made) -> None:
         return
     path = folder / made.record.name
     write_whole(path.with_name(f"{path.name}.csv"), made.csv)
-    write_whole(path.with_name(f"{path.name}.png"), made.picture)
+    for theme, picture in pictures_in(folder, made.record.name).items():
+        write_whole(picture, made.pictures[theme])
     write_whole(path.with_name(f"{path.name}.json"), json.dumps(asdict(made.record), ensure_ascii=False, indent=1))
+
+
+def pictures_in(folder: Path, name: str) -> dict[str, Path]:
+    """Where the pictures of a study lie, by their themes."""
+    light = folder / f"{name}.png"
+    return {"light": light, "dark": dark(light)}
 
 
 def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | None:
@@ -211,7 +220,7 @@ def load(folder: Path, name: str, fingerprint: str | None = None) -> Record | No
     Raises ValueError that names the file if it is none, or a damaged one.
     """
     path = folder / f"{name}.json"
-    if not all((folder / f"{name}.{kind}").is_file() for kind in ("json", "csv", "png")):
+    if not all(each.is_file() for each in (path, folder / f"{name}.csv", *pictures_in(folder, name).values())):
         return None
     kept = read_json(path)
     try:

@@ -52,12 +52,13 @@ EVALUATION = (
 
 
 def number(value: float, form: str) -> str:
-    """Three digits at most where it is large; ∞ for a blade that broke, a dash for what is not known."""
+    """For readers: three digits at most where it is large; ∞ for a blade that broke, a dash for what is not known."""
     if value != value:  # NaN
         return "–"
     if abs(value) == float("inf"):
         return "∞" if value > 0 else "−∞"
-    return f"{value:.3g}" if abs(value) >= 1e3 and form != "{:.0f}" else form.format(value)
+    written = f"{value:.3g}" if abs(value) >= 1e3 and form != "{:.0f}" else form.format(value)
+    return f"−{written[1:]}" if written.startswith("-") else written  # a minus, not a hyphen
 
 
 def share(value: float) -> str:

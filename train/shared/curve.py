@@ -13,7 +13,7 @@ from train.shared.files import read_rows, write_csv
 
 Array = NDArray[np.float64]
 
-NAME = "learning.csv"
+NAME, PICTURE = "learning.csv", "learning.png"
 
 COLUMNS = ("elapsed", "steps", "updates", "cost")
 """s, control intervals, updates of the policy, J relative to no control in training, exploration included."""

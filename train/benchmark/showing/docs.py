@@ -36,10 +36,8 @@ does not, is told beside the agents.
 - **Yours**: a further file in either folder adds a row or a column. `beamenv benchmark --submit mine` puts a trained agent of
   yours through every scenario and enters it on the [leaderboard](leaderboard.md).
 """
-PICTURE = (
-    "![J / J₀ of controllers in every scenario; lower is better](images/benchmark.png#only-light)\n"
-    "![The same on dark ground](images/benchmark-dark.png#only-dark)"
-)
+PICTURE = "![J / J₀ of controllers in every scenario; lower is better](images/benchmark.png)"
+"""On dark pages ``benchmark-dark.png``, which lies beside it."""
 LIMITS = """\
 ## What the comparison does not say
 

@@ -94,14 +94,14 @@ def worst(blade: BeamConfig) -> tuple[int, float]:
 
 def converging(model: Model) -> Outcome:
     """Errors over meshes, and over the number of coefficients of the thesis' blade."""
-    counts, meshes = np.array(COUNTS, dtype=np.float64), f"elements ({', '.join(str(count) for count in COUNTS)})"
+    counts = np.array(COUNTS, dtype=np.float64)
     panels, rates, above = [], [], []
     for title, motion in (("bending: Hermite's elements", "flap"), ("extension: Lagrange's elements", "extension")):
         errors = {order: excess(motion, order) for order in ORDERS}
         rates += [rate(errors[order], order) for order in ORDERS]
         above += [errors[order][:3] for order in ORDERS]
         curves = [Curve(counts[errors[p] > 0], errors[p][errors[p] > 0], f"order {p}") for p in ORDERS]
-        panels.append(Panel(title, meshes, "error of eigenvalue 2", curves, True, x_linear_within=1.0))
+        panels.append(Panel(title, "elements", "error of eigenvalue 2", curves, True, x_logarithmic=True))
     by = {
         "polynomials": np.array([worst(replace(BeamConfig(), terms=terms)) for terms in POLYNOMIALS]),
         **{f"order {p}": np.array([worst(elements(BeamConfig(), count, p)) for count in MESHES]) for p in ORDERS},
