@@ -74,7 +74,7 @@ class LinearController(Law):
         name: str = "linear law",
         verify: bool = True,
     ) -> LinearController:
-        """The controller ξ⁺ = A ξ + B y, u = C ξ + D y from measurements y (p,) in A to voltages u (m,) in V, sampled like the plant.
+        """The controller ξ⁺ = A ξ + B y, u = C ξ + D y from measurements y (p,) in A to voltages u (m,) in V, sampled as the plant.
 
         ``A`` alone may be a discrete-time ``control.StateSpace``, or another system that ``control.ss`` converts. The controller
         stands behind the instruments of ``plant``, or behind ``instruments``, such as those of the true state.
@@ -98,7 +98,7 @@ class LinearController(Law):
         return law if plant is None else verified(law, plant, verify=verify)
 
     def to_control(self) -> control.StateSpace:
-        """The controller from measurements (A) to voltages (V) while no limit acts, a ``control.StateSpace`` with the plant's clock.
+        """The controller from measurements (A) to voltages (V) within its limits, a ``control.StateSpace`` with the plant's clock.
 
         ξ⁺ = (F + HM) ξ + (G + HT) y, u = M ξ + T y. Its sign is that of the law: ``control.feedback(plant, law, sign=1)``.
         """
