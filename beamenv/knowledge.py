@@ -45,7 +45,7 @@ class Hypotheses(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prior:
-    """The scenario's distribution: the design, kinds and ranges of faults, and blades to try laws on.
+    """The scenario's distribution: the design, kinds and ranges of faults, and blades to try controllers on.
 
     Their plants come from the training bank, a Latin hypercube of another seed than that of the bank that controllers are compared
     on and of that on which they are chosen, and their episodes from seeds from ``TUNING`` on: neither is ever met in either place.
@@ -120,7 +120,7 @@ class Truth:
         return self.bank.plant
 
     def check_state_told(self) -> None:
-        """``ValueError`` where the true state cannot be told to a law in the coordinates of its design."""
+        """``ValueError`` where the true state cannot be told to a controller in the coordinates of its design."""
         if self.bank.to_design is None:
             why = "each of the plants has its own" if self.design.config is None else "their trial functions differ"
             raise ValueError(f"the true blade's state cannot be told in the design's coordinates: {why}.")
@@ -140,7 +140,9 @@ def on_validation_bank(scenario: Scenario) -> Scenario:
 
 
 def on_recording_bank(scenario: Scenario) -> Scenario:
-    """The scenario with plants drawn from a fourth bank, that of episodes recorded for offline learning: no law is told them."""
+    """The scenario with plants drawn from a fourth bank, that of episodes recorded for offline learning: no controller is told
+    them.
+    """
     return _on_bank(scenario, 3)
 
 

@@ -77,7 +77,7 @@ def cost_response(plant: Plant, controller: LinearController, frequencies: Array
 def h_infinity_norm(plant: Plant | SampledPlant, controller: LinearController) -> float:
     """Largest gain, √(J s), of ``cost_response`` over all frequencies: noise n with Σ|n|² = 1 costs no more than its square.
 
-    Infinite when the loop is unstable. Raises ValueError for a law that is not linear.
+    Infinite when the loop is unstable. Raises ValueError for a controller that is not linear.
     """
     system = _noise_to_cost(plant, controller)
     if spectral_radius(system[0]) >= 1.0:

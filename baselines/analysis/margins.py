@@ -46,7 +46,7 @@ def stability_margins(plant: Plant, controller: LinearController, at: Literal["i
     """Margins of a controller on a plant, both sampled, with the loops broken at the plant's voltages or at its measurements.
 
     Singular values mix loops, in units of the drive limits or of the sensors' full scale. Raises ValueError for a loop that is
-    unstable to begin with, for another place or for a law that is not linear.
+    unstable to begin with, for another place or for a controller that is not linear.
     """
     checked("at", at, Choice(("input", "output")))
     checked_plant(plant)

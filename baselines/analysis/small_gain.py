@@ -20,10 +20,11 @@ def small_gain(plant: Plant, controller: LinearController, others: Sequence[Plan
     """Max σ̄(K S) ℓ over all frequencies, ℓ = max σ̄(G_i − G) over the ``others``, sampled: below 1 the loop is stable on each of
     them, and on whatever stable plant differs from ``plant`` by no more.
 
-    K S is what the law makes of a disturbance of the readings, in the closed loop of ``plant``; voltages are in units of the drive
-    limits, readings of the sensors' full scale. Sufficient, and necessary if nothing is known of the differences but ℓ (Doyle and
-    Stein, IEEE Trans. Automatic Control 26, 1981). Infinite where the loop on ``plant`` or one of the ``others`` by itself is
-    unstable. Raises ValueError for a law that is not linear, and for others that are no plants with as many voltages and sensors.
+    K S is what the controller makes of a disturbance of the readings, in the closed loop of ``plant``; voltages are in units of
+    the drive limits, readings of the sensors' full scale. Sufficient, and necessary if nothing is known of the differences but ℓ
+    (Doyle and Stein, IEEE Trans. Automatic Control 26, 1981). Infinite where the loop on ``plant`` or one of the ``others`` by
+    itself is unstable. Raises ValueError for a controller that is not linear, and for others that are no plants with as many
+    voltages and sensors.
     """
     checked_plant(plant)
     law = linear(controller)

@@ -17,7 +17,8 @@ def stationary_cost(plant: Plant | SampledPlant, controller: LinearController) -
     A plant that is sampled already, such as one with states of loads that last, is taken as it is.
 
     With X = [x; ξ] and noise n = [d; v], X⁺ = Φ X + Γ n and z = [x; u; d] = Z_x X + Z_n n, so Σ = ΦΣΦᵀ + ΓNΓᵀ and the mean
-    is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable. Raises ValueError for a law that is not linear.
+    is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable. Raises ValueError for a controller that is not
+    linear.
     """
     law = linear(controller)
     held = sampled(plant, law)
@@ -32,8 +33,8 @@ def stationary_cost(plant: Plant | SampledPlant, controller: LinearController) -
 def closed_loop_poles(plant: Plant | SampledPlant, controller: LinearController) -> NDArray[np.complex128]:
     """Poles of plant and controller together, as the continuous equivalents log(z)/Δt in rad/s (complex), slowest first.
 
-    Poles of the sampled loop at z = 0 have no continuous equivalent and are left out. Raises ValueError for a law that is not
-    linear.
+    Poles of the sampled loop at z = 0 have no continuous equivalent and are left out. Raises ValueError for a controller that is
+    not linear.
     """
     law = linear(controller)
     held = sampled(plant, law)

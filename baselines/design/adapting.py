@@ -71,7 +71,7 @@ class Adaptation(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class AdaptiveNeural(Law):
-    """A linear law less an adaptive voltage, for one blade or a batch; every blade has a network of its own.
+    """A linear controller less an adaptive voltage, for one blade or a batch; every blade has a network of its own.
 
     The network foresees the forces w that act and are not in the design, and what it foresees goes through the design's filter and
     regulator. With x̂ the state of the reference model, the design in a loop with the readings,
@@ -117,7 +117,7 @@ class AdaptiveNeural(Law):
         return (self.base.order,), (n,), (n,), (n,), (h, n), (2 * q, n), (h,), (h,), (h, 2), (p,), (), (m,)
 
     def switched(self, on: bool) -> AdaptiveNeural:
-        """The same law with its adaptation on or off; either goes on from what the other remembers, without a jump.
+        """The same controller with its adaptation on or off; either goes on from what the other remembers, without a jump.
 
         Raises ``ValueError`` for what is neither True nor False.
         """
@@ -125,7 +125,7 @@ class AdaptiveNeural(Law):
         return self if on is self.adapts else replace(self, adapts=on)
 
     def in_physical_units(self) -> AdaptiveNeural:
-        """The same law taking amperes and giving volts; so does its base."""
+        """The same controller taking amperes and giving volts; so does its base."""
         return replace(self, instruments=self.instruments.in_physical_units(), base=self.base.in_physical_units())
 
     def recall(self, memory: Array) -> Memory:

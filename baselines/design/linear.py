@@ -25,7 +25,7 @@ MATRICES = ("transition", "measurement_input", "voltage_input", "state_gain", "m
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LinearController(Law):
-    """A sampled linear law that knows the drive limits, for one blade or a batch in two matrix products.
+    """A sampled linear controller that knows the drive limits, for one blade or a batch in two matrix products.
 
     With y_k the measurement (A, or the state when ``observes == "state"``) and ξ_k the memory, zero at the start of an episode,
 
@@ -74,16 +74,16 @@ class LinearController(Law):
         name: str = "linear law",
         verify: bool = True,
     ) -> LinearController:
-        """The law ξ⁺ = A ξ + B y, u = C ξ + D y from measurements y (p,) in A to voltages u (m,) in V, sampled as the plant is.
+        """The controller ξ⁺ = A ξ + B y, u = C ξ + D y from measurements y (p,) in A to voltages u (m,) in V, sampled as the plant.
 
-        ``A`` alone may be a discrete-time ``control.StateSpace``, or another system that ``control.ss`` converts. The law stands
-        behind the instruments of ``plant``, or behind ``instruments``, such as those of the true state.
+        ``A`` alone may be a discrete-time ``control.StateSpace``, or another system that ``control.ss`` converts. The controller
+        stands behind the instruments of ``plant``, or behind ``instruments``, such as those of the true state.
 
         ``voltage_input`` H (s, m) is for drives that saturate: the memory then follows the voltage applied instead of the one asked
         for, ξ⁺ = A ξ + B y + H (clip(u) − u). Without it the memory does not know of the limits, and an integrator winds up.
 
-        Given a ``plant``, the law is ``verified`` to be stable on it unless ``verify=False``; behind ``instruments`` alone there is
-        nothing to be stable on. Raises ValueError for matrices whose shapes do not fit or hold no numbers, for a system in
+        Given a ``plant``, the controller is ``verified`` to be stable on it unless ``verify=False``; behind ``instruments`` alone
+        there is nothing to be stable on. Raises ValueError for matrices whose shapes do not fit or hold no numbers, for a system in
         continuous time, for one sampled otherwise than the plant, and for one that is unstable on it.
         """
         if (plant is None) == (instruments is None):
@@ -98,7 +98,7 @@ class LinearController(Law):
         return law if plant is None else verified(law, plant, verify=verify)
 
     def to_control(self) -> control.StateSpace:
-        """The law from measurements (A) to voltages (V) while no limit acts, as a ``control.StateSpace`` with the plant's clock.
+        """The controller from measurements (A) to voltages (V) within its limits, a ``control.StateSpace`` with the plant's clock.
 
         ξ⁺ = (F + HM) ξ + (G + HT) y, u = M ξ + T y. Its sign is that of the law: ``control.feedback(plant, law, sign=1)``.
         """
@@ -134,7 +134,7 @@ class LinearController(Law):
 
 
 def static_law(plant: Plant, name: str, gain: Array, observes: Observes = "observation") -> LinearController:
-    """The law u = gain @ y without memory: ``gain`` (m, p) in V/A, or (m, n) in V/√J when it observes the state."""
+    """The controller u = gain @ y without memory: ``gain`` (m, p) in V/A, or (m, n) in V/√J when it observes the state."""
     m, p = gain.shape
     nothing = (np.zeros((0, 0)), np.zeros((0, p)), np.zeros((0, m)), np.zeros((m, 0)))
     return LinearController(name, Instruments.of(plant, observes), *nothing, gain)

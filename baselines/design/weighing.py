@@ -112,7 +112,7 @@ class MultipleModel(Law):
             object.__setattr__(self, name, in_single_precision(part) if self.single else part)
 
     def in_single_precision(self) -> MultipleModel:
-        """The same law, reckoning in single precision: its voltages differ by some 1e-5 of the drive."""
+        """The same controller, reckoning in single precision: its voltages differ by some 1e-5 of the drive."""
         return self if self.single else replace(self, single=True)
 
     @property
@@ -180,7 +180,7 @@ class MultipleModel(Law):
     def revised(self, observation: Array, memory: Numbers, revise: Revision | None, following: Any) -> Array:
         """The actions (N, m) that are applied, ``revise``d ones if it is given, and writes the memory (N, order) that goes by them.
 
-        ``ValueError`` for a law to revise that has no fallback.
+        ``ValueError`` for a controller to revise that has no fallback.
         """
         if revise is not None and self.fallback is None:
             raise ValueError(f"{self.name} has no fallback.")

@@ -108,10 +108,10 @@ def _takes_two(function: Callable[..., Any]) -> bool:
 def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[int], progress: Progress | None = None) -> Episodes:
     """One episode for each seed. Equal seeds mean equal loads and noise, so that controllers are compared in pairs.
 
-    ``controller`` is a law of this package, anything with SB3's ``predict``, or a function from observations (N, p) to actions
-    (N, m). Each seed is run twice, the second time for ``Episodes.load_response``. ``env`` is one environment or a batch, filled as
-    often as it takes; it is reset but not closed. ``progress`` is called with the number of episodes done and their total.
-    Raises ValueError for no seeds, for what is no controller, and for one that does not fit the environment.
+    ``controller`` is a controller of this package, anything with SB3's ``predict``, or a function from observations (N, p) to
+    actions (N, m). Each seed is run twice, the second time for ``Episodes.load_response``. ``env`` is one environment or a batch,
+    filled as often as it takes; it is reset but not closed. ``progress`` is called with the number of episodes done and their
+    total. Raises ValueError for no seeds, for what is no controller, and for one that does not fit the environment.
     """
     controller, seeds, progress = as_controller(controller), checked_seeds(seeds), checked_progress(progress)
     check_fit(controller, env)

@@ -113,10 +113,10 @@ def evaluate(
 ) -> Evaluation:
     """Run a controller through one episode for each seed and compare it with no control on the very same episodes.
 
-    ``controller`` is a law of this package, an SB3 model or anything else with SB3's ``predict``, or a plain function that is
-    called with the observations (N, p) of all blades and returns their actions (N, m); a law that ``observes`` the "state" is given
-    the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id of one.
-    ``reference`` spares the run without control: the ``reference`` of an evaluation of the very same episodes.
+    ``controller`` is a controller of this package, an SB3 model or anything else with SB3's ``predict``, or a plain function that
+    is called with the observations (N, p) of all blades and returns their actions (N, m); a controller that ``observes`` the
+    "state" is given the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id
+    of one. ``reference`` spares the run without control: the ``reference`` of an evaluation of the very same episodes.
     ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no controller or does
     not fit the environment, wrappers that act otherwise than the blade, no seeds or equal ones, a confidence outside (0, 1), a
     reference of other episodes, and where nothing moves without control: no cost is relative to that.

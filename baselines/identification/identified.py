@@ -142,10 +142,10 @@ class Identified:
         return [continuous(self._in_units(each), self.noise.load_input, self.collocated) for each in models]
 
     def unstable_on(self, law: LinearController, count: int = 32, seed: int = 0, **about: Any) -> int:
-        """On how many of ``count`` plants within the spread the sampled loop of a law for ``plant(**about)`` is unstable.
+        """On how many of ``count`` plants within the spread the sampled loop of a controller for ``plant(**about)`` is unstable.
 
-        None of them should be: where some are, the voltages hardly moved what the law is to damp. Measure longer then, with larger
-        voltages, or with voltages that are held for longer, which have more power at low frequencies.
+        None of them should be: where some are, the voltages hardly moved what the controller is to damp. Measure longer then, with
+        larger voltages, or with voltages that are held for longer, which have more power at low frequencies.
         """
         plants = (Plant.from_state_space(**self.arrays(each, **about)) for each in self.ensemble(count, seed))
         return sum(not spectral_radius(closed_loop(sampled(plant, law), law)[0]) < 1.0 for plant in plants)

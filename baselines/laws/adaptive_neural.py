@@ -61,7 +61,7 @@ class AdaptationSettings:
 def adaptive_neural(
     plant: Plant, base: LinearController | None = None, settings: AdaptationSettings | None = None, *, verify: bool = True
 ) -> AdaptiveNeural:
-    """A linear law augmented by a network that learns within each episode; None: ``reference_lqg(plant)``.
+    """A linear controller augmented by a network that learns within each episode; None: ``reference_lqg(plant)``.
 
     ``plant`` is all that is known of the blade, such as ``Design.full_plant``. The filter and the regulator that the network's
     forces go through are those of ``full_order_lqg``. The base is ``verified`` on ``plant`` unless ``verify=False``; with what the
@@ -90,7 +90,7 @@ def _behind_instruments(base: LinearController, plant: Plant) -> LinearControlle
 
 
 def error_model(plant: Plant, law: LinearController, settings: AdaptationSettings) -> ErrorModel:
-    """The design as the reference model of a law, in units of what is usual under a load that lasts."""
+    """The design as the reference model of a controller, in units of what is usual under a load that lasts."""
     held = sampled(plant)
     filtered, K = optimal_filter(plant, held), optimal_regulator(plant, with_rate_penalty(held, RATE_WEIGHT)).gain
     A, C, L = held.A, held.C, filtered.gain

@@ -11,7 +11,7 @@ from beamenv.knowledge import Prior
 
 
 def informed_mpc(prior: Prior) -> PredictiveController:
-    """The predictive law of what ``informed_lqg``'s rule chooses: voltages that come late are part of what it predicts with.
+    """The predictive controller of what ``informed_lqg``'s rule chooses: voltages that come late are part of what it predicts with.
 
     As long as no limit is in sight it is ``informed_lqg``, but for a filter that knows that readings clip. ``ValueError`` for what
     is no ``Prior``, ModuleNotFoundError without DAQP.

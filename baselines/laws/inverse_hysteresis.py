@@ -22,11 +22,11 @@ LOOP = Number(ge=0.0, le=0.5)
 class InverseHysteresis(Law):
     """The voltages that act as ``law`` asks, as near as the drive's limits let them, for one blade or a batch.
 
-    With the operator H of the actuators, whose plays it follows, and the law's memory ξ,
+    With the operator H of the actuators, whose plays it follows, and the controller's memory ξ,
 
         w = M ξ + T y,        u = H⁻¹[w] within the limits,        ξ⁺ = F ξ + G y + H_v H[u],
 
-    so the law's memory is driven by the voltage that acts, as without hysteresis, and not by the one asked for.
+    so the controller's memory is driven by the voltage that acts, as without hysteresis, and not by the one asked for.
     """
 
     law: LinearController
@@ -51,7 +51,7 @@ class InverseHysteresis(Law):
 
     @property
     def order(self) -> int:
-        """Numbers in a blade's memory: the law's, and each play of each actuator."""
+        """Numbers in a blade's memory: the controller's, and each play of each actuator."""
         return self.law.order + PLAYS * len(self._drive)
 
     @property
@@ -76,7 +76,8 @@ class InverseHysteresis(Law):
 
 
 def inverse_hysteresis(law: LinearController, loop: Any) -> InverseHysteresis:
-    """A law behind the inverse of the Prandtl–Ishlinskii operator with this ``loop`` (``beamenv.simulation.signals.hysteresis``).
+    """A controller behind the inverse of the Prandtl–Ishlinskii operator with this ``loop``
+    (``beamenv.simulation.signals.hysteresis``).
 
     Inverse control in the sense of Kuhnen (European J. Control 9, 2003), by bisection to 1e-12 of the range. Within the drive's
     limits the blade moves as under ``law`` without hysteresis, whose verified loop therefore stays what it is. A ``loop`` of 0 is

@@ -53,10 +53,10 @@ def lqg(
 
     ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
     ``Q`` (n, n) and ``R`` (m, m) are weights of your own in ∫(xᵀQx + uᵀRu)dt, in the plant's coordinates, in place of the plant's:
-    the vibration energy ½ xᵀx in J, and what the actuators store, J/V². ``verify=False`` asks for the law as it comes out, the
-    thesis' included where it is unstable. Raises ValueError for another design, for a persistent load with the continuous one, for
-    weights that are not symmetric or not positive, for a law that is not stable on ``plant``, and for a plant with an undamped mode
-    out of reach, which it names.
+    the vibration energy ½ xᵀx in J, and what the actuators store, J/V². ``verify=False`` asks for the controller as it comes out,
+    the thesis' included where it is unstable. Raises ValueError for another design, for a persistent load with the continuous one,
+    for weights that are not symmetric or not positive, for a controller that is not stable on ``plant``, and for a plant with an
+    undamped mode out of reach, which it names.
     """
     plant, load = weighted(plant, Q, R), checked_persistent_load(persistent_load)
     if checked("design", design, Choice(("sampled", "continuous"))) == "sampled":
@@ -133,5 +133,5 @@ def known_sensor_noise(plant: Plant) -> Array:
 
 
 def observer(plant: Plant, name: str, F: Array, G: Array, H: Array, M: Array, T: Array) -> LinearController:
-    """The law ξ⁺ = F ξ + G y + H u, u = clip(M ξ + T y) behind the plant's own instruments and drive."""
+    """The controller ξ⁺ = F ξ + G y + H u, u = clip(M ξ + T y) behind the plant's own instruments and drive."""
     return LinearController(name, Instruments.of(plant), F, G, H, M, T)

@@ -59,8 +59,8 @@ def reference_lqg(
     """``full_order_lqg`` with ``order`` numbers in its memory; None: the least even number that adds no more than 0.5 % to the mean
     cost under the plant's own noise and the ``load``.
 
-    ``plant`` is all that is known of the blade, such as ``Design.full_plant``; the law is ``verified`` there, reduced, unless
-    ``verify=False``. Only what is stable can be reduced: raises ``ValueError`` as its parts do.
+    ``plant`` is all that is known of the blade, such as ``Design.full_plant``; the controller is ``verified`` there, reduced,
+    unless ``verify=False``. Only what is stable can be reduced: raises ``ValueError`` as its parts do.
     """
     whole = full_order_lqg(plant, rate_weight, load=load, name=name)
     loaded = sampled_with_loads(plant, *checked_loads("load", load))

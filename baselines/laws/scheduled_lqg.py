@@ -31,11 +31,11 @@ _GRID = np.linspace(0.8, 1.2, 9)
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ScheduledLQG(Law):
-    """A linear law whose matrices are interpolated between those of the nearest speeds, for one blade or a batch.
+    """A linear controller whose matrices are interpolated between those of the nearest speeds, for one blade or a batch.
 
-    All laws remember in the same coordinates, so that the estimate goes on as the speed changes. Beyond the first and the last
-    speed these laws are used as they are. What is scheduled is each frozen speed's optimum; a speed that changes as fast as the
-    blade vibrates is outside the theory (Shamma and Athans, IEEE Trans. Automatic Control 35, 1990).
+    All controllers remember in the same coordinates, so that the estimate goes on as the speed changes. Beyond the first and the
+    last speed these controllers are used as they are. What is scheduled is each frozen speed's optimum; a speed that changes as
+    fast as the blade vibrates is outside the theory (Shamma and Athans, IEEE Trans. Automatic Control 35, 1990).
     """
 
     speeds: Array
@@ -59,7 +59,7 @@ class ScheduledLQG(Law):
         return self.laws[0].order
 
     def decide(self, observation: Array, memory: Array) -> tuple[Array, Array]:
-        """As a linear law, every product a mixture; ValueError for a speed that is no number."""
+        """As a linear controller, every product a mixture; ValueError for a speed that is no number."""
         weights = self._weights(observation[..., -1])
         fused, feedback = zip(*(each.matrices for each in self.laws), strict=True)
         product = _mixed(weights, np.concatenate([memory, observation[..., :-1]], axis=-1), fused)
@@ -68,7 +68,7 @@ class ScheduledLQG(Law):
         return action, product[..., : self.order] + _mixed(weights, action, feedback)
 
     def at(self, speed: float) -> LinearController:
-        """The linear law that this one is at a constant speed in rad/s; ``ValueError`` for what is no such number."""
+        """The linear controller that this one is at a constant speed in rad/s; ``ValueError`` for what is no such number."""
         speed = checked("speed", speed, Number(unit="rad/s"))
         weights = self._weights(np.asarray(speed))
         mixed: dict[str, Any] = {
@@ -77,7 +77,7 @@ class ScheduledLQG(Law):
         return replace(self.laws[0], name=f"{self.name} at {speed:g} rad/s", **mixed)
 
     def in_physical_units(self) -> ScheduledLQG:
-        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
+        """The same controller taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         laws = tuple(law.in_physical_units() for law in self.laws)
         return replace(self, instruments=self.instruments.in_physical_units(), laws=laws)
 
@@ -102,8 +102,9 @@ def scheduled_lqg(
     """The sampled LQG of each plant of a family, all in its common coordinates; ``persistent_load`` as in ``lqg``, and
     ``rate_weight`` a price on quick changes as in ``full_order_lqg``.
 
-    Each law is ``verified`` on the plant of its own speed unless ``verify=False``; of speeds between, and of a speed that changes,
-    nothing is promised. Raises ValueError for plants that differ in their sensors' range, drive or clock, and as ``lqg`` does.
+    Each controller is ``verified`` on the plant of its own speed unless ``verify=False``; of speeds between, and of a speed that
+    changes, nothing is promised. Raises ValueError for plants that differ in their sensors' range, drive or clock, and as ``lqg``
+    does.
     """
     load = checked_persistent_load(persistent_load)
     first = instance("family", family, SpeedFamily, "a SpeedFamily, such as speed_family(config, speeds)").plants[0]

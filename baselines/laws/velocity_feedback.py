@@ -54,7 +54,7 @@ def _law(plant: Plant, name: str, pairs: Array, gains: Array) -> LinearControlle
 def pairing(plant: Plant, name: str) -> Array:
     """(m, p): which sensor each actuator answers.
 
-    Raises ValueError, with the ``name`` of the law, for a plant whose sensors and actuators do not make pairs.
+    Raises ValueError, with the ``name`` of the controller, for a plant whose sensors and actuators do not make pairs.
     """
     m, p = plant.B.shape[1], len(plant.C)
     if m not in (1, p):

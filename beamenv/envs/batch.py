@@ -173,7 +173,7 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
 
     @property
     def design_state(self) -> Array:
-        """(N, d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        """(N, d) the true state as the design plant has its own, by displacements and velocities: for a controller that sees it."""
         return self._blades.design_state
 
     @property

@@ -48,17 +48,17 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     bottom wall give a current in proportion to the rate of their strain. The aim is to damp the vibration with little
     actuator effort.
 
-    The plant is linear, and advanced exactly from one sample to the next, cost included. What is not linear is enforced here:
-    the drive saturates, the sensors clip. The true plant that moves, `plant`, has all modes up to the Nyquist frequency, what
-    the others follow at once, the amplifiers' lag and anti-aliasing filters. The design plant that a controller is built from,
-    `design_plant`, has the blade's first 11 modes and no electronics; the argument `design` may make it another blade's. In
-    the thesis' world (`blade={"model": "thesis"}`) the two are one. Elsewhere most of what knows 11 modes alone is unstable on
-    the true plant; all that is known of the design's blade is the attribute `design.full_plant`.
+    The plant is linear; its motion and its cost are exact from one sample to the next. Two effects are not linear: the drive
+    saturates, and the sensors clip. The true plant that moves, `plant`, has all modes up to the Nyquist frequency, the static
+    response of higher modes, the amplifiers' lag and anti-aliasing filters. The design plant that a controller is built from,
+    `design_plant`, has the blade's first 11 modes and no electronics; the argument `design` can make it that of another blade.
+    With the thesis' model (`blade={"model": "thesis"}`) the two plants are the same. Otherwise most controllers that are
+    designed on 11 modes are unstable on the true plant; `design.full_plant` has all that is known of the design's blade.
 
     The default blade is the thesis' box (2.023 m, plies at 30°, pretwist 30°) at 200 rad/s with 4 actuators and 4 sensors
     equally spaced over 0 … 0.7 of the span. No real blade could turn like that: steady rotation alone strains its outer face by
-    2.8 %, far beyond what its laminate bears, and stretches it by 32 mm. It is there because the thesis is; `sound-blade` is a
-    blade that could be built.
+    2.8 %, far beyond what its laminate bears, and stretches it by 32 mm. It is the default because the thesis has it;
+    `sound-blade` is a blade that could be built.
 
     | `preset`               | Blade                                                                     | rad/s | Static strain |
     |------------------------|---------------------------------------------------------------------------|-------|---------------|
@@ -107,8 +107,8 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
     *r = −(1/s) ∫ (x<sup>T</sup>Q x + u<sup>T</sup>R u) dt* over the control interval: vibration energy, in joules, plus the
     energy that the actuators store, exactly integrated. It is the very cost that LQG is designed for. The scale *s* is fixed
-    by the plant alone: the energy of the static deflection under 30 N/m in flap, times Δt. A blade that is left alone so
-    earns about −1 a step.
+    by the plant alone: the energy of the static deflection under 30 N/m in flap, times Δt. Without control the reward is
+    therefore about −1 a step.
 
     ## Starting State
 
@@ -158,16 +158,16 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
     ```
 
-    Two attributes are for laws that know more than the sensors: `rotor_speed`, rad/s, what a tachometer shows now, and
-    `design_state`, the true state in the coordinates of the design plant, by displacements and velocities. (Of a solid: mode by
-    mode, as far as the beam has a counterpart.)
+    Two attributes are for controllers that are told more than the readings: `rotor_speed`, rad/s, what a tachometer shows now,
+    and `design_state`, the true state in the coordinates of the design plant, by displacements and velocities. (Of a solid: mode
+    by mode, as far as the beam has a counterpart.)
 
     ## Episode End
 
     1. Termination: the blade fails, that is its spanwise strain exceeds what its patches bear, 0.45 % of MFC and less of ceramics,
-       or its state is no longer finite. The nominal scenario stays tens of times below. Which strain, says
-       `blade={"strain_limit": ...}`: that of `"vibration"` alone, or the `"total"`, with that of steady rotation, as on the preset
-       `sound-blade`. A blade that steady rotation alone would fail, at any speed that the scenario takes it to, is refused.
+       or its state is no longer finite. In the nominal scenario strains stay tens of times smaller. `blade={"strain_limit": ...}`
+       says which strain counts: that of `"vibration"` alone, or the `"total"` with that of steady rotation, as on the preset
+       `sound-blade`. A blade that would fail by steady rotation alone, at any speed of the scenario, is refused.
     2. Truncation: `duration` is over.
 
     ## Arguments
@@ -224,8 +224,8 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     | `effort`           | J s  | the actuators' share of `cost_increment`                   |
     | `cost_increment`   | J s  | the cost of this step; the reward is minus it over *s*     |
 
-    `reset` tells besides what steady rotation does to the blade of this episode (all 0 with `model="thesis"`, whose world has
-    no steady state; in a spin-up that of the first speed):
+    `reset` also tells the effect of steady rotation on the blade of this episode (all 0 with `model="thesis"`, which has no
+    steady state; in a spin-up the effect of the first speed):
 
     | Key                | Unit | What                                                                     |
     |--------------------|------|--------------------------------------------------------------------------|
@@ -236,8 +236,8 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     | `note`             |      | which patches begin nearer to the clamp than the section is deep, or ""  |
     | `assumed`          |      | of a model of one's own, in words, what was taken to be so; else ()      |
 
-    Next to the clamp a section keeps its shape and a beam is least a beam: the forces and readings of the default blade's first
-    patches, mode by mode, differ from those of a solid of finite elements by up to 7 % (in the thesis' model 110 %).
+    Near the clamp, where a section cannot deform, beam theory is least accurate: the forces and readings of the default blade's
+    first patches, mode by mode, differ from those of a solid of finite elements by up to 7 % (in the thesis' model 110 %).
 
     ## Version History
 
@@ -300,7 +300,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
     @property
     def design_state(self) -> Array:
-        """(d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        """(d) the true state as the design plant has its own, by displacements and velocities: for a controller that sees it."""
         return self._blade.design_state
 
     @property

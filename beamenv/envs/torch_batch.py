@@ -157,7 +157,7 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
 
     @property
     def design_state(self) -> torch.Tensor:
-        """(N, d) the true state as the design plant has its own, by displacements and velocities: for a law that sees it."""
+        """(N, d) the true state as the design plant has its own, by displacements and velocities: for a controller that sees it."""
         return self._episodes.blades.design_state
 
     @property

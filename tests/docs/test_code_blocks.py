@@ -25,9 +25,9 @@ def params(language, slow=frozenset()):
 
 
 @pytest.mark.parametrize("page", params("python", SLOW))
-def test_python_blocks_run_in_the_order_of_their_page_and_print_what_it_shows(page, tmp_path, monkeypatch):
+def test_blocks_run_in_the_order_of_their_page_and_print_what_it_shows(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    shown = {line: (title, text) for line, title, text in shown_below(page, "python")}
+    shown = {line: (title, text) for line, title, text in shown_below(page, "python", "sh")}
     for line, printed in outputs(page):
         title, text = shown.get(line, ("", ""))
         assert_same_words(printed, text, numbers=ELSEWHERE not in title)
@@ -107,4 +107,5 @@ def test_commands_within_sentences_exist_with_their_options(page, known):
 
 def test_every_page_of_the_navigation_is_checked():
     with_python = {name_of(page) for page in with_blocks("python")}
+    assert {name_of(page) for page in pages() if any(shown_below(page, "sh"))} <= with_python
     assert {"README.md", "quick-start.md", "physics.md", "lqg.md", "placement.md", "extending.md"} <= with_python

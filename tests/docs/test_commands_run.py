@@ -116,6 +116,7 @@ def test_commands_run_in_the_order_of_their_page(page, tmp_path, monkeypatch):
     from train.cli.app import app
 
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path / "minari"))  # else data sets go into the home of whoever tests
     prepare(page)
     tables(page)
     if page.name == "scenarios.md":

@@ -108,7 +108,7 @@ def test_the_first_sentence_of_the_findings_is_who_is_ahead(table, text):
 
 def test_who_leads_a_tier_is_counted_split_by_split(table):
     row = rows_of(findings_table(table))["Who has the least J of tier 0, the nominal plant?"]
-    assert row == {"single fault": "lqg in 2", "open": "lqg in 1", "unseen": "lqg in 2", "other": "none in 1"}
+    assert row == {"single fault": "lqg in 2", "open": "lqg in 1", "unseen": "lqg in 2", "other": "no control in 1"}
     assert all(leaders_of(table)[name, 0].clear for name in ("nominal", "delay", "drift"))
 
 

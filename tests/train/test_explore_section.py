@@ -157,3 +157,11 @@ def test_the_heading_says_whether_the_blade_turns():
 def test_pages_of_two_blades_have_two_keys():
     assert THESIS_PAGE.key == Page.of(THESIS, "thesis").key != Page.of(replace(THESIS, damping_ratio=0.02), "thesis").key
     assert THESIS_PAGE.key.startswith("thesis-")
+
+
+def test_modes_that_begin_together_are_named_side_by_side():
+    """The channel's first two frequencies at rest are 281 and 284 rad/s."""
+    page = Page.of(BLADES["channel"])
+    names = [note["text"] for note in redraw(page, **page.start)["campbell"]["layout"]["annotations"]]
+    assert "1 lag, 2 flap" in names
+    assert {"3 twist", "4 twist", "6 twist"} <= set(names)

@@ -44,7 +44,9 @@ class Classical:
     controller: NamedController
 
     def build(self, task: Task) -> Controller:
-        """From what its tier is told of the task; a fixed law of the nominal plant alone once for all tasks of that design."""
+        """From what its tier is told of the task; a fixed controller of the nominal plant alone once for all tasks of that
+        design.
+        """
         if (self.controller.tier, self.controller.kind) != (0, "fixed"):
             return self.controller.build_for(task)
         return _designed(self.controller, _Designed(task))
@@ -83,7 +85,7 @@ class Trained:
     folder: Path
 
     def build(self, task: Task) -> Policy:
-        """The agent, within this design's drive limits and beside the law it adds to; refused if trained on other plants."""
+        """The agent, within this design's drive limits and beside the controller it adds to; refused if trained on other plants."""
         policy = load_policy(self.folder, task.design_plant)
         return policy.beside(general_law(task.prior.blade)) if isinstance(policy, ModelsPolicy) else policy
 

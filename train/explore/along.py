@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -57,13 +59,11 @@ def planform(beam: RotatingBeam, at: float) -> Figure:
     z = stations(beam)
     along, across = unit_of(beam.length, "m"), unit_of(chords(beam, z), "m")
     x, limits = along.per * z, (0.0, along.per * beam.length)
-    marks = {"marked": (along.per * at,), "marked_line": "dashed", "x_limits": limits}
+    panel = partial(Panel, marked=(along.per * at,), marked_line="dashed", x_limits=limits)
     turned = angles(beam, z)
     panels = [
-        Panel(
-            "", "", f"chord, {across.name}", [Curve(x, across.per * chords(beam, z), "chord", look=Look(PALETTE[0], 2.0))], **marks
-        ),
-        Panel("", f"z, {along.name}", "angle, °", [Curve(x, turned, "angle", "dashed", Look(PALETTE[1], 2.0))], **marks),
+        panel("", "", f"chord, {across.name}", [Curve(x, across.per * chords(beam, z), "chord", look=Look(PALETTE[0], 2.0))]),
+        panel("", f"z, {along.name}", "angle, °", [Curve(x, turned, "angle", "dashed", Look(PALETTE[1], 2.0))]),
     ]
     figure = shown(panels, gap=0.2)
     layout = figure["layout"]

@@ -22,7 +22,7 @@ Figure = dict[str, Any]
 FONT = {"family": "system-ui, sans-serif", "size": 13}
 SMALL = {**FONT, "size": 12}
 PER_REV = (1, 2, 3, 4)
-LINE_OF_TEXT, ROOM_ACROSS = 0.055, 0.14
+LINE_OF_TEXT, ROOM_ACROSS = 0.042, 0.14
 """Of the Campbell diagram's height, and of its width."""
 STILL = 1e-6
 """Of the other direction's largest displacement: what moves less is drawn at rest."""
@@ -76,15 +76,21 @@ def _multiples(highest: float, top: float, unit: Unit) -> list[dict[str, Any]]:
 
 
 def _named_at_their_ends(view: View, top: float, unit: Unit) -> list[dict[str, Any]]:
-    """Number and family where each curve begins, those of neighbours apart."""
-    starts = view.campbell[0]
-    heights, free = np.empty(len(starts)), 0.0
-    for mode in np.argsort(starts):
-        heights[mode] = free = max(starts[mode], free)
-        free += LINE_OF_TEXT * top
+    """Number and family where each curve begins; of those that begin too near to one another side by side."""
+    starts, lines = view.campbell[0], list[list[int]]()
+    for mode in np.argsort(starts, kind="stable").tolist():
+        if lines and starts[mode] - starts[lines[-1][0]] < LINE_OF_TEXT * top:
+            lines[-1].append(mode)
+        else:
+            lines.append([mode])
     look = {"x": 0.0, "xanchor": "left", "yanchor": "bottom", "xshift": 3, "showarrow": False, "font": SMALL}
     return [
-        {**look, "y": unit.per * float(height), "text": f"{mode + 1} {view.families[mode]}"} for mode, height in enumerate(heights)
+        {
+            **look,
+            "y": unit.per * float(starts[modes[-1]]),
+            "text": ", ".join(f"{mode + 1} {view.families[mode]}" for mode in sorted(modes)),
+        }
+        for modes in lines
     ]
 
 

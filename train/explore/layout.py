@@ -163,7 +163,7 @@ def _results(page: Page) -> html.Div:
         "from line loads in lag and flap to the tip."
     )
     sensitive = [
-        "How much the loop enlarges what comes in where it is broken, S = (I + L)⁻¹, at each frequency: below 1 it is damped. ",
+        "By how much the loop enlarges a signal that is added where it is broken, S = (I + L)⁻¹; below 1 it lessens it. ",
         html.Span(id="peaks"),
     ]
     margins = html.Div([html.P(id="lost", role="alert"), _table(MARGINS, "margins")])

@@ -107,7 +107,8 @@ def _sensitivity(plant: Plant, law: LinearController, angles: Array) -> dict[str
     P = frequency_response(held.A, held.B * drive, held.C / full[:, None], np.zeros((p, m)), angles)
     answer = frequency_response(A, B * full, law.state_gain / drive[:, None], K * full / drive[:, None], angles)
     loops = dict(zip((where for where, _ in PLACES), (answer @ P, P @ answer), strict=True))
-    return {where: 1.0 / np.linalg.svd(np.eye(each.shape[-1]) - each, compute_uv=False)[:, -1] for where, each in loops.items()}
+    least = {where: np.linalg.svd(np.eye(each.shape[-1]) - each, compute_uv=False)[:, -1] for where, each in loops.items()}
+    return {where: np.asarray(1.0 / each, dtype=np.float64) for where, each in least.items()}
 
 
 def _load_gains(plant: Plant, law: LinearController, angles: Array) -> Array:

@@ -28,7 +28,7 @@ WIDTH, HIGHEST, MARGIN = 420.0, 270.0, 26.0
 BAR_WIDTH, BAR_HEIGHT, BAR_ROW = 380.0, 30.0, 62.0
 BESIDE = 13.0
 """Pixels from a wall to its name."""
-LETTER = 9.0
+LETTER = 7.8
 """Pixels, about, of a letter of a bar's labels."""
 THINNEST_PLY = 1.2
 """Pixels: a wall whose plies are thinner is drawn as one."""

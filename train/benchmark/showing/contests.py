@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from beamenv.titles import TIERS
 from train.benchmark.contests import Contest, contests, corrected, rule
-from train.benchmark.showing.section import Entry, Section, gap, words
+from train.benchmark.showing.section import Entry, Section, gap, in_words, words
 from train.benchmark.table import BenchmarkTable, Row
 from train.benchmark.targets import leaders_of
 from train.shared.columns import number, share
@@ -28,7 +28,8 @@ def _leader(table: BenchmarkTable, scenario: str, tier: int) -> str:
     if first is None:
         return "–"
     how = ", the only one" if not first.rivals else "" if first.clear else ", not clearly"
-    return f"{first.row.controller} {number(first.row.estimates['relative_cost'].value, '{:.3f}')}{_unstable(first.row)}{how}"
+    cost = number(first.row.estimates["relative_cost"].value, "{:.3f}")
+    return f"{in_words(first.row.controller)} {cost}{_unstable(first.row)}{how}"
 
 
 def _unstable(row: Row) -> str:

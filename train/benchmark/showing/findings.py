@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from beamenv.titles import TIERS
 from train.benchmark.contests import AHEAD, BEHIND, Contest, contests, corrected
 from train.benchmark.score import by_split, split_of
-from train.benchmark.showing.section import Entry, Section, words
+from train.benchmark.showing.section import Entry, Section, in_words, words
 from train.benchmark.table import BenchmarkTable
 from train.benchmark.targets import Leader, ahead_and_behind, leaders_of, reaches
 
@@ -86,7 +86,7 @@ def _won(leaders: Sequence[Leader]) -> str:
     for each in leaders:
         wins.setdefault(each.row.controller, []).append(each)
     ranked = sorted(wins.items(), key=lambda item: -len(item[1]))
-    return ", ".join(f"{name} in {len(each)}{_how(each)}" for name, each in ranked)
+    return ", ".join(f"{in_words(name)} in {len(each)}{_how(each)}" for name, each in ranked)
 
 
 def _how(leaders: Sequence[Leader]) -> str:

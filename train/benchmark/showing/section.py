@@ -47,6 +47,11 @@ def words(*texts: object) -> list[Entry]:
     return [Entry(str(each)) for each in texts]
 
 
+def in_words(controller: str) -> str:
+    """Of an id amid a sentence or a list of names: "none" alone would say that there is nobody."""
+    return "no control" if controller == "none" else controller
+
+
 def cost(estimate: Estimate | None) -> Entry:
     """Of a cost or a score, a dash for None."""
     return Entry(COST.text(estimate), None if estimate is None else estimate.value)

@@ -247,6 +247,7 @@
     more.hidden = controls.scrollHeight - controls.scrollTop - controls.clientHeight < 24;
   };
   window.addEventListener("resize", below);
+  window.addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((group) => group.setAttribute("open", "")));
   document.addEventListener("scroll", below, true);
   document.addEventListener("toggle", below, true);
   if (phone.matches) {
