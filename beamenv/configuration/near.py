@@ -23,7 +23,8 @@ def near(name: Any, known: Iterable[Any], titles: Mapping[str, str] = MappingPro
         return []
     wanted, names = _plain(name), {_plain(each): each for each in known if isinstance(each, str)}
     begun = [each for each in names if wanted and each.startswith(wanted)]
-    alike = sorted([*get_close_matches(wanted, names, cutoff=ALIKE), *begun], key=lambda each: sorted(each) != sorted(wanted))  # swapped first
+    found = [*get_close_matches(wanted, names, cutoff=ALIKE), *begun]
+    alike = sorted(found, key=lambda each: sorted(each) != sorted(wanted))  # those with letters swapped first
     return list(dict.fromkeys(titles.get(names[each], names[each]) for each in alike))[:3]
 
 

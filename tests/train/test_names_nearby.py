@@ -19,7 +19,7 @@ LAWS = ["clipped-lqg", "lqg", "lqg-load", "mpc", "none"]
         ("lgq", " (did you mean lqg?)"),
         ("LQG_load", " (did you mean lqg-load?)"),
         ("clip", " (did you mean clipped-lqg?)"),
-        ("lqgload", " (did you mean lqg-load or lqg?)"),
+        ("lqgload", " (did you mean lqg-load?)"),
         ("pid", ""),
         ("", ""),
         (3, ""),

@@ -54,7 +54,7 @@ def test_a_table_within_the_settings_is_changed_field_by_field():
         ("updates = 3", "updates = true", "recipe.updates is True, but must be a whole number"),
         ('title = "Brief"\n', "", "recipe.title is missing"),
         ("updates", "upgrades", "recipe has no field 'upgrades' .*: its fields are agent, title, updates"),
-        ("units = 32", "unit = 32", "recipe.settings has no field 'unit': its fields are blades"),
+        ("units = 32", "unit = 32", "recipe.settings has no field 'unit' .*: its fields are blades"),
         ("units = 32", 'units = "many"', "recipe.settings.units is 'many', but must be a whole number"),
         ("units = 32", "units = 32.5", "recipe.settings.units is 32.5, but must be a whole number"),
         ("[settings]\n", "settings = 3\n#", "recipe.settings is 3, but must be a table of fields"),
