@@ -1,7 +1,9 @@
 """A name that nobody has is refused with those it may have been meant for, agents that ship among them."""
 
+import gymnasium
 import pytest
 
+import beamenv
 from beamenv.configuration.near import LONGEST, meant
 from beamenv.task import resolve_task
 from train.benchmark.listed import listed_controllers
@@ -68,3 +70,11 @@ FIELDS = {
 def test_near_names_are_told_wherever_a_name_is_looked_up(given, told):
     with pytest.raises(ValueError, match=told):
         resolve_task(**given)
+
+
+@pytest.mark.parametrize("make", [gymnasium.make, gymnasium.make_vec])
+def test_an_argument_that_an_environment_does_not_have_is_told_with_those_like_it(make):
+    with pytest.raises(
+        ValueError, match=r"^the environment has no argument 'scenaro' \(did you mean scenario\?\): its"
+    ):
+        make(beamenv.ENV_ID, scenaro="nominal")
