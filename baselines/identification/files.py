@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from baselines.identification.measurement import Measurement
 from beamenv.configuration import Flag, Number, Refused, Texts, checked
 from beamenv.configuration.files import checked_path, content_of, of_file
-from beamenv.configuration.sentence import shown, unknown_field
+from beamenv.configuration.sentence import shown, unknown_name
 
 Array = NDArray[np.float64]
 
@@ -112,20 +112,20 @@ def _chosen(key: str, names: list[str], asked: Sequence[str] | None, letter: str
     if asked is None:
         found = [k for k, name in enumerate(names) if name[:1].lower() == letter]
         if not found:
-            raise ValueError(f"no column begins with {letter}: its columns are {', '.join(names)}; name the {key}.")
+            raise ValueError(f"no column begins with {letter}: its columns are {', '.join(names)}; {key} must name them.")
         return found
     if not asked or len(set(asked)) < len(asked):
         raise Refused(key, list(asked), "names of columns, at least one, each once")
     for name in asked:
         if name not in names:
-            raise unknown_field(key, name, names)
+            raise unknown_name(key, name, names)
     return [names.index(name) for name in asked]
 
 
 def _clock(names: list[str], time: str | None) -> list[int]:
     """Position of the column of time, in a list; an empty one where there is none."""
     if time is not None and time not in names:
-        raise unknown_field("time", time, names)
+        raise unknown_name("time", time, names)
     lower = [name.lower() for name in names]
     usual = next((lower.index(each) for each in TIMES if each in lower), None)
     found = names.index(time) if time is not None else usual

@@ -9,7 +9,9 @@ from typing import Annotated, Any
 from pydantic_core import CoreSchema, core_schema
 
 from beamenv.blade.electronics import ElectronicsConfig
+from beamenv.blade.fit import in_words
 from beamenv.blade.load_shapes import LoadShape
+from beamenv.blade.units import SOFTEST, asked, check_moduli, check_units, laminae
 from beamenv.configuration import (
     Choice,
     Count,
@@ -50,6 +52,7 @@ from beamenv.structure.section.section import THEORY, Metres, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
 from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.graded import FunctionallyGraded
+from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import PLY_ANGLES
 from beamenv.structure.walls.materials import MODULI
 from beamenv.structure.walls.named import MATERIALS
@@ -94,19 +97,6 @@ def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[
     if len({wall for wall, _ in walls}) < len(walls):
         raise ValueError
     return walls
-
-
-SOFTEST = 1e5
-"""Pa: below that of rubber, and above any metal's in GPa or MPa."""
-
-
-def _laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lamina]]:
-    """Paths of the laminae that are given, and themselves."""
-    if isinstance(material, FunctionallyGraded):
-        parts = [("material.inner", material.inner), ("material.outer", material.outer)]
-    else:
-        parts = [("material", material)]
-    return [(path, each) for path, each in parts if isinstance(each, Lamina)]
 
 
 @configuration("blade.beam")
@@ -168,14 +158,11 @@ class BeamConfig:
 
     def __post_init__(self) -> None:
         check_discretisation(self)
-        for path, lamina in _laminae(self.material):
-            for name in MODULI:
-                if getattr(lamina, name) < SOFTEST:
-                    raise Refused(f"{path}.{name}", getattr(lamina, name), f"at least {SOFTEST:g} (Pa)")
+        check_moduli(self.material)
         check_held_and_heated("blade", self, "blade.beam")
         if self.temperatures is not None:
             check_data(self, [self.wall_material], "blade.beam")
-            for path, lamina in _laminae(self.material):
+            for path, lamina in laminae(self.material):
                 check_expansion(path, lamina)
 
     @property
@@ -191,12 +178,26 @@ class BeamConfig:
     @property
     def root_section(self) -> Section:
         """The section at the root."""
-        return BoxSection(self.width, self.depth, self.thickness) if self.section is None else self.section
+        if self.section is not None:
+            return self.section
+        try:
+            return BoxSection(self.width, self.depth, self.thickness)
+        except Refused as refused:
+            name = refused.name.replace("section", "blade.beam", 1)  # whose numbers these are
+            raise Refused(name, refused.value, refused.allowed, asked(float(refused.value), self.depth)) from None
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
-        if layout is not None:
-            checked("layout", layout, Instance(PatchLayout))
+        if layout is None:
+            return self._with((), model)
+        inlays = checked("layout", layout, Instance(PatchLayout)).inlays(self.length)
+        try:
+            return self._with(inlays, model)
+        except ValueError as error:
+            refused = error
+        raise in_words(refused, layout, self._with((), model).room, self.section is None)
+
+    def _with(self, inlays: tuple[Inlay, ...], model: str) -> RotatingBeam:
         return RotatingBeam(
             section=self.root_section,
             layup=self.layup(),
@@ -221,7 +222,7 @@ class BeamConfig:
             elements=self.elements,
             element_order=self.element_order,
             mesh=self.mesh,
-            inlays=layout.inlays(self.length) if layout is not None else (),
+            inlays=inlays,
         )
 
     def layup(self) -> Layup:
@@ -230,6 +231,9 @@ class BeamConfig:
         walls = dict(self.ply_angles_deg)
         if set(walls) == {ON_EVERY_WALL}:
             return Layup.uniform(material, walls[ON_EVERY_WALL])
+        names = self.root_section.wall_names
+        if set(walls) != set(names):
+            raise Refused("blade.beam.ply_angles_deg", sorted(walls), f"for every wall of the section: {', '.join(names)}")
         return Layup.by_wall(material, **walls)
 
 
@@ -280,6 +284,7 @@ class BladeConfig:
     """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
 
     def __post_init__(self) -> None:
+        check_units(self)
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
         check_held_and_heated(self.model, self.beam, "blade.beam")
         sheets = (group.patch for side in SIDES for group in self.patches.groups(side))

@@ -13,7 +13,7 @@ import numpy as np
 
 from beamenv.blade.bounds import Bounds
 from beamenv.blade.config import BladeConfig
-from beamenv.configuration import Number, Refused, checked, checked_table
+from beamenv.configuration import Number, checked, checked_table, unknown_name
 from beamenv.patches.group import Positions
 from beamenv.patches.layout import SIDES as SIDES
 from beamenv.patches.layout import Side as Side
@@ -79,8 +79,8 @@ def named(config: BladeConfig, side: Side, name: str) -> Positions:
         return optimal(config, side)
     if THESIS_TABLES.get(name) == side:
         return thesis_positions(config, side, name, count)
-    known = ", ".join(each for each in NAMES if THESIS_TABLES.get(each, side) == side)
-    raise Refused(side, name, f"one of {known}, a number of patches, positions (m), or a range")
+    known = [each for each in NAMES if THESIS_TABLES.get(each, side) == side]
+    raise unknown_name(side, name, known, ", a number of patches, positions (m), or a range")
 
 
 def thesis_positions(config: BladeConfig, side: Side, name: str, count: int) -> Positions:

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamenv.blade.config import ON_EVERY_WALL, BeamConfig, BladeConfig
 from beamenv.blade.lab_presets import AIRFOIL_BLADE, ALUMINIUM_CANTILEVER, TAKACS_BEAM
-from beamenv.configuration import Refused, read
+from beamenv.configuration import read, unknown_name
 from beamenv.patches import PatchLayout
 from beamenv.patches.layout import OUTERMOST
 from beamenv.plant.signals import REFERENCE_LOAD
@@ -83,6 +83,6 @@ def blade_config(
     Raises ``ValueError`` for an unknown preset or field and for a value that is not allowed.
     """
     if not isinstance(preset, str) or preset not in PRESETS:
-        raise Refused("preset", preset, f"one of {', '.join(PRESETS)}")
+        raise unknown_name("preset", preset, PRESETS)
     config = PRESETS[preset] if overrides is None else read(PRESETS[preset], overrides)
     return config if speed is None else replace(config, speed=speed)

@@ -19,7 +19,7 @@ from beamenv.configuration.heeded import check_heeded
 from beamenv.configuration.kinds import Choice, FileName, Flag, Instance, NameOrFile, Table, Text, Texts
 from beamenv.configuration.numbers import Count, Natural, Number, Numbers, Patches, Points, Positive, Range, Real, Share, Whole
 from beamenv.configuration.reading import checked, checked_table, configuration, read
-from beamenv.configuration.sentence import Refused, clause, shown
+from beamenv.configuration.sentence import Refused, clause, shown, unknown_name
 
 __all__ = [
     "Choice",
@@ -52,4 +52,5 @@ __all__ = [
     "configuration",
     "read",
     "shown",
+    "unknown_name",
 ]

@@ -15,7 +15,7 @@ from typing_extensions import dataclass_transform
 from beamenv.configuration.composite import Items, Variant, Variants
 from beamenv.configuration.instead import settled
 from beamenv.configuration.kinds import Choice, Kind, Table
-from beamenv.configuration.sentence import Refused, an, sentence, unknown_field
+from beamenv.configuration.sentence import Refused, an, sentence, unknown_field, unknown_name
 
 T = TypeVar("T")
 
@@ -138,7 +138,7 @@ def _variant(kind: Variant, before: Any, table: Mapping[str, Any], path: str) ->
     """An object of the class that a table's key names; one that stood there completes it if it is of that class."""
     name = table.get(kind.key, getattr(before, kind.key, None))
     if not isinstance(name, str) or name not in kind.classes:
-        raise Refused(f"{path}.{kind.key}", name, f"one of {', '.join(kind.classes)}")
+        raise unknown_name(f"{path}.{kind.key}", name, kind.classes)
     cls = kind.classes[name]
     return read(before, table, path) if isinstance(before, cls) else made(cls, table, path)
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from pydantic_core import ErrorDetails, ValidationError
 
+from beamenv.configuration.near import meant
+
 CLASS_EXPECTED = {"dataclass_exact_type": "class_name", "is_instance_of": "class"}
 """Complaints that something is no instance of a class, and where they have its name."""
+
+NAMES = "names"
+"""Where a complaint has the names of which one is allowed."""
 
 LONGEST = 160
 """Characters of a value that are shown."""
@@ -17,12 +22,12 @@ LONGEST = 160
 class Refused(ValueError):
     """A value that its fields' kinds allow, and the rest of the table does not."""
 
-    def __init__(self, name: str, value: Any, allowed: str) -> None:
-        super().__init__(f"{name} is {shown(value)}, but must be {allowed}.")
-        self.name, self.value, self.allowed = name, value, allowed
+    def __init__(self, name: str, value: Any, allowed: str, meant: str = "") -> None:
+        super().__init__(f"{name} is {shown(value)}{meant}, but must be {allowed}.")
+        self.name, self.value, self.allowed, self.meant = name, value, allowed, meant
 
-    def __reduce__(self) -> tuple[type[Refused], tuple[str, Any, str]]:
-        return Refused, (self.name, self.value, self.allowed)  # from worker processes
+    def __reduce__(self) -> tuple[type[Refused], tuple[str, Any, str, str]]:
+        return Refused, (self.name, self.value, self.allowed, self.meant)  # from worker processes
 
 
 def shown(value: Any) -> str:
@@ -44,9 +49,15 @@ def clause(error: object) -> str:
     return cut(" ".join(str(error).split()).rstrip("."))
 
 
+def unknown_name(path: str, name: Any, known: Iterable[str], others: str = "") -> Refused:
+    """What is said of a name that is none of those known, nor ``others``: which it may have been meant for, and all of them."""
+    names = list(known)
+    return Refused(path, name, f"one of {', '.join(names)}{others}", meant(name, names))
+
+
 def unknown_field(path: str, name: Any, known: Sequence[str]) -> ValueError:
     """What is said of a key that a table does not have."""
-    return ValueError(f"{path} has no field {shown(name)}: its fields are {', '.join(known)}.")
+    return ValueError(f"{path} has no field {shown(name)}{meant(name, known)}: its fields are {', '.join(known)}.")
 
 
 def sentence(error: ValidationError, path: str, known: Sequence[str]) -> ValueError:
@@ -63,9 +74,9 @@ def sentence(error: ValidationError, path: str, known: Sequence[str]) -> ValueEr
     if first["type"] == "value_error":
         cause = first["ctx"]["error"]
         if isinstance(cause, Refused):
-            return Refused(joined(where, cause.name), cause.value, cause.allowed)
+            return Refused(joined(where, cause.name), cause.value, cause.allowed, cause.meant)
         return ValueError(str(cause))
-    return Refused(where, first["input"], _allowed(first))
+    return Refused(where, first["input"], _allowed(first), meant(first["input"], first.get("ctx", {}).get(NAMES, ())))
 
 
 def _is_member(error: ErrorDetails) -> bool:

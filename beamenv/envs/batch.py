@@ -16,6 +16,7 @@ from beamenv.arrays import Arrays
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.configuration import Count, checked
+from beamenv.configuration.keywords import known_keywords
 from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import batch_reset, chosen_mode, drawn_rows
 from beamenv.envs.batch_blades import blades_of, masked, of_rows
@@ -98,6 +99,7 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
     controller = ""
     """Who acts, for the title line of pictures; set it before ``reset``."""
 
+    @known_keywords("the environment")
     def __init__(
         self,
         num_envs: int = 1,

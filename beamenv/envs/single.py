@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.model_blade import PlantArgument
+from beamenv.configuration.keywords import known_keywords
 from beamenv.envs.of_task import OfTask
 from beamenv.envs.seeds import checked_seed
 from beamenv.envs.specification import Specified
@@ -250,6 +251,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     _episode = 0
     """How many have begun since the last seed."""
 
+    @known_keywords("the environment")
     def __init__(
         self,
         preset: str = "thesis",

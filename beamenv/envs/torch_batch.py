@@ -15,6 +15,7 @@ from beamenv.arrays import Arrays
 from beamenv.blade.config import BladeConfig
 from beamenv.blade.model_blade import PlantArgument
 from beamenv.configuration import Count, Flag, checked
+from beamenv.configuration.keywords import known_keywords
 from beamenv.configuration.memory import check_room
 from beamenv.envs.batch_arguments import BatchReset, batch_reset, chosen_mode
 from beamenv.envs.of_task import OfTask
@@ -94,6 +95,7 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
+    @known_keywords("the environment")
     def __init__(
         self,
         num_envs: int = 1,

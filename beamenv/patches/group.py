@@ -57,7 +57,8 @@ class PatchGroup:
         last = self.outermost * beam_length - self.length
         tolerance = 1e-9 * beam_length
         if last < 0.0:
-            raise Refused("blade.patches.length", self.length, f"at most {self.outermost} of the {beam_length:.6g} m span")
+            meant = " (did you give millimetres?)" if 1e-3 * self.length <= self.outermost * beam_length else ""
+            raise Refused("blade.patches.length", self.length, f"at most {self.outermost} of the {beam_length:.6g} m span", meant)
         patches = self.positions
         apart = f"at least one patch length, {self.length:.6g} m, apart so that patches do not overlap"
         if isinstance(patches, int) and (patches - 1) * (self.length - tolerance) > last:  # before as many numbers are made

@@ -13,7 +13,19 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from beamenv.configuration import Choice, Flag, Items, Range, Refused, Share, checked, checked_table, configuration, read
+from beamenv.configuration import (
+    Choice,
+    Flag,
+    Items,
+    Range,
+    Refused,
+    Share,
+    checked,
+    checked_table,
+    configuration,
+    read,
+    unknown_name,
+)
 from beamenv.configuration.files import ENDINGS, of_file, parsed_table, read_table
 from beamenv.configuration.numbers import TURNED
 from beamenv.plant.named import ENDING
@@ -178,7 +190,7 @@ def _named(name: Any, path: str = "scenario") -> Scenario:
     name = FORMER.get(name, name) if isinstance(name, str) else name
     if not isinstance(name, str) or name not in SCENARIOS:
         others = ", a .toml or .json file, or a dictionary of fields" if path == "scenario" else ""
-        raise Refused(path, name, f"one of {', '.join(SCENARIOS)}{others}")
+        raise unknown_name(path, name, SCENARIOS, others)
     return SCENARIOS[name]
 
 

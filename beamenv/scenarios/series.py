@@ -70,7 +70,8 @@ def read_series(path: str, name: str) -> tuple[float, ...]:
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:
-        raise ValueError(f"{name} is {path!r}, a file that cannot be read: {clause(error)}.") from None
+        why = error.strerror if isinstance(error, OSError) and error.strerror else clause(error)
+        raise Refused(name, path, f"a {ENDING} file with a number in each line, and cannot be read: {why}") from None
     while lines and not lines[-1].strip():
         lines.pop()
     first = 1 if lines and _number(lines[0]) is None and any(mark.isalpha() for mark in lines[0]) else 0

@@ -249,7 +249,8 @@ class RotatingBeam:
         speed = checked("speed", speed, SPEED)
         if self.model == "thesis" or speed >= self.critical_speed:
             matrices = self.matrices
-            return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
+            with in_scale("beam"):
+                return OperatingPoint(speed, matrices.mass, matrices.stiffness(speed), speed * matrices.gyroscopic, None)
         known: dict[float, OperatingPoint] = self.__dict__.setdefault("_latest_points", {})
         if speed not in known:
             with in_scale("beam"):

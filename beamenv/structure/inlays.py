@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from beamenv.configuration import Refused
+from beamenv.configuration.near import meant
 from beamenv.structure.section.section import Section
 from beamenv.structure.walls.inlay import Inlay
 
@@ -42,15 +43,17 @@ class Room:
         """``ValueError`` for an inlay that leaves the beam, is as thick as its wall or wider than it at the narrow end."""
         end = inlay.start + inlay.length
         if not (inlay.start >= 0.0 and end <= self.length * (1.0 + ROUNDING)):
-            raise ValueError(f"inlay from {inlay.start!r} to {end!r} m must lie on the blade, 0 to {self.length!r} m.")
+            raise Refused("inlay.start", inlay.start, f"0 at least, and its end, {end!r}, on the blade, 0 to {self.length!r} m")
         if not inlay.length > SHORTEST * self.length:
-            raise ValueError(f"inlay length = {inlay.length!r} m must be above {SHORTEST * self.length:.3g} m.")
+            raise Refused("inlay.length", inlay.length, f"above {SHORTEST * self.length:.3g} (m)")
         self._check_contour(inlay)
         thickness = self.section.thickness_of(inlay.wall)
         if not (inlay.thickness > 0.0 and (inlay.bonded or inlay.thickness < thickness)):
-            raise ValueError(f"inlay thickness = {inlay.thickness!r} m must be positive and below the wall's {thickness!r} m.")
+            raise Refused("inlay.thickness", inlay.thickness, f"positive and below the wall's {thickness!r} m, or bonded onto it")
         if self.thesis and (inlay.offset or inlay.bonded or inlay.face != "outer"):
-            raise ValueError("inlay must be let into the outer face in the middle of its wall in the thesis' model.")
+            name = "offset" if inlay.offset else "bonded" if inlay.bonded else "face"
+            said = "of one let into the outer face in the middle of its wall with model = 'thesis'"
+            raise Refused(f"inlay.{name}", getattr(inlay, name), said)
 
     def _overlap(self, first: Inlay, second: Inlay) -> bool:
         """Whether two inlays, the second no nearer to the root, take the same place."""
@@ -63,15 +66,13 @@ class Room:
         """``ValueError`` where an inlay does not fit its wall along the contour."""
         section = self.section
         if self.thesis and section.walls.count(inlay.wall) != 1:
-            walls = ", ".join(section.wall_names)
-            raise ValueError(f"inlay's wall is {inlay.wall!r}, but must be one straight wall of the section: {walls}.")
+            allowed = f"one straight wall of the section: {', '.join(section.wall_names)}"
+            raise Refused("inlay.wall", inlay.wall, allowed, meant(inlay.wall, section.wall_names))
         try:
             width = section.wall_width(inlay.wall)
         except Refused as refused:
-            raise ValueError(f"inlay's {refused}") from None
+            raise Refused(f"inlay.{refused.name}", refused.value, refused.allowed, refused.meant) from None
         room = self.narrowest * max(width - 2.0 * abs(inlay.offset), 0.0)
         if not 0.0 < inlay.width <= room * (1.0 + ROUNDING):
             where = f" (offset {inlay.offset!r} m from its middle)" if inlay.offset else ""
-            raise ValueError(
-                f"inlay width = {inlay.width!r} m must be positive and at most the {inlay.wall} wall's {room:.6g} m{where}."
-            )
+            raise Refused("inlay.width", inlay.width, f"positive and at most the {inlay.wall} wall's {room:.6g} m{where}")

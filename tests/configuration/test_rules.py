@@ -105,7 +105,7 @@ SENTENCES = [
     (lambda: blade_config(overrides={"beam": {"material": {"E2": -1}}}),
      "blade.beam.material.E2 is -1, but must be a positive number (Pa)."),
     (lambda: blade_config(overrides={"beam": {"material": Lamina.isotropic(69.0, 0.33, 2700.0)}}),  # in GPa
-     "blade.beam.material.E1 is 69.0, but must be at least 100000 (Pa)."),
+     "blade.beam.material.E1 is 69.0 (did you give GPa?), but must be at least 1e+06 (Pa)."),
     (lambda: blade_config(overrides={"beam": {"material": {"nu12": 9.0}}}),
      "blade.beam.material.nu12 is 9.0, but must be smaller in magnitude than sqrt(E1/E2) = 6.325."),
     (lambda: blade_config(overrides={"beam": 3}), "blade.beam is 3, but must be a table of fields or a BeamConfig."),
@@ -223,7 +223,7 @@ def test_a_wall_given_twice_is_refused(walls):
 
 @pytest.mark.parametrize("wall", ["material", "cls", "self", ""])
 def test_a_wall_that_the_section_lacks_is_told_whatever_its_name(wall):
-    with pytest.raises(ValueError, match="^layup has no plies for wall 'right'"):
+    with pytest.raises(ValueError, match="^blade.beam.ply_angles_deg is .*, but must be for every wall of the section: right, top"):
         build_plant(blade_config(overrides={"beam": {"ply_angles_deg": {wall: [30]}}}))
 
 
@@ -231,14 +231,14 @@ def test_a_wall_that_the_section_lacks_is_told_whatever_its_name(wall):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"beam": {"length": 1e6}}, "beam cannot be computed"),
-        ({"beam": {"width": 1e100}}, "beam cannot be computed"),
+        ({"beam": {"length": 1e6}}, "blade.beam.length is 1000000.0, but must be at most 250 [(]m[)]"),
+        ({"beam": {"width": 1e100}}, "blade.beam.width is 1e[+]100, but must be at most 20 [(]m[)]"),
         ({"beam": {"taper": 5e-324}}, "beam cannot be computed"),
         ({"beam": {"material": {"G13": 1e100}}}, "thickness is 0.01016, but must be large enough"),
         ({"beam": {"material": {"E1": 1e308}}}, "beam cannot be computed"),
         ({"white_load": 1e308}, "blade.white_load is 1e[+]308, but must be a number from 0 to 1e[+]06 [(]N/m[)]"),
         ({"modes": 97}, "blade.modes is 97, but must be a whole number from 1 to 96"),
-        ({"patches": {"length": 1e-12}}, "inlay length = 1e-12 m must be above"),
+        ({"patches": {"length": 1e-12}}, "blade.patches.length is 1e-12, but must be above"),
         ({"patches": {"actuators": 10**9}}, "blade.patches.actuators is 1000000000, but must be at least one patch length"),
     ],
 )

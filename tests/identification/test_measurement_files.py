@@ -71,13 +71,13 @@ WRONG = [
     (with_cell(50, 0, "0.0970"), {}, "time on line 50 is 0.001 s off a constant rate of one row in 0.002 s"),
     ([*lines()[:50], lines()[49], *lines()[50:]], {}, "time does not rise on line 51, but must in every row"),
     (lines(), {"interval": 0.001}, "its rows are 0.002 s apart, but interval is 0.001 s"),
-    (lines(), {"voltages": ["u3"]}, "voltages has no field 'u3': its fields are time, u1, u2, y"),
+    (lines(), {"voltages": ["u3"]}, "voltages is 'u3', but must be one of time, u1, u2, y"),
     (lines(), {"readings": ["u1"]}, "column 'u1' is both a voltage and a reading, but must be one of them"),
-    (lines(), {"time": "clock"}, "time has no field 'clock'"),
+    (lines(), {"time": "clock"}, "time is 'clock', but must be one of time, u1"),
     (
         [line.replace("u", "v") for line in lines()],
         {},
-        "no column begins with u: its columns are time, v1, v2, y; name the voltages",
+        "no column begins with u: its columns are time, v1, v2, y; voltages must name them",
     ),
 ]
 

@@ -153,7 +153,7 @@ REFUSED = {
     "an unknown field": ({"place": 0.1}, r"actuators\[0\] has no field 'place'"),
     "off its wall": (
         {"offset": 0.12},
-        r"inlay width = 0\.057 m must be positive and at most the top wall's 0\.014 m \(offset 0\.12",
+        r"blade.patches.actuators\[0\].width is 0\.057, but must be positive and at most the top wall's 0\.014 m \(offset 0\.12",
     ),
     "beside its wall": ({"offset": 0.5}, r"at most the top wall's 0 m \(offset 0\.5 m from its middle"),
     "of so many pC/N": ({"material": {"d11": 400.0}}, r"d11 is 400.0, but must be a number from -1e-06 to 1e-06 \(m/V\)"),

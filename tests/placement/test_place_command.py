@@ -53,6 +53,31 @@ def test_speed_blade_and_passive_effect_are_options(tmp_path):
     assert other["cost"] != told["cost"]
 
 
+STRIP = blade_config("aluminium-cantilever")
+
+
+def test_actuators_lie_where_they_do_alone_when_sensors_are_placed_after_them():
+    both = place_sides(STRIP, {"actuators": 1, "sensors": 1}, "sqp", 0, leave_unreached=True)
+    alone = place_sides(STRIP, {"actuators": 1}, "sqp", 0, leave_unreached=True)
+    assert both[0].placement.positions == alone[0].placement.positions
+    assert both[0].placement.cost == alone[0].placement.cost
+    assert both[0].problem.config.patches.sensors == STRIP.patches.sensors  # not moved to the clamp before their turn
+
+
+def test_every_row_of_damping_says_what_moves(sides):
+    for side in sides:
+        assert len(side.families) == len(side.left_alone)
+        assert {"lag", "flap"} <= set(side.families)
+        assert side.to_dict()["damping_ratios"]["families"] == list(side.families)
+
+
+def test_what_no_patch_moves_is_told_with_the_option_that_leaves_it():
+    result = run("--preset", "aluminium-cantilever", "--actuators", "1", "--method", "sqp")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("beamenv: actuators = (")
+    assert result.stderr.endswith("or leave it alone by --leave-unreached.\n")
+
+
 def test_the_screen_shows_both_sides_and_a_picture_is_drawn(tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "blade.png"
@@ -107,7 +132,7 @@ def test_a_picture_that_cannot_be_written_is_told_before_the_search(more, tmp_pa
     for picture in (tmp_path / "note" / "picture.png", tmp_path / "folder.png"):
         result = run("--picture", str(picture), *more)
         assert result.exit_code == 2, result.output
-        assert result.stdout == "" and result.stderr.startswith("beamenv: picture = ")
+        assert result.stdout == "" and result.stderr.startswith("beamenv: --picture = ")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "results").write_text("")
     assert run(*more).exit_code == (1 if more else 2)  # without --json a picture is drawn in results

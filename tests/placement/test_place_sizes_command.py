@@ -100,9 +100,9 @@ def test_together_tells_both_sides_and_the_gain():
         (["--size", "--method", "sqp"], "--size searches in a way of its own: leave --method out."),
         (["--size", "--leave-unreached"], "--size leaves modes that no patch reaches alone: leave --leave-unreached out."),
         (["--together", "--method", "ga"], "--together searches in a way of its own: leave --method out."),
-        (["--size", "--mass", "0.0001"], "budget.mass is 0.0001, but must be at least 0.001977 kg"),
-        (["--size", "--power", "nan"], "budget.power is nan, but must be"),
-        (["--size", "--actuators", "9"], "sizes.actuators is 9, but must be"),
+        (["--size", "--mass", "0.0001"], "--mass is 0.0001, but must be at least 0.001977 kg"),
+        (["--size", "--power", "nan"], "--power is nan, but must be"),
+        (["--size", "--actuators", "9"], "--actuators is 9, but must be"),
         (["--size", "--output", "blade.txt"], "output is 'blade.txt', but must"),
     ],
 )

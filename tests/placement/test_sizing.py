@@ -255,13 +255,13 @@ def test_of_equal_designs_the_first_is_kept():
         ({"sizes": {"width": (0.05, 0.5)}}, r"sizes\.width is \[0\.05, 0\.5\], but must be between 0\.01425 and 0\.228 m"),
         (
             {"blade": {"beam": {"taper": 2.0}}, "sizes": {"width": (0.05, 0.2)}},
-            r"inlay width = 0\.2 m must be positive and at most the top wall's 0\.127 m",
+            r"width is 0\.2, but must be positive and at most the top wall's 0\.127 m",
         ),
         (
             {"sizes": {"thickness": (0.001, 0.02)}},
             r"sizes\.thickness is \[0\.001, 0\.02\], but must be between 7\.5e-05 and 0\.0012 m",
         ),
-        ({"sizes": {"length": (1e-9, 0.1)}}, r"inlay length = 1e-09 m must be above"),
+        ({"sizes": {"length": (1e-9, 0.1)}}, r"length is 1e-09, but must be above"),
         ({"blade": {"patches": {"ganged": True}}}, r"blade\.patches\.ganged is True, but must be False"),
         ({"blade": {"white_load": 0.0}}, r"white_load = 0\.0 must be positive"),
         ({"blade": {"sensors": [{"kind": "accelerometer"}]}}, r"config\.sensors is \['accelerometer'\], but must be empty"),

@@ -219,7 +219,7 @@ def test_controllers_see_the_disturbances_that_they_had():
         ({"course": "series", "series": [0, 1]}, "rate is None"),
         ({"series": [0, 1], "rate": 10.0}, "series is 'given'"),
         ({"course": "series", "series": [0, float("nan")], "rate": 10.0}, "series"),
-        ({"course": "series", "series": "nowhere.csv", "rate": 10.0}, r"scenario.loads\[0\].series is 'nowhere.csv', a file that"),
+        ({"course": "series", "series": "nowhere.csv", "rate": 10.0}, "series is 'nowhere.csv', but must be a .csv file"),
         ({"course": "function"}, "function is None"),
         ({"course": "noise", "spectrum": [[10, 1], [5, 1]]}, "spectrum is"),
         ({"magnitude": [2.0, 1.0]}, "magnitude is"),

@@ -184,10 +184,19 @@ REFUSED = {
     "motion not in a tuple": (lambda: blade().natural_frequencies(motions="lag"), "motions is 'lag', but must be a list of"),
     "no motion": (lambda: blade().natural_frequencies(motions=()), r"motions is \(\), but must be a list of one or more"),
     "overlapping inlays": (overlapping_inlays, r"inlays at 0\.25 and 0\.3 m on the top wall must be 0\.1 m apart"),
-    "inlay past the tip": (blade_with(start=1.95), r"inlay from 1\.95 to 2\.05 m must lie on the blade, 0 to 2\.0 m"),
-    "inlay before the root": (blade_with(start=-0.1), r"inlay from -0\.1 to 0\.0 m must lie on the blade"),
-    "inlay wider than its wall": (blade_with(width=0.3), r"inlay width = 0\.3 m must be .* at most the top wall's 0\.254 m"),
-    "inlay as thick as its wall": (blade_with(thickness=0.01), r"inlay thickness = 0\.01 m must be .* below the wall's 0\.01 m"),
+    "inlay past the tip": (
+        blade_with(start=1.95),
+        r"inlay.start is 1\.95, but must be 0 at least, and its end, 2\.05, on the blade, 0 to 2\.0 m",
+    ),
+    "inlay before the root": (blade_with(start=-0.1), r"inlay.start is -0\.1, but must be 0 at least"),
+    "inlay wider than its wall": (
+        blade_with(width=0.3),
+        r"inlay.width is 0\.3, but must be positive and at most the top wall's 0\.254 m",
+    ),
+    "inlay as thick as its wall": (
+        blade_with(thickness=0.01),
+        r"inlay.thickness is 0\.01, but must be positive and below the wall's 0\.01 m",
+    ),
     "inlay on no wall": (
         blade_with(wall="nose"),
         "wall is 'nose', but must be one wall of the section: right, top, left, bottom",
@@ -208,7 +217,7 @@ def test_bad_input_is_refused_by_name_and_value(case):
 def test_inlay_that_fits_the_root_but_not_the_tapered_tip_is_refused():
     inlay = Inlay("top", 0.0, 0.1, 0.2, Ply(GRAPHITE_EPOXY, 90.0), 3e-4)
     blade(inlays=(inlay,))
-    with pytest.raises(ValueError, match=r"width = 0\.2 m must be .* at most the top wall's 0\.127 m"):
+    with pytest.raises(ValueError, match=r"width is 0\.2, but must be .* at most the top wall's 0\.127 m"):
         blade(inlays=(inlay,), taper=2.0)
 
 

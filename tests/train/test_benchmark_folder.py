@@ -158,7 +158,7 @@ def test_each_choice_of_the_command_has_a_folder_of_its_own(tmp_path, monkeypatc
     ]
     refused = CliRunner().invoke(app, [*small, "--episodes", "2", "--scenario", "nominal", "--folder", f"results/{homes[0]}"])
     assert refused.exit_code == 2
-    assert refused.stderr.startswith("beamenv: folder = ") and len(refused.stderr.splitlines()) == 1
+    assert refused.stderr.startswith("beamenv: --folder = ") and len(refused.stderr.splitlines()) == 1
 
 
 def test_the_folders_of_the_command_differ_from_the_full_benchmark_s():

@@ -155,7 +155,7 @@ def test_a_comparison_prints_json_alone(tmp_path):
         (("train", "dreamer"), "dreamer"),
         (("train", "ppo", "--minutes", "0"), "minutes"),
         (("train", "ppo", "--updates", "0"), "updates"),
-        (("train", "ppo", "--updates", "1", "--minutes", "1"), "minutes and updates"),
+        (("train", "ppo", "--updates", "1", "--minutes", "1"), "--minutes and --updates"),
         (("train", "ppo", "--scenario", "storm"), "storm"),
         (("train", "ppo", "--scenario", "quiet"), "nothing to learn"),
         (("train", "ppo", "--recipe", "absent.toml"), "absent.toml"),
@@ -179,7 +179,7 @@ def test_bad_input_gets_one_sentence_and_status_2(arguments, named, tmp_path, mo
 def test_a_training_seed_of_what_has_none_is_refused_and_not_ignored():
     refused = CliRunner().invoke(app, ["evaluate", "lqg", "--episodes", "2", "--trained-seed", "3"])
     assert refused.exit_code == 2
-    assert refused.stderr == "beamenv: trained_seed is 3, but must be left out, for 'lqg' is no agent that ships.\n"
+    assert refused.stderr == "beamenv: --trained-seed is 3, but must be left out, for 'lqg' is no agent that ships.\n"
 
 
 @pytest.mark.parametrize(("interruption", "status"), [(KeyboardInterrupt(), 130), (Interrupted(15), 143), (Interrupted(2), 130)])
@@ -197,7 +197,7 @@ def test_pictures_end_in_png_and_minutes_are_named(tmp_path):
         refused = run(command, "--picture", str(tmp_path / "made" / "it.jpg"))
         assert refused.exit_code == 2
         assert refused.stderr.endswith("it.jpg', but must be a file that ends in .png.\n")
-    assert run("train", "ppo", "--minutes", "0").stderr == "beamenv: minutes is 0.0, but must be a positive number.\n"
+    assert run("train", "ppo", "--minutes", "0").stderr == "beamenv: --minutes is 0.0, but must be a positive number.\n"
     assert list(tmp_path.iterdir()) == []
 
 

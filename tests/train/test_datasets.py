@@ -217,7 +217,7 @@ def test_actions_are_kept_within_their_space(tmp_path):
         ({"seed": 3_999_999}, "seed is 3999999"),
         ({"seed": -1}, "seed is -1"),
         ({"episodes": 0}, "episodes is 0"),
-        ({"controller": "lqgg"}, "near it is lqg"),
+        ({"controller": "lqgg"}, "did you mean lqg"),
         ({"scenario": "gale"}, "scenario is 'gale'"),
         ({"name": "../mine-v0"}, "name is '../mine-v0', but must be as beamenv/lqg-nominal-v0"),
         ({"name": "mine"}, "name is 'mine'"),

@@ -137,7 +137,7 @@ def test_a_port_is_a_whole_number_up_to_65535(port):
 
 def test_a_port_that_is_none_is_refused_in_one_sentence():
     result = CliRunner().invoke(command, ["explore", "--port", "70000"])
-    assert (result.exit_code, result.stderr) == (2, "beamenv: port is 70000, but must be a whole number from 0 to 65535.\n")
+    assert (result.exit_code, result.stderr) == (2, "beamenv: --port is 70000, but must be a whole number from 0 to 65535.\n")
 
 
 def test_a_port_that_is_taken_is_told():

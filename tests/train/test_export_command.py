@@ -88,7 +88,7 @@ def test_the_format_is_what_the_output_ends_in(command, tmp_path):
         (("lqg", "--name", "int"), "name is 'int', but must be a letter, then letters, digits and underscores"),
         (("lqg", "--name", "a-b"), "name is 'a-b', but must be a letter, then letters, digits and underscores"),
         (("lqg", "--format", "mat", "--measure"), "measure is True, but must be left out with the format 'mat'"),
-        (("lqj",), "near it are lqr, lqg"),
+        (("lqj",), "(did you mean lqr or lqg"),
     ],
 )
 def test_what_is_refused_leaves_no_file(command, tmp_path, words, said):

@@ -157,10 +157,10 @@ def test_the_digest_is_of_what_was_run_and_not_of_its_name(board, monkeypatch):
         (("--submit", "other/lqg"), "'lqg' is a controller that ships"),
         (("--submit", "mine.zip"), "submit = 'mine.zip' is not loaded: a model file can run any code"),
         (("--submit", "mine.zip", "--trust"), "submit is 'mine.zip', but must be a file that is there"),
-        (("--submit", "mine", "--scenario", "delay", "--quick"), "so leave out scenario and quick"),
+        (("--submit", "mine", "--scenario", "delay", "--quick"), "so leave out --scenario and --quick"),
         (("--submit", "mine", "--docs", "mine/agent.json"), "mine/agent.json"),
-        (("--tier", "1"), "tier = 1 is of an entry on the leaderboard: name that with --submit"),
-        (("--overwrite",), "overwrite = True is of an entry on the leaderboard"),
+        (("--tier", "1"), "--tier is of an entry on the leaderboard: name that with --submit"),
+        (("--overwrite",), "--overwrite is of an entry on the leaderboard"),
         (
             ("--submit", "narrow"),
             "submit = 'narrow' is not entered, for it could not be measured in 1 of 1 scenarios: in nominal plant",

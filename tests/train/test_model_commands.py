@@ -78,7 +78,7 @@ def test_scenarios_of_a_group_that_cannot_be_of_a_model_are_left_out_with_their_
         ),
         (("--scenario", "rotor"), "scenario 'rotor' cannot be had of this plant: scenario.rotor.harmonics is"),
         (("--scenario", "nominal", "--controller", "velocity"), "plant has 2 actuators and 3 sensors, which velocity feedback"),
-        (("--scenario", "nominal", "--controller", "scheduled-lqg"), "plant is a model of one's own, but scheduled-lqg asks for"),
+        (("--scenario", "nominal", "--controller", "scheduled-lqg"), "--plant is a model of one's own, but scheduled-lqg asks for"),
         (
             ("--scenario", "nominal", "--controller", "gradient-generalist"),
             "controller 'gradient-generalist' cannot be had of this plant: their training was on other plants.",
@@ -132,7 +132,7 @@ def test_a_training_on_a_model_that_has_changed_is_not_resumed(file, tmp_path):
 def test_what_asks_for_a_rotor_is_refused_in_one_sentence(file):
     result = run("evaluate", "scheduled-lqg", "--plant", file, "--episodes", 2)
     assert result.exit_code == 2
-    assert result.stderr.startswith("beamenv: plant is a model of one's own, but scheduled-lqg asks for a blade")
+    assert result.stderr.startswith("beamenv: --plant is a model of one's own, but scheduled-lqg asks for a blade")
 
 
 def test_a_generalist_of_a_model_trains_on_the_scenarios_that_can_be_of_it(file):
@@ -150,4 +150,4 @@ def test_frequencies_of_a_model_are_those_of_its_poles_with_their_dampings(file)
     shown = run("frequencies", "--plant", file)
     assert shown.exit_code == 0 and "30.00 (4.77)" in shown.stdout and "assumed: " in " ".join(shown.stdout.split())
     refused = run("frequencies", "--plant", file, "--speed", "20")
-    assert refused.exit_code == 2 and refused.stderr.startswith("beamenv: speed is 20.0, but must be left out with a plant")
+    assert refused.exit_code == 2 and refused.stderr.startswith("beamenv: --speed is 20.0, but must be left out with a plant")

@@ -54,7 +54,7 @@ def test_what_is_there_is_kept_unless_it_is_to_be_replaced(command):
 def test_a_test_seed_is_refused(command, tmp_path):
     result = command("none", "--seed", "1000000")
     assert result.exit_code == 2 and result.stderr.startswith(
-        "beamenv: seed is 1000000, but must be at most 999900 for 100 episodes"
+        "beamenv: --seed is 1000000, but must be at most 999900 for 100 episodes"
     )
     assert not (tmp_path / "sets").exists()
 

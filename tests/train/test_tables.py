@@ -117,17 +117,31 @@ def test_controllers_are_compared_in_rows_whose_names_are_whole(envs, monkeypatc
 
 
 @pytest.mark.parametrize("words", ["frequencies", "section", "frequencies --preset airfoil-blade --speed 0 --speed 20 --speed 72"])
-def test_tables_of_blades_are_no_wider_than_80_columns(words, monkeypatch):
+def test_tables_of_blades_and_what_is_said_of_them_are_no_wider_than_80_columns(words, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     result = CliRunner().invoke(app, words.split())
-    tables = [line for line in result.stdout.splitlines() if not re.match(r"turning|Nearer|no transverse|tension", line)]
-    assert len(tables) > 8 and max(map(len, tables)) <= 80
+    lines = result.stdout.splitlines()
+    assert len(lines) > 8 and max(map(len, lines)) <= 80
 
 
 @pytest.mark.parametrize("words", [["--version"]])
 def test_the_version_is_told(words):
     result = CliRunner().invoke(app, words)
     assert (result.exit_code, result.stdout) == (0, f"beamenv {beamenv.__version__}\n")
+
+
+def test_paragraphs_of_help_break_where_the_terminal_ends(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    for name in ("explore", "place"):
+        text = CliRunner().invoke(app, [name, "--help"]).stdout
+        above = [line.strip() for line in text.partition("Options")[0].splitlines()]
+        whole = [
+            (line, after)
+            for line, after in zip(above[:-1], above[1:], strict=True)
+            if line and after and not line.startswith("Usage")
+        ]
+        assert all(len(line) + 1 + len(after.split()[0]) > 78 for line, after in whole if not after.startswith("╭")), name
+        assert "…" not in text, name
 
 
 FORMER = {"--seeds", "--save", "--passive", "--fresh"}

@@ -13,7 +13,7 @@ from train.benchmark.choice import FILE, SCENARIOS, Choice, choose, write_choice
 def main(arguments: Sequence[str] | None = None) -> Choice:
     """Measure every controller and agent where contenders may be chosen, and write who is chosen."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=64, help="how many validation seeds")
+    parser.add_argument("--episodes", type=int, default=64, help="how many validation episodes")
     parser.add_argument("--jobs", type=int, default=2, help="processes at work side by side")
     parser.add_argument("--folder", type=Path, default=Path("results/validation"), help="where cells are kept")
     parser.add_argument("--scenario", action="append", choices=SCENARIOS, help="repeat for more; all if left out")
@@ -23,7 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> Choice:
     table = benchmark(
         scenarios=given.scenario or SCENARIOS,
         controllers=given.controller,
-        seeds=given.seeds,
+        seeds=given.episodes,
         folder=given.folder,
         jobs=given.jobs,
         validation=True,

@@ -11,12 +11,12 @@ from typing import Any
 
 from baselines.design.controller import as_controller
 from beamenv.configuration import FileName, Refused, checked
+from beamenv.configuration.near import meant
 from beamenv.scenarios.scenario import Scenario
 from train.controllers.ids import folder_id
 from train.controllers.known import FORMER
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import KINDS, any_scenario, discover
-from train.controllers.near import near
 from train.controllers.runs import runs_in
 from train.controllers.shipped import FOLDER, Shipped, shipped_agents
 from train.controllers.shipped import GENERALIST as GENERALIST
@@ -82,7 +82,7 @@ def listed_controllers(
     known |= {name: of_folder(Path(name)) for name in names if name not in known and os.path.isdir(name)}
     if unknown := [name for name in names if name not in known]:
         others = f"one of {', '.join(known)}, or the folder of a trained agent"
-        raise Refused("controller", unknown[0], others + near(unknown[0], known))
+        raise Refused("controller", unknown[0], others, meant(unknown[0], known))
     brought = [ListedController(name, "own", own_tier(each), {"": _given(name, each)}) for name, each in own.items()]
     brought += [ListedController(checked("model", path.stem, FileName()), "own", LEARNT, {"": ModelFile(path)}) for path in models]
     chosen = [*(known[name] for name in names), *brought]

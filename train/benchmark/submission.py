@@ -12,6 +12,7 @@ import numpy as np
 from baselines import Estimate
 from beamenv.configuration import Count, FileName, Flag, Number, Refused, Text, checked
 from beamenv.configuration.files import of_file
+from beamenv.configuration.near import meant
 from beamenv.knowledge import TRUTH
 from train.benchmark.bench import Setting
 from train.benchmark.campaign import Progress, Recording, checked_progress, jobs_of, of_listed, read_scenarios
@@ -21,7 +22,6 @@ from train.benchmark.score import SPLITS, aggregates
 from train.benchmark.table import CLAIRVOYANT, BenchmarkTable, Row
 from train.controllers.models import UNTRUSTED
 from train.controllers.named import discover
-from train.controllers.near import near
 from train.controllers.policy_files import read_about
 from train.controllers.runs import AGENT
 from train.controllers.shipped import FOLDER
@@ -117,7 +117,7 @@ def entrant(entry: str, tier: int | None, trusted: bool) -> ListedController:
         brought = of_folder(path, tier)
     else:
         others = f"the folder of a trained agent, a model's {MODEL} file, or one of {', '.join([*known, *general])}"
-        raise Refused("submit", entry, others + near(entry, [*known, *general]))
+        raise Refused("submit", entry, others, meant(entry, [*known, *general]))
     if brought.name in {*known, *general}:
         raise Refused("submit", entry, f"called otherwise: {brought.name!r} is a controller that ships")
     return brought

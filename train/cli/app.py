@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -224,3 +225,12 @@ def reproduce(
         status = run(names or [], folder, overwrite, docs, working(jobs, cluster), as_json)
     if status:
         raise typer.Exit(status)
+
+
+def _in_paragraphs(text: str) -> str:
+    """A docstring with each paragraph on one line, which a terminal then breaks where it ends, and not where the source does."""
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
+
+
+for _command in app.registered_commands:
+    _command.help = _in_paragraphs(inspect.getdoc(_command.callback) or "")

@@ -128,7 +128,7 @@ class Asked:
     @property
     def given(self) -> list[str]:
         """The names of the options that say something."""
-        return [name for name in self.__dataclass_fields__ if getattr(self, name)]
+        return [f"--{name}" for name in self.__dataclass_fields__ if getattr(self, name)]
 
     @property
     def seeds(self) -> int:
@@ -159,7 +159,7 @@ def check_no_entry(**options: int | bool | None) -> None:
     """``ValueError`` for options of an entry where none is made."""
     for name, given in options.items():
         if given is not None:
-            raise ValueError(f"{name} = {given} is of an entry on the leaderboard: name that with --submit.")
+            raise ValueError(f"--{name} is of an entry on the leaderboard: name that with --submit.")
 
 
 def entered(submit: str, asked: Asked, folder: Path | None, docs: Path | None, as_json: bool, **arguments: Any) -> None:

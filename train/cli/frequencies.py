@@ -16,9 +16,9 @@ from train.cli.options import (
     PlantOption,
     PresetOption,
     environment_arguments,
+    note,
     one_sentence,
     print_json,
-    say,
 )
 from train.cli.tables import Column, show_table
 
@@ -58,21 +58,21 @@ def frequencies(
         speeds = speed or sorted({0.0, config.speed})
         found = [beam.modes(each, count, gyroscopic=gyroscopic) for each in speeds]
         steady = [steady_deformation(beam, each) for each in speeds]
-        note = clamp_note(config) if patches else ""
+        near = clamp_note(config) if patches else ""
     if as_json:
         rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
-        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": note})
+        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": near})
         return
     columns = [Column("mode", words=True), *(Column(f"at {each:g} rad/s", words=True) for each in speeds)]
     by_mode = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
     show_table(columns, by_mode, "Natural frequencies, rad/s (Hz)")
     if beam.critical_speed < FASTEST:
-        say(f"critical speed {beam.critical_speed:.1f} rad/s")
+        note(f"critical speed {beam.critical_speed:.1f} rad/s")
     for each, state in zip(speeds, steady, strict=True):
         if each > 0.0 and config.model != "thesis":
-            say(_turning(each, state, config.patches.failure_strain))
-    if note:
-        say(note)
+            note(_turning(each, state, config.patches.failure_strain))
+    if near:
+        note(near)
 
 
 def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
@@ -120,6 +120,6 @@ def _of_model(plant: Path, preset: str, speed: list[float] | None, blade: Path |
         for number, (frequency, ratio) in enumerate(zip(frequencies, ratios, strict=True), start=1)
     ]
     show_table(columns, rows, "Natural frequencies, rad/s (Hz)")
-    say(model.sizes)
+    note(model.sizes)
     if model.assumed:
-        say(f"assumed: {'; '.join(model.assumed)}")
+        note(f"assumed: {'; '.join(model.assumed)}")

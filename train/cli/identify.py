@@ -12,7 +12,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 
 from beamenv.configuration.files import content_of
 from train.cli.bars import fleeting
-from train.cli.options import JsonOption, one_sentence, print_json, say
+from train.cli.options import JsonOption, note, one_sentence, print_json, say
 from train.cli.tables import Column, show_table
 from train.shared.files import check_folder
 
@@ -78,7 +78,7 @@ def _tell(found: Any, trial: Any, written: Sequence[Path], as_json: bool) -> Non
         return
     show(found)
     if trial.safe:
-        say(trial.sentence)
+        note(trial.sentence)
     for path in written:
         say(f"written to {path}")
 
@@ -126,11 +126,11 @@ def show(found: Any) -> None:
         ],
         "Modes",
     )
-    say("± one standard deviation; certainty about 1: none")
+    note("± one standard deviation; certainty about 1: none")
     of_readings = zip(names, fit.one_step, fit.free_run, fit.attainable, strict=True)
     show_table(
         [Column("reading", words=True), Column("one step"), Column("free run"), Column("attainable")],
         [[name, *(f"{value:.3f}" for value in values)] for name, *values in of_readings],
         "Fit on rows held back",
     )
-    say(found.choice.reason)
+    note(found.choice.reason)

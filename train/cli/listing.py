@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Any
 
 import typer
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
-from train.cli.options import JsonOption, one_sentence, print_json, say
+from train.cli.options import JsonOption, note, one_sentence, print_json, say
+from train.cli.tables import GAP, Column, show_table
+
+LEAST = 30
+"""Columns of the text that says what something is, however narrow the terminal."""
 
 
 class Kind(str, Enum):
@@ -132,17 +134,20 @@ def _tiers() -> str:
 
 
 def _show(kind: str, found: Listed) -> None:
-    """As wide as the terminal; ids are never cut."""
-    table = Table(box=SIMPLE_HEAD, caption=Text(found.note), caption_justify="left", pad_edge=False)
-    table.add_column(kind.removesuffix("s"), no_wrap=True)
-    for column in found.shown:
-        table.add_column(column, overflow="fold")
-    table.add_column("what it is", overflow="fold")
-    for row in found.rows:
-        where = f" Trained on {', '.join(row['scenarios'])}." if row.get("scenarios") else ""
-        table.add_row(row["id"], *(_text(row[column]) for column in found.shown), Text(row["title"] + where))
-    Console().print(table)
+    """Ids are never cut; what each is takes as many lines as it needs beside them."""
+    heads = [kind.removesuffix("s"), *found.shown]
+    cells = [[row["id"], *(_text(row[column]) for column in found.shown)] for row in found.rows]
+    taken = sum(max(len(each) for each in column) + GAP for column in zip(heads, *cells, strict=True))
+    room = max(Console().width - taken, LEAST)
+    rows = [[*own, textwrap.fill(_title(row), room)] for own, row in zip(cells, found.rows, strict=True)]
+    show_table([*(Column(each, words=True) for each in heads), Column("what it is", words=True)], rows)
+    if found.note:
+        note(found.note)
     say(f"In Python: {found.example}")
+
+
+def _title(row: dict[str, Any]) -> str:
+    return row["title"] + (f" Trained on {', '.join(row['scenarios'])}." if row.get("scenarios") else "")
 
 
 def _text(value: Any) -> str:

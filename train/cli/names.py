@@ -6,14 +6,13 @@ import os
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from beamenv.configuration import Refused
-from beamenv.configuration.files import ENDINGS, content_of, read_table
+from beamenv.configuration import Refused, unknown_name
+from beamenv.configuration.files import ENDINGS, checked_path, content_of, read_table
 from beamenv.scenarios.named import FORMER as FORMER_SCENARIOS
 from beamenv.scenarios.named import GROUPS, LOADS, NOMINAL
 from beamenv.scenarios.named import NAMES as IN_FILES
 from beamenv.titles import BLADES
 from train.controllers.ids import is_known, unknown
-from train.controllers.near import near
 from train.learning.recipes import NAMES as RECIPES
 from train.reproduce.names import NAMES as STUDIES
 
@@ -45,9 +44,14 @@ def check_names(
     if scenario is not None:
         check_scenario(scenario)
     if blade is not None:
-        read_table(blade)
+        check_table(blade, "blade")
     if plant is not None and plant.suffix.lower() in MODELS:
         content_of(plant, 1)
+
+
+def check_table(path: Path, argument: str) -> None:
+    """The same of a .toml or .json file."""
+    read_table(checked_path(argument, path, ENDINGS))
 
 
 def check_scenario(name: str, others: Collection[str] = ()) -> None:
@@ -93,4 +97,4 @@ def check_studies(names: Iterable[str]) -> None:
 def check_name(argument: str, name: str, known: Collection[str], others: str = "") -> None:
     """The same of one of some names."""
     if name not in known:
-        raise Refused(argument, name, f"one of {', '.join(known)}{others}{near(name, known)}")
+        raise unknown_name(argument, name, known, others)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import sys
+import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -14,8 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from beamenv.configuration import shown
 from train.cli.names import PRESETS, SCENARIOS, check_names
+from train.cli.said import said
 from train.shared.interruption import status_of
 
 if TYPE_CHECKING:
@@ -99,19 +100,12 @@ def one_sentence(interrupted: str | Callable[[], str] = "") -> Iterator[None]:
     except BrokenPipeError:
         raise
     except (ValueError, OSError) as error:
-        complain(_said(error))
+        complain(said(error))
         raise typer.Exit(2) from None
     except KeyboardInterrupt as error:
         holds = interrupted if isinstance(interrupted, str) else interrupted()
         complain(f"interrupted{holds and ': '}{holds}.")
         raise typer.Exit(status_of(error)) from None
-
-
-def _said(error: ValueError | OSError) -> str:
-    """The sentence; of the system's own errors the file and what is wrong with it."""
-    if isinstance(error, OSError) and error.strerror:
-        return f"file {shown(error.filename)} cannot be used: {error.strerror}."
-    return str(error)
 
 
 def same_command(context: typer.Context, **changed: Any) -> str:
@@ -133,6 +127,11 @@ def say(line: str) -> None:
     """To standard output; a terminal breaks it between words, and whatever else reads gets one line."""
     screen = Console()
     screen.print(line, soft_wrap=not screen.is_terminal, markup=False, highlight=False)
+
+
+def note(line: str) -> None:
+    """To standard output, below a table: broken between words as that is, whoever reads."""
+    print(textwrap.fill(line, Console().width, break_long_words=False, break_on_hyphens=False))  # noqa: T201 - the command's own voice
 
 
 def complain(sentence: str) -> None:

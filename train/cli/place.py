@@ -24,7 +24,7 @@ def place(
     blade: BladeOption = None,
     patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
     method: Annotated[str, typer.Option(help=f"{', '.join(METHODS)}; ga+sqp is the thesis', grid is for one or two.")] = METHOD,
-    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the search.")] = 0,
+    seed: Annotated[int, typer.Option(help="Of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
         typer.Option("--leave-unreached", help="Leave modes that no patch moves to their own damping."),

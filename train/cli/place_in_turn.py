@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 
 from train.cli.bars import fleeting
-from train.cli.options import print_json, say
+from train.cli.options import note, print_json
 from train.cli.tables import Column, show_table
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 
@@ -78,18 +78,19 @@ def show(sides: list[PlacedSide]) -> None:
         ]
         title = f"{placement.side.capitalize()}, {side.problem.config.speed:g} rad/s: root-side edges, m"
         show_table([*columns, Column(f"{name}, {unit}"), Column("of uniform")], rows, title)
-        say(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
+        note(f"{placement.evaluations} layouts in {placement.seconds:.1f} s")
         show_damping(side)
         if side.note:
-            say(side.note)
+            note(side.note)
 
 
 def show_damping(side: PlacedSide) -> None:
     """Damping ratios, mode by mode."""
     found = side.left_alone, side.uniform, side.placed
-    columns = [Column("mode", words=True), Column("left alone"), Column("uniform"), Column(side.placement.method)]
-    rows = [
-        [str(mode + 1), *(f"{100.0 * each[mode]:.2f}" if mode < len(each) else "" for each in found)]
-        for mode in range(max(map(len, found)))
-    ]
+    columns = [Column("mode", words=True), Column("family", words=True)]
+    columns += [Column(each) for each in ("left alone", "uniform", side.placement.method)]
+    rows = []
+    for mode in range(max(map(len, found))):
+        ratios = [f"{100.0 * each[mode]:.2f}" if mode < len(each) else "" for each in found]
+        rows.append([str(mode + 1), side.families[mode], *ratios])
     show_table(columns, rows, f"Damping ratios of the {LAWS[side.placement.side]}, %")

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from beamenv.configuration.files import checked_path
 from train.cli.bars import one_cost_bar
-from train.cli.options import print_json, say
+from train.cli.options import note, print_json
 from train.cli.tables import Column, show_table
 from train.placement.sized import SizedFront, size_patches
 from train.shared.files import check_file, write_json
@@ -64,12 +64,12 @@ def show_front(sized: SizedFront) -> None:
         rows.append([f"{1e3 * each.mass:.4g}", f"{each.cost:.4g}", f"{cost:.4g}", power, *sides, mark])
     show_table(columns, rows, "Patches sized and placed: stationary cost of LQG over mass")
     chosen = sized.front.points[sized.chosen]
-    say(f"chosen, root-side edges: actuators {edges(chosen.actuators)}; sensors {edges(chosen.sensors)} m")
+    note(f"chosen, root-side edges: actuators {edges(chosen.actuators)}; sensors {edges(chosen.sensors)} m")
     for layout in sized.layouts:
-        say(f"own size, {layout.name}: {1e3 * layout.mass:.4g} g, {layout.cost:.4g} J")
+        note(f"own size, {layout.name}: {1e3 * layout.mass:.4g} g, {layout.cost:.4g} J")
     if sized.left_out:
-        say(f"{sized.left_out} designs of thick sheets whose edges nearly meet are left out: no blade can be computed with them")
-    say(f"{sized.front.evaluations} designs; power is that of ½CV²f at {sized.problem.frequency:.4g} Hz")
+        note(f"{sized.left_out} designs of thick sheets whose edges nearly meet are left out: no blade can be computed with them")
+    note(f"{sized.front.evaluations} designs; power is that of ½CV²f at {sized.problem.frequency:.4g} Hz")
 
 
 def sheet(side: Any) -> str:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from train.cli.bars import one_cost_bar
-from train.cli.options import print_json, say
+from train.cli.options import note, print_json
 from train.cli.tables import Column, show_table
 
 
@@ -28,7 +28,7 @@ def place_together(config: Any, counts: dict[str, int | None], seed: int, leave_
     words = [Column(each, words=True) for each in ("placed", "actuators", "sensors")]
     rows = [[name, _edges(above), _edges(below), f"{cost:.4g}"] for name, above, below, cost in each_way]
     show_table([*words, Column("cost of\nthe loop, J")], rows, f"Both sides, {problem.config.speed:g} rad/s: root-side edges, m")
-    say(f"together they cost {100.0 * found.gain:.2f} % less")
+    note(f"together they cost {100.0 * found.gain:.2f} % less")
 
 
 def _edges(side: Sequence[float]) -> str:

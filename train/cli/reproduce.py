@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 
 from beamenv.configuration.writing import write_whole
 from train.cli.bars import Bars
-from train.cli.options import complain, print_json
+from train.cli.options import complain, note, print_json
 from train.reproduce.catalogue import FUTURE_WORK, NAMES, STUDIES, THESIS_STUDIES, chosen
 from train.reproduce.index import first_verdicts, second_verdicts
 from train.reproduce.judging.ledger import ROWS, counts
@@ -58,6 +58,8 @@ def reproduce(
             sum_up(output, records, docs, as_json)
             raise
         sum_up(output, records, docs, as_json)
+        if names and not as_json:
+            tell_statements(records)
     return int(any(record.error for record in records))
 
 
@@ -141,6 +143,19 @@ def report(records: list[Record], output: Path) -> None:
         if record.error:
             typer.echo(f"{record.name} failed: {record.error}", err=True)
     typer.echo(f"{output / 'report.html'}")
+
+
+def tell_statements(records: Sequence[Record]) -> None:
+    """What each study that was asked for judges, with its verdicts: in nature, and by the thesis' equations where they tell."""
+    for record in records:
+        study = next(each for each in STUDIES if each.name == record.name)
+        words = THEIR_WORDS if study in THESIS_STUDIES else OWN_WORDS
+        note(f"{study.name}: {study.title}")
+        for each in study.statements:
+            if each.key in record.judgements:
+                second = record.second.get(each.key)
+                again = "" if second is None else f"; by the thesis' equations {words[second.verdict]}"
+                note(f"- {words[record.judgements[each.key].verdict]}{again}: {each.text}")
 
 
 def told(what: str, verdicts: Sequence[Verdict | None], words: Mapping[Verdict, str] = THEIR_WORDS) -> None:

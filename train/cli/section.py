@@ -11,7 +11,7 @@ import typer
 
 from beamenv.configuration import Number, checked
 from train.cli.names import check_names
-from train.cli.options import BladeOption, JsonOption, PresetOption, one_sentence, print_json, say
+from train.cli.options import BladeOption, JsonOption, PresetOption, note, one_sentence, print_json
 from train.cli.tables import Column, show_table
 from train.shared.files import check_picture
 
@@ -84,10 +84,10 @@ def _print(found: Any, walls: list[dict[str, Any]]) -> None:
     show_table(columns, rows, "Stiffness, transverse shear with it")
     classical = np.diag(found.classical_stiffness)
     names = zip(("EA", "EI flap", "EI lag", "GJ"), classical, ("N", "N m²", "N m²", "N m²"), strict=True)
-    say("no transverse force: " + ", ".join(f"{name} {value:.5g} {unit}" for name, value, unit in names))
+    note("no transverse force: " + ", ".join(f"{name} {value:.5g} {unit}" for name, value, unit in names))
     centres = (("tension", found.tension_centre), ("shear", found.shear_centre), ("mass", found.mass_centre))
     places = ", ".join(f"{name} centre ({_millimetres(x)}, {_millimetres(y)}) mm" for name, (x, y) in centres)
-    say(f"{places}; {found.mass_per_length:.4g} kg/m")
+    note(f"{places}; {found.mass_per_length:.4g} kg/m")
 
 
 def _plies(row: dict[str, Any]) -> str:

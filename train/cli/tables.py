@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
+from rich.align import Align
 from rich.box import SIMPLE_HEAD
 from rich.cells import cell_len
 from rich.console import Console
@@ -82,7 +84,8 @@ def _table(columns: Sequence[Column], rows: Sequence[Sequence[str]]) -> Table:
     look = {"box": SIMPLE_HEAD, "show_edge": False, "padding": (0, GAP - 1, 0, 0), "pad_edge": False}
     made = Table(**look)  # type: ignore[arg-type]
     for column in columns:
-        made.add_column(Text(column.heading), justify="left" if column.words else "right", vertical="bottom", no_wrap=True)
+        side: Literal["left", "right"] = "left" if column.words else "right"
+        made.add_column(Align(Text(column.heading, justify=side), side, vertical="bottom"), justify=side, no_wrap=True)
     for row in rows:
         made.add_row(*map(Text, row))
     return made

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -12,8 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from beamenv.configuration import FileName, Number, Refused, checked
-from beamenv.configuration.files import read_table
-from train.cli.names import check_device, check_name, check_names, check_scenario
+from train.cli.names import check_device, check_name, check_names, check_scenario, check_table
 from train.cli.options import (
     BladeOption,
     ClusterOption,
@@ -99,7 +99,7 @@ def train(
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
         trained, already, whole = _trained(trainings, names, workers, resume, overwrite)
         _draw(homes, trained)
-        _tell(homes, names, trained, already, as_json)
+        _tell(homes, names, trained, already, {"preset": preset, "speed": speed, "blade": blade, "plant": plant}, as_json)
         if not whole:
             raise KeyboardInterrupt
     if trained.failed:
@@ -121,16 +121,26 @@ def _tell(
     names: Mapping[Path, str],
     trained: Trained,
     already: Collection[Path],
+    given: Mapping[str, Any],
     as_json: bool,
 ) -> None:
-    """What became of each training; ``already`` are those that an earlier run had finished."""
+    """What became of each training, and how the first is measured; ``already`` are those that an earlier run had finished."""
     if as_json:
         print_json([_content(home, each, trained, home in already) for home, each in homes.items()])
     else:
         for home, made in trained.places.items():
             say(f"{names[home]} {'was finished already' if home in already else 'saved'} in {', '.join(map(str, made))}")
+        for home in list(trained.places)[:1]:
+            say(f"next: {shlex.join(['beamenv', 'evaluate', str(home), *where(homes[home][1], given)])}")
     for home, clause in trained.failed.items():
         complain(f"{names[home]} failed: {clause}.")
+
+
+def where(scenario: str, given: Mapping[str, Any]) -> list[str]:
+    """Options of ``evaluate`` for what an agent was trained on, those that are not usual; a generalist is measured in "nominal"."""
+    usual = {"scenario": "nominal", "preset": "thesis"}
+    chosen = {"scenario": "nominal" if scenario == GENERALIST else scenario, **given}
+    return [word for name, each in chosen.items() if each not in (None, usual.get(name)) for word in (f"--{name}", str(each))]
 
 
 def _trained(
@@ -171,7 +181,7 @@ def homes_of(trainings: Sequence[tuple[str, str, int]], folder: Path | None) -> 
         own = folder is None or len(trainings) > 1
         home = parent / f"{agent}-{Path(scenario).stem}-{seed}" if own else parent
         if home in named:
-            raise ValueError(f"agent, scenario and seed lead twice to the folder {str(home)!r}: name each once.")
+            raise ValueError(f"agent, --scenario and --seed lead twice to the folder {str(home)!r}: name each once.")
         named[home] = agent, scenario, seed
     return named
 
@@ -187,7 +197,7 @@ def _check(agents: Sequence[str], scenarios: Sequence[str], recipe: Path | None,
     if recipe is not None:
         if len(agents) > 1:
             raise ValueError(f"recipe = {str(recipe)!r} is of one agent: name one alone.")
-        read_table(recipe)
+        check_table(recipe, "recipe")
     if start is not None and not start.exists():
         raise Refused("from", str(start), "the folder of a trained agent")
 
@@ -236,5 +246,5 @@ def _budget(minutes: float | None, updates: int | None, otherwise: int) -> Budge
     if minutes is None:
         return Budget(updates=otherwise if updates is None else updates)
     if updates is not None:
-        raise ValueError("minutes and updates must not both be given.")
+        raise ValueError("--minutes and --updates must not both be given.")
     return Budget(seconds=60.0 * checked("minutes", minutes, Number(gt=0.0)))

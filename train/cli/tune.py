@@ -12,9 +12,8 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 
 from beamenv.configuration import Count, FileName, checked
-from beamenv.configuration.files import read_table
 from train.cli.bars import Bars
-from train.cli.names import check_names, check_recipe, check_scenario
+from train.cli.names import check_names, check_recipe, check_scenario, check_table
 from train.cli.options import (
     RESUMES,
     BladeOption,
@@ -74,7 +73,7 @@ def tune(
         check_scenario(scenario, (GENERALIST,))
         check_names(preset, blade=blade, plant=plant)
         if space is not None:
-            read_table(space)
+            check_table(space, "space")
         from train.learning.recipe import load_recipe, named_recipe
         from train.tuning.space import space_of
         from train.tuning.tuning import Tuning

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from beamenv.configuration import Count, Refused, Text, checked
+from beamenv.configuration.near import meant
 from beamenv.scenarios.named import FORMER as FORMER_SCENARIOS
 from train.controllers.known import FORMER, known_controllers
-from train.controllers.near import near
 from train.controllers.runs import runs_in
 from train.controllers.shipped import GENERALIST, SPECIALIST, Agent, recipes, shipped_agents
 
@@ -50,7 +51,7 @@ def folder_id(folder: Path) -> str:
 
 def _folder(name: str) -> Path | None:
     known = checked("controller", name, Text()) in {**known_controllers(), **shipped_agents(), **FORMER}
-    return Path(name) if not known and Path(name).is_dir() else None
+    return Path(name) if not known and os.path.isdir(name) else None  # which the empty text is not
 
 
 def _agent(name: str, scenario: str) -> Agent | None:
@@ -92,4 +93,4 @@ def unknown(name: str, argument: str = "controller", others: str = "") -> Refuse
     laws, agents = known_controllers(), shipped_agents()
     known = f"one of {', '.join(laws)}, of the agents that ship, {', '.join(agents)}"
     allowed = f"{others}, or {known}" if others else f"{known}, or the folder of a trained agent"
-    return Refused(argument, name, allowed + near(name, [*laws, *agents, *recipes(agents)], recipes(agents)))
+    return Refused(argument, name, allowed, meant(name, [*laws, *agents, *recipes(agents)], recipes(agents)))

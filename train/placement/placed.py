@@ -30,6 +30,8 @@ class PlacedSide:
     """… under the regulator (or of the filter's error), patches equally spaced."""
     placed: Array
     """… with the patches where they were put."""
+    families: tuple[str, ...]
+    """What most of each mode's motion is: lag, flap, extension or twist."""
 
     @property
     def note(self) -> str:
@@ -55,6 +57,7 @@ class PlacedSide:
                 "without_control": self.left_alone.tolist(),
                 "uniform": self.uniform.tolist(),
                 "placed": self.placed.tolist(),
+                "families": list(self.families),
             },
         }
 
@@ -67,11 +70,14 @@ def place_sides(
     progress: Callable[[str, float, float], None] | None = None,
     leave_unreached: bool = False,
 ) -> list[PlacedSide]:
-    """Place the sides that ``counts`` names, actuators first, then the sensors of the blade with its actuators placed."""
+    """Place the sides that ``counts`` names, actuators first, then the sensors of the blade with its actuators placed.
+
+    Until a side is placed, its patches are where the blade has them, or equally spaced where they are to be of another number.
+    """
     from baselines.placement import PlacementProblem, place
     from baselines.placement.cost.problem import read_of_patches
     from beamenv.blade.config import BladeConfig
-    from beamenv.blade.layouts import SIDES, with_positions
+    from beamenv.blade.layouts import SIDES, positions_of, with_positions
     from beamenv.configuration import Count, Instance, checked, checked_table
 
     checked("config", config, Instance(BladeConfig))
@@ -79,7 +85,8 @@ def place_sides(
         checked(f"counts.{name}", count, Count())
     if "sensors" in counts:
         read_of_patches(config)  # before actuators are searched for
-    config, sides = with_positions(config, counts), []
+    other = {side: count for side, count in counts.items() if count != len(positions_of(config, side))}
+    config, sides = with_positions(config, other), []
     for side in SIDES:
         if side not in counts:
             continue
@@ -93,6 +100,7 @@ def place_sides(
 
 def placed_side(problem: Any, placement: Any) -> PlacedSide:
     """A placement with what it is compared with."""
+    from baselines.placement.cost.controllability import families
     from baselines.placement.cost.damping import design_poles, open_loop_poles
     from beamenv.plant.poles import damping_ratios
 
@@ -104,4 +112,5 @@ def placed_side(problem: Any, placement: Any) -> PlacedSide:
         left_alone=damping_ratios(open_loop_poles(problem, placement.positions)),
         uniform=damping_ratios(design_poles(problem, uniform)),
         placed=damping_ratios(design_poles(problem, placement.positions)),
+        families=families(problem.configuration(placement.positions)),
     )

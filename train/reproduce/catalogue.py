@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from beamenv.configuration import Refused
+from beamenv.configuration import unknown_name
 from train.reproduce.judging.study import Study
 from train.reproduce.studies import (
     chapter2,
@@ -80,5 +80,5 @@ def chosen(names: Sequence[str]) -> tuple[Study, ...]:
     """The studies of these names in the page's order, all for none; ``ValueError`` for an unknown name, listing the known ones."""
     unknown = [name for name in names if name not in NAMES]
     if unknown:
-        raise Refused("name", unknown[0], f"one of {', '.join(NAMES)}")
+        raise unknown_name("name", unknown[0], NAMES)
     return tuple(study for study in STUDIES if not names or study.name in names)

@@ -48,11 +48,11 @@ def check_reach(problem: PlacementProblem, positions: ArrayLike) -> None:
     verb = "move" if problem.side == "actuators" else "sense"
     given = ", ".join(f"{position:.4g}" for position in np.asarray(positions))
     raise ValueError(
-        f"{problem.side} = ({given}) m cannot {verb} mode {mode + 1} ({family(config, mode)}, {frequency:.4g} rad/s): "
-        f"choose positions, a lay-up or a pretwist that couple it to the patches, or leave_unreached."
+        f"{problem.side} = ({given}) m cannot {verb} mode {mode + 1} ({families(config)[mode]}, {frequency:.4g} rad/s): "
+        f"choose positions, a lay-up or a pretwist that couple it to the patches, or leave it alone by leave_unreached."
     )
 
 
-def family(config: BladeConfig, mode: int) -> str:
-    """lag, flap, extension or twist: where most of a mode's kinetic energy is."""
-    return build_beam(config).modes(config.speed, config.modes, gyroscopic=False).families[mode]
+def families(config: BladeConfig) -> tuple[str, ...]:
+    """Of each mode lag, flap, extension or twist: where most of its kinetic energy is."""
+    return tuple(build_beam(config).modes(config.speed, config.modes, gyroscopic=False).families)

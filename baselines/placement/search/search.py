@@ -18,7 +18,7 @@ from baselines.placement.search.genetic import Genetic
 from baselines.placement.search.grid import Grid
 from baselines.placement.search.placement import Placement, Progress, Recorder
 from baselines.placement.search.sqp import MultiStart, SequentialQuadratic
-from beamenv.configuration import Count, Flag, Instance, Refused, checked
+from beamenv.configuration import Count, Flag, Instance, Refused, checked, unknown_name
 
 Array = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def place(
     """
     checked("problem", problem, Instance(PlacementProblem))
     if not (method in METHODS if isinstance(method, str) else is_search(method)):
-        raise Refused("method", method, f"one of {', '.join(METHODS)}, or a search")
+        raise unknown_name("method", method, METHODS, ", or a search")
     seed = checked("seed", seed, Count(0, 2**63 - 1))
     if not (progress is None or callable(progress)):
         raise Refused("progress", progress, "None or a function of the share done and the least cost")

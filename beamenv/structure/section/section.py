@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Choice, Instance, Number, Refused, Text, checked
+from beamenv.configuration.near import meant
 from beamenv.structure.model import checked_flow
 from beamenv.structure.scale import in_scale
 from beamenv.structure.section.corners import check_corners
@@ -132,7 +133,8 @@ class Section(ABC):
         """Length (m) along the contour of a wall; ``ValueError`` unless it is in one part."""
         width = _widths(self).get(checked("wall", wall, Text()))
         if width is None:
-            raise Refused("wall", wall, f"one wall of the section: {', '.join(self.wall_names)}")
+            names = self.wall_names
+            raise Refused("wall", wall, f"one wall of the section: {', '.join(names)}", meant(wall, names))
         return width
 
     def stiffness(self, layup: Layup, shear: str = "first_order", shear_flow: str | None = None, model: str = "blade") -> Array:

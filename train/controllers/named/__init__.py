@@ -19,11 +19,11 @@ from typing import Any
 from baselines import Controller, Law
 from baselines.design.controller import LEAST_TIER
 from beamenv.configuration import Count, Refused, checked
+from beamenv.configuration.near import meant
 from beamenv.scenarios.scenario import Scenario
 from beamenv.task import Task, checked_task
 from beamenv.titles import TIERS
 from train.controllers.known import FORMER
-from train.controllers.near import near
 from train.controllers.shipped import recipes, shipped_agents
 
 KINDS = ("fixed", "scheduled", "adaptive", "predictive")
@@ -111,5 +111,5 @@ def named(name: str) -> NamedController:
     if not isinstance(name, str) or name not in known:
         ids = shipped_agents()
         agents = {short: f"{each}, an agent that ships" for short, each in [*recipes(ids).items(), *zip(ids, ids, strict=True)]}
-        raise Refused("controller", name, f"one of {', '.join(known)}{near(name, [*known, *agents], agents)}")
+        raise Refused("controller", name, f"one of {', '.join(known)}", meant(name, [*known, *agents], agents))
     return known[name]
