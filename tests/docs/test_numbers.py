@@ -146,6 +146,7 @@ def test_the_scenarios_in_which_an_agent_is_ahead_are_as_many_as_the_benchmark_h
     assert len(verdicts) == told["scenarios"]
     assert (len(kept), kept.count("ahead")) == (told["kept_for_judging"], told["ahead_in_kept"])
     assert list(verdicts.values()).count("ahead") == told["ahead_in_kept"]
+    assert f"by Holm's method, the agent is ahead in {told['ahead_judged_together']} and" in page
 
 
 def test_every_number_of_that_file_is_told_on_two_pages_or_compared_with_one():
