@@ -106,7 +106,7 @@ def _takes_two(function: Callable[..., Any]) -> bool:
 
 
 def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[int], progress: Progress | None = None) -> Episodes:
-    """One episode for each seed. Equal seeds mean equal loads and noise, so that controllers are compared in pairs.
+    """Run one episode for each seed. Equal seeds mean equal loads and noise, so that controllers can be compared in pairs.
 
     ``controller`` is a controller of this package, anything with SB3's ``predict``, or a function from observations (N, p) to
     actions (N, m). Each seed is run twice, the second time for ``Episodes.load_response``. ``env`` is one environment or a batch,
