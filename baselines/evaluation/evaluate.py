@@ -29,7 +29,7 @@ class Evaluation:
     confidence: float
     """Of every interval, 0.95 unless asked otherwise."""
     relative_cost: Estimate
-    """J over J without control: ratio of the means, its interval from seeds resampled in pairs.
+    """J divided by J without control: the ratio of the means, with an interval from resampling the seeds in pairs.
 
     A blade that fails under the controller alone makes it infinite; one that fails without control too counts as no better, and one
     that the controller saves is compared with ``uncontrolled``."""
@@ -54,7 +54,8 @@ class Evaluation:
     metrics: EpisodeMetrics
     """Seed by seed."""
     uncontrolled: Array
-    """(N,), J s: J without control, seed by seed. One that fails is charged to the end of its episode as in its last interval."""
+    """(N,), J s: J without control, seed by seed. For a blade that fails, the cost of its last interval is charged until the end of
+    the episode."""
     episodes: Episodes
     """What was recorded."""
     reference: Episodes
