@@ -46,7 +46,7 @@ def identify(
 ) -> Identified:
     """Identify a model from a measurement, or from the CSV file that holds one (``read_measurement``).
 
-    - ``order``: its number of states; with "auto" the number that best predicts the rows held back.
+    - ``order``: its number of states; with "auto" it is chosen by how well the rows held back are predicted.
     - ``held_back``: share of the rows, at the end, that is held back to judge the model; from 0.05 to 0.5.
     - ``collocated``: for piezoelectric sensors of current (A), one at the place of each actuator: the ratio of the sensor's charge
       per strain to the actuator's moment per volt, 1 if both are the same patch. With it the energy of modes is known, in joules.
