@@ -13,6 +13,12 @@ from beamenv.structure.walls.inlay import FACE, Inlay
 
 Positions = tuple[float, ...]
 
+USUAL = 4
+"""Patches of a side that nobody tells the number of."""
+
+UNTOLD = {"actuators": " (the default)", "sensors": " (the default; [patches] sensors = [] for none)"}
+"""What is said where there is no room for as many."""
+
 
 @configuration("blade.patches.group")
 class PatchGroup:
@@ -62,7 +68,7 @@ class PatchGroup:
         patches = self.positions
         apart = f"at least one patch length, {self.length:.6g} m, apart so that patches do not overlap"
         if isinstance(patches, int) and (patches - 1) * (self.length - tolerance) > last:  # before as many numbers are made
-            raise Refused(f"blade.patches.{name}", patches, apart)
+            raise Refused(f"blade.patches.{name}", patches, apart, UNTOLD[name] if patches == USUAL else "")
         positions = tuple(np.linspace(0.0, last, patches).tolist()) if isinstance(patches, int) else patches
         if min(positions) < -tolerance or max(positions) > last + tolerance:
             allowed = (

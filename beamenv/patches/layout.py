@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 from beamenv.configuration import Choice, Flag, Number, Patches, Refused, checked, configuration
 from beamenv.configuration.composite import Items
 from beamenv.configuration.kinds import JsonSchema
-from beamenv.patches.group import PatchGroup, Positions
+from beamenv.patches.group import USUAL, PatchGroup, Positions
 from beamenv.patches.material import MFC_STRAIN, PATCH_MATERIALS, PatchMaterial
 from beamenv.structure.walls.inlay import Inlay
 
@@ -66,9 +66,9 @@ class PatchLayout:
     groups of any kind anywhere.
     """
 
-    actuators: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup)] = 4
+    actuators: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup)] = USUAL
     """Root-side edges in m from the root, or a number of patches to be spaced equally over 0 … 0.7 L, or groups."""
-    sensors: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup, 0)] = 4
+    sensors: Annotated[int | Positions | Groups, PatchesOrGroups(PatchGroup, 0)] = USUAL
     """Likewise; an empty list: none."""
     material: Annotated[str | PatchMaterial, Choice(PATCH_MATERIALS, PatchMaterial)] = "MFC"
     """Of patches that are in no group, as is what follows."""
@@ -125,7 +125,7 @@ class PatchLayout:
 
     def _in_groups(self, side: Side) -> bool:
         given = self.actuators if side == "actuators" else self.sensors
-        return isinstance(given, tuple) and isinstance(given[0], PatchGroup)
+        return isinstance(given, tuple) and (not given or isinstance(given[0], PatchGroup))
 
     def only(self, side: Side) -> PatchGroup:
         """The one group of a side; ``ValueError`` where there are several."""

@@ -152,8 +152,9 @@ def test_cost_beside_listed_sensors_is_the_trace_that_the_environments_plant_has
     assert problem.reads == ("charge" if (side, listed) == ("sensors", "charges") else "current")
 
 
-def test_slopes_of_charges_are_central_differences():
-    problem = PlacementProblem.of(blade_config("thesis", LISTED["charges"]), "sensors")
+@pytest.mark.parametrize(("side", "listed"), [("sensors", "charges"), ("actuators", "an accelerometer alone")])
+def test_slopes_beside_listed_sensors_are_central_differences(side, listed):
+    problem = PlacementProblem.of(blade_config("thesis", LISTED[listed]), side)
     layout, step = problem.bounds.random(np.random.default_rng(2), 1)[0], 1e-4
     numeric = []
     for direction in np.eye(4):

@@ -43,7 +43,9 @@ def export(
         Path | None, typer.Option(help="File to write. Default: the controller's name with the format's ending.")
     ] = None,
     precision: Annotated[str, typer.Option(help=f"{' or '.join(PRECISIONS)}.")] = "double",
-    name: Annotated[str | None, typer.Option(help="Name of functions and types. Default: the controller's.")] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Name of functions and types. Default: the output's or the controller's.")
+    ] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -71,7 +73,7 @@ def export(
         if measure and format != "c":
             raise Refused("measure", measure, f"left out with the format {format!r}: it is C that is compiled")
         task = resolve_task(**environment_arguments(preset, speed, blade, plant), scenario=scenario)
-        called = identifier(whose.id) if name is None else name
+        called = identifier(output.stem if output else whose.id) if name is None else name
         path = output or Path(f"{called}.{format}")
         _check_free(path, overwrite)
         law = chosen(controller, task, scenario, trained_seed)

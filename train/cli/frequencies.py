@@ -22,6 +22,12 @@ from train.cli.options import (
 )
 from train.cli.tables import Column, show_table
 
+DUST = 1e-9
+"""Degrees and millimetres below are rounding, and told as 0."""
+
+SHARE = 0.01
+"""Of a period: an episode that lasts no longer shows nothing of the first mode."""
+
 FASTEST = 1e6
 """rad/s: a critical speed beyond is none that a rotor has, and is not told."""
 
@@ -51,8 +57,11 @@ def frequencies(
         from beamenv.blade.clamp import clamp_note
         from beamenv.blade.files import load_config
         from beamenv.blade.presets import blade_config
+        from beamenv.configuration.files import read_table
         from beamenv.structure.steady_deformation import steady_deformation
+        from train.cli.untold import left_out
 
+        untold = left_out(read_table(blade)) if blade else []
         config = blade_config(preset, load_config(blade) if blade else None)
         beam = build_beam(config) if patches else config.beam.build(model=config.model)
         speeds = speed or sorted({0.0, config.speed})
@@ -61,7 +70,8 @@ def frequencies(
         near = clamp_note(config) if patches else ""
     if as_json:
         rows = [_row(*each) for each in zip(speeds, found, steady, strict=True)]
-        print_json({"preset": preset, "gyroscopic": gyroscopic, "unit": "rad/s", "speeds": rows, "note": near})
+        told = {"unit": "rad/s", "speeds": rows, "note": near, "assumed": untold}
+        print_json({"preset": preset, "gyroscopic": gyroscopic, **told})
         return
     columns = [Column("mode", words=True), *(Column(f"at {each:g} rad/s", words=True) for each in speeds)]
     by_mode = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
@@ -73,6 +83,20 @@ def frequencies(
             note(_turning(each, state, config.patches.failure_strain))
     if near:
         note(near)
+    if slow := _slow(found):
+        note(slow)
+    if untold:
+        note(f"assumed, as of the default blade: {'; '.join(untold)}")
+
+
+def _slow(found: list[Any]) -> str:
+    """On a first mode that no episode is long enough for, at any of the speeds; empty where none is so slow."""
+    from beamenv.task.resolve import DURATION
+
+    period = max(2.0 * np.pi / modes.natural_frequencies[0] for modes in found)
+    if SHARE * period <= DURATION:
+        return ""
+    return f"the first period is {period:.3g} s, an episode lasts {DURATION:g} s: were lengths given in millimetres?"
 
 
 def _row(speed: float, modes: Any, state: Any) -> dict[str, Any]:
@@ -90,9 +114,14 @@ def _turning(speed: float, state: Any, limit: float) -> str:
     strain, rated = 100.0 * state.strain, 100.0 * limit
     beyond = f", beyond the {rated:.3g} % that patches are rated for" if abs(strain) > rated else ""
     return (
-        f"turning steadily at {speed:g} rad/s: tip {1e3 * state.stretch:.3g} mm further out, untwisted by {state.untwist:.3g}°; "
+        f"turning steadily at {speed:g} rad/s: tip {_clean(1e3 * state.stretch):.3g} mm further out, "
+        f"untwisted by {_clean(state.untwist):.3g}°; "
         f"spanwise strain up to {strain:.2g} %, at {state.strain_at:.3g} m{beyond}"
     )
+
+
+def _clean(value: float) -> float:
+    return 0.0 if abs(value) < DUST else value
 
 
 def _frequency(modes: Any, mode: int) -> str:

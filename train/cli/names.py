@@ -45,6 +45,8 @@ def check_names(
         check_scenario(scenario)
     if blade is not None:
         check_table(blade, "blade")
+        if preset not in (None, PRESETS[0]):  # the first is what the option is where it is left out
+            raise Refused("preset", preset, f"left out beside --blade {blade}: give one of them")
     if plant is not None and plant.suffix.lower() in MODELS:
         content_of(plant, 1)
 

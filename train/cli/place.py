@@ -11,8 +11,9 @@ import typer
 from train.cli.names import METHODS, check_name, check_names
 from train.cli.options import BladeOption, JsonOption, PresetOption, SpeedOption, one_sentence
 from train.cli.place_in_turn import METHOD, Search, place_in_turn
-from train.cli.place_sizes import Written, place_sizes
+from train.cli.place_sizes import place_sizes
 from train.cli.place_together import place_together
+from train.cli.place_written import Written
 from train.shared.files import check_picture
 
 
@@ -47,7 +48,8 @@ def place(
     output: Annotated[
         Path | None,
         typer.Option(
-            help="With --size: JSON file for the best blade within --mass; without it, no heavier than its present patches."
+            help="JSON file for the blade with its patches placed; with --size the best within --mass, or else no heavier than "
+            "its present patches."
         ),
     ] = None,
     picture: Annotated[
@@ -68,7 +70,7 @@ def place(
         from beamenv.blade.presets import blade_config
 
         budget = {"mass": mass, "channels": channels, "power": power, "frequency": frequency}
-        check_alone(together, size, picture, {**budget, "output": output})
+        check_alone(together, size, picture, budget)
         check_searched("size" if size else "together" if together else "", method)
         if size and leave_unreached:
             raise ValueError("--size leaves modes that no patch reaches alone: leave --leave-unreached out.")
@@ -76,13 +78,14 @@ def place(
             check_picture(drawn)
         config = blade_config(preset, load_config(blade) if blade else None, speed)
         config = config if patches else replace(config, patches=config.patches.without_mass())
+        to = Written(output, drawn, as_json)
         counts = {"actuators": actuators, "sensors": sensors}
         if size:
-            place_sizes(config, counts, budget, seed, Written(output, drawn, as_json))
+            place_sizes(config, counts, budget, seed, to)
         elif together:
-            place_together(config, counts, seed, leave_unreached, as_json)
+            place_together(config, counts, seed, leave_unreached, to)
         else:
-            place_in_turn(config, counts, Search(method, seed, leave_unreached), drawn, as_json)
+            place_in_turn(config, counts, Search(method, seed, leave_unreached), to)
 
 
 def check_alone(together: bool, size: bool, picture: Path | None, of_sizes: dict[str, Any]) -> None:

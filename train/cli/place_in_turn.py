@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rich.console import Console
@@ -13,6 +12,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 
 from train.cli.bars import fleeting
 from train.cli.options import note, print_json
+from train.cli.place_written import Written
 from train.cli.tables import Column, show_table
 from train.placement.placed import LAWS, UNITS, PlacedSide, place_sides
 
@@ -30,23 +30,25 @@ class Search:
     """Whether modes that no patch moves keep their own damping."""
 
 
-def place_in_turn(config: Any, counts: dict[str, int | None], search: Search, drawn: Path | None, as_json: bool) -> None:
+def place_in_turn(config: Any, counts: dict[str, int | None], search: Search, to: Written) -> None:
     """Place the sides that are counted, or both with as many patches as the blade has, tell how, and draw them."""
-    from beamenv.blade.layouts import SIDES, positions_of
+    from beamenv.blade.layouts import SIDES, positions_of, with_positions
 
+    to.check()
     wanted = {side: count for side in SIDES if (count := counts[side]) is not None}
     wanted = wanted or {side: count for side in SIDES if (count := len(positions_of(config, side)))}
     with bars(wanted) as report:
         sides = place_sides(config, wanted, search.method, search.seed, report, search.leave_unreached)
-    if as_json:
+    if to.as_json:
         print_json([side.to_dict() for side in sides])
     else:
         show(sides)
-    if drawn is not None:  # last: whatever becomes of it, the positions have been told
+    to.save(with_positions(config, {side.placement.side: side.placement.positions for side in sides}))
+    if to.drawn is not None:  # last: whatever becomes of it, the positions have been told
         from train.placement.picture import draw_placement
 
-        draw_placement(sides, drawn)
-        Console(stderr=as_json).print(f"picture in {drawn}", soft_wrap=True, markup=False)
+        draw_placement(sides, to.drawn)
+        Console(stderr=to.as_json).print(f"picture in {to.drawn}", soft_wrap=True, markup=False)
 
 
 @contextmanager

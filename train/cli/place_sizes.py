@@ -2,37 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
-from beamenv.configuration.files import checked_path
 from train.cli.bars import one_cost_bar
 from train.cli.options import note, print_json
+from train.cli.place_written import Written
 from train.cli.tables import Column, show_table
 from train.placement.sized import SizedFront, size_patches
-from train.shared.files import check_file, write_json
-
-
-@dataclass(frozen=True, slots=True)
-class Written:
-    """Where a front goes."""
-
-    output: Path | None
-    """The file of its chosen blade."""
-    drawn: Path | None
-    """Its picture."""
-    as_json: bool
 
 
 def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, Any], seed: int, to: Written) -> None:
     """Search for the front, tell it, and write what is asked for; an interruption ends it with what was found."""
-    from baselines.placement import Budget, Sizes
+    from baselines.placement import Budget, Sizes, sized_blade
 
-    if to.output is not None:
-        check_file(checked_path("output", to.output, (".json",)), "output")
+    to.check()
     with one_cost_bar("sizes") as report:
         sized = size_patches(
             config, Sizes(actuators=counts["actuators"], sensors=counts["sensors"]), Budget(**budget), seed, report
@@ -42,7 +27,7 @@ def place_sizes(config: Any, counts: dict[str, int | None], budget: dict[str, An
     else:
         show_front(sized)
     if to.output is not None:
-        save_chosen(sized, to.output, to.as_json)
+        to.save(sized_blade(sized.problem, sized.front.points[sized.chosen]))
     if to.drawn is not None:
         from train.placement.front_picture import draw_front
 
@@ -81,12 +66,3 @@ def sheet(side: Any) -> str:
 def edges(side: Any) -> str:
     """Where a side's patches begin, m."""
     return " ".join(f"{each.start:.4f}" for each in side.patches)
-
-
-def save_chosen(sized: SizedFront, path: Path, as_json: bool) -> None:
-    """The chosen point's blade, as a file that ``gymnasium.make`` and ``--blade`` take."""
-    from baselines.placement import sized_blade
-    from beamenv.blade.files import to_dict
-
-    write_json(path, to_dict(sized_blade(sized.problem, sized.front.points[sized.chosen])))
-    Console(stderr=as_json).print(f"blade in {path}", soft_wrap=True, markup=False)

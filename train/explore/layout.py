@@ -77,9 +77,10 @@ def _introduction(base: BladeConfig) -> str:
     if beam == THESIS.beam:
         what = f"The thesis' box beam, {beam.length:g} m long, {1e3 * beam.width:g} × {1e3 * beam.depth:g} mm at the root"
     counted = ", whose mass and stiffness count" if groups and all(group.passive for group in groups) else ""
+    but = ", but for gyroscopic coupling" if base.gyroscopic and base.speed > 0.0 else ""
     return (
         f"{what}, {_patches(base)}{counted}. Damping without control is {100.0 * base.damping_ratio:g} % of critical in every "
-        "mode, but for gyroscopic coupling. Move a slider or write a number: all is computed again, and LQG is designed anew."
+        f"mode{but}. Move a slider or write a number: all is computed again, and LQG is designed anew."
     )
 
 

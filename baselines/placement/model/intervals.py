@@ -82,7 +82,7 @@ class PatchEdges:
             top[:, edge, a:, :, 1] = by_sensor.swapaxes(1, 2)
             below[:, edge, :a, :, 1] = by_actuator
             below[:, edge, a + own_below, own_below, 1] = by_sensor.sum(axis=1)
-        return tuple(each.reshape(len(each), -1, *each.shape[3:]) for each in (top, below))  # type: ignore[return-value]
+        return tuple(each.reshape(len(each), 2 * (a + s), *each.shape[3:]) for each in (top, below))  # type: ignore[return-value]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
