@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from baselines.placement import METHODS, PlacementProblem, place
+from beamenv.blade.files import load_config, to_dict
 from beamenv.blade.presets import blade_config
 from train.cli.app import app
 from train.placement.picture import cost_along_span
@@ -51,6 +52,30 @@ def test_speed_blade_and_passive_effect_are_options(tmp_path):
     assert told["cost"] == pytest.approx(place(problem, "sqp").cost)
     (other,) = json.loads(run("--sensors", "1", "--method", "sqp", "--no-patches", "--json").stdout)
     assert other["cost"] != told["cost"]
+
+
+def test_the_placed_blade_is_saved(tmp_path):
+    saved = tmp_path / "placed.json"
+    result = run("--actuators", "2", "--method", "sqp", "--json", "--output", str(saved))
+    assert result.exit_code == 0, result.output
+    (told,) = json.loads(result.stdout)
+    config = load_config(saved)
+    assert config == blade_config(overrides={"patches": {"actuators": told["positions"]}})
+    refused = run("--output", str(tmp_path / "placed.toml"))
+    assert refused.exit_code == 2 and "output is" in refused.stderr
+
+
+def test_a_blade_without_sensor_patches_is_placed_and_saved(tmp_path):
+    blade, saved = tmp_path / "blade.json", tmp_path / "placed.json"
+    config = blade_config("aluminium-cantilever", {"patches": {"sensors": []}, "sensors": [{"kind": "accelerometer"}]})
+    blade.write_text(json.dumps(to_dict(config)))
+    words = ("--method", "sqp", "--leave-unreached", "--json", "--blade", str(blade), "--output", str(saved))
+    result = run(*words)
+    assert result.exit_code == 0, result.output
+    (told,) = json.loads(result.stdout)
+    assert load_config(saved).patches.actuator_positions(0.3) == tuple(told["positions"])
+    assert load_config(saved).patches.sensors == ()
+    assert run(*words, "--no-patches").exit_code == 0
 
 
 STRIP = blade_config("aluminium-cantilever")

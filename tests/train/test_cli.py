@@ -215,3 +215,52 @@ def test_an_interrupted_training_says_the_whole_command_that_resumes_it(kept, tm
     again = "with `beamenv train ppo --seed 3 --folder 'my ppo' --resume --preset sound-blade` it resumes"
     early = "it was too early for a checkpoint, so nothing is kept"
     assert told == f"beamenv: interrupted: {again if kept else early}.\n"
+
+
+STRIP = """
+[beam]
+length = 0.3
+hub_radius = 0.0
+section = { shape = "strip", width = 0.03, thickness = 0.002 }
+ply_angles_deg = [0]
+pretwist_deg = 0.0
+[patches]
+actuators = [{ positions = [0.01], wall = "strip", bonded = true, material = "PIC255", length = 0.05, width = 0.025 }]
+sensors = []
+[[sensors]]
+kind = "accelerometer"
+"""
+
+
+def test_what_a_blade_s_file_leaves_to_the_default_blade_is_told(tmp_path):
+    file = tmp_path / "strip.toml"
+    file.write_text(STRIP)
+    words = ("frequencies", "--blade", str(file), "--count", "1")
+    assert json.loads(run(*words, "--json").stdout)["assumed"] == [
+        "beam.material graphite-epoxy",
+        "speed 200 rad/s",
+        "voltage_limits -1500 … 1500 V",
+    ]
+    printed = " ".join(run(*words).stdout.split())
+    assert "assumed, as of the default blade: beam.material graphite-epoxy; speed 200 rad/s; voltage_limits" in printed
+    assert "untwisted by 0°" in printed
+    assert json.loads(run("frequencies", "--count", "1", "--json").stdout)["assumed"] == []
+
+
+def test_a_first_period_far_beyond_an_episode_is_told(tmp_path):
+    file = tmp_path / "soft.toml"
+    file.write_text("speed = 0.0\n[beam]\nlength = 60.0\nthickness = 0.0001\nwidth = 0.01\ndepth = 0.002\n")
+    words = ("frequencies", "--blade", str(file), "--count", "1", "--no-patches")
+    printed = " ".join(run(*words).stdout.split())
+    period = 2.0 * np.pi / json.loads(run(*words, "--json").stdout)["speeds"][0]["natural_frequencies"][0]
+    told = float(printed.partition("the first period is ")[2].partition(" s, an episode lasts 0.5 s")[0])
+    assert told == pytest.approx(period, rel=0.01) and told > 50.0
+    assert "were lengths given in millimetres?" not in run("frequencies", "--count", "1").stdout
+
+
+def test_a_preset_beside_a_file_is_refused(tmp_path):
+    file = tmp_path / "strip.toml"
+    file.write_text("speed = 1.0\n")
+    result = run("frequencies", "--blade", str(file), "--preset", "sound-blade")
+    assert result.exit_code == 2
+    assert "--preset is 'sound-blade', but must be left out beside --blade" in result.stderr

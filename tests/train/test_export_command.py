@@ -25,6 +25,13 @@ def test_file_is_called_after_the_controller(command, tmp_path):
     assert "#define LQG_LOAD_INTERVAL 0.0005" in content and "double" not in content.partition("*/")[2]
 
 
+def test_names_are_the_output_s_so_that_two_can_be_in_one_program(command, tmp_path):
+    for file in ("boom.c", "tail.c"):
+        assert command("lqg", "--output", file).exit_code == 0
+        own = file.removesuffix(".c")
+        assert f"void {own}_init({own}_state *state);" in (tmp_path / file).read_text()
+
+
 def test_blade_and_name_are_those_asked_for(command, tmp_path):
     (tmp_path / "mine.toml").write_text("[patches]\nactuators = 2\nsensors = 3\n")
     result = command("lqg", "--blade", "mine.toml", "--name", "tail", "--output", "made/tail.c")
