@@ -9,6 +9,7 @@ import numpy as np
 from beamenv.configuration import Choice, Flag, Number, Patches, Refused, Text, configuration
 from beamenv.configuration.numbers import DEGREES
 from beamenv.patches.material import FIBRE_ANGLE_DEG, PATCH_MATERIALS, PatchMaterial
+from beamenv.structure.sizes import SPAN, WIDTH
 from beamenv.structure.walls.inlay import FACE, Inlay
 
 Positions = tuple[float, ...]
@@ -25,9 +26,9 @@ class PatchGroup:
     """Root-side edges, m from the root, or a number of patches to be spaced equally over 0 … ``outermost``."""
     material: Annotated[str | PatchMaterial, Choice(PATCH_MATERIALS, PatchMaterial)] = "MFC"
     """A name or a sheet; in a dictionary or file also a table of a sheet's fields, which completes from the one before."""
-    length: Annotated[float, Number(gt=0.0, unit="m")] = 0.085
+    length: Annotated[float, SPAN] = 0.085
     """m along the span: the active area of an M-8557-P1."""
-    width: Annotated[float, Number(gt=0.0, unit="m")] = 0.057
+    width: Annotated[float, WIDTH] = 0.057
     """m along the contour."""
     wall: Annotated[str, Text()] = "top"
     face: Annotated[str, FACE] = "outer"
