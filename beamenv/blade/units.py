@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from beamenv.configuration.sentence import in_millimetres
 from beamenv.structure.sizes import THICKEST, WIDEST
 from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.materials import MODULI, Lamina
-
-if TYPE_CHECKING:
-    from beamenv.blade.config import BeamConfig, BladeConfig
 
 SLENDEREST = 2000.0
 """Span over the section's larger size: wind turbines' blades have 20, a wire of 1 mm and 1 m has 1000."""
@@ -37,12 +34,11 @@ RADIAN_STEP, RADIAN_DIGITS = np.pi / 36.0, 5e-5
 """Angles of whole multiples of 5°, printed in radians to four digits: so is hardly any angle in degrees."""
 
 
-def check_units(config: BladeConfig) -> None:
-    """``ValueError`` of one sentence, with the unit that may have been meant, for a number that no blade has.
+def check_units(beam: Any) -> None:
+    """``ValueError`` of one sentence, with the unit that may have been meant, for a number of a ``BeamConfig`` that no blade has.
 
     ``UserWarning`` where angles look like radians, which they may all the same not be.
     """
-    beam = config.beam
     for path, value, most in _sizes(beam):
         if value > most:
             raise Refused(path, value, f"at most {most:g} (m)", in_millimetres(value, most))
@@ -71,7 +67,7 @@ def laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lami
     return [(path, each) for path, each in parts if isinstance(each, Lamina)]
 
 
-def _sizes(beam: BeamConfig) -> Iterator[tuple[str, float, float]]:
+def _sizes(beam: Any) -> Iterator[tuple[str, float, float]]:
     """Paths of a section's lengths, themselves and what they are at most, m."""
     home, section = _section(beam)
     for name in ("width", "depth", "chord"):
@@ -84,18 +80,18 @@ def _sizes(beam: BeamConfig) -> Iterator[tuple[str, float, float]]:
         yield f"{home}.thicknesses.{wall}", thickness, THICKEST
 
 
-def _section(beam: BeamConfig) -> tuple[str, Any]:
+def _section(beam: Any) -> tuple[str, Any]:
     return ("beam", beam) if beam.section is None else ("beam.section", beam.section)
 
 
-def _size(beam: BeamConfig) -> float:
+def _size(beam: Any) -> float:
     """m: the larger of what the section extends over along x and y."""
     if beam.section is None:
         return max(beam.width, beam.depth)
     return float(np.ptp(beam.section.vertices, axis=0).max())
 
 
-def _check_slender(beam: BeamConfig) -> None:
+def _check_slender(beam: Any) -> None:
     """``ValueError`` where span and section cannot have been given in the same unit."""
     size, (home, section) = _size(beam), _section(beam)
     name = next((each for each in ("chord", "width", "corners", "lines") if hasattr(section, each)), "section")
@@ -113,7 +109,7 @@ def _check_density(path: str, lamina: Lamina) -> None:
         raise Refused(f"{path}.density", lamina.density, f"at least {LIGHTEST:g} (kg/m³)", meant)
 
 
-def _warn_of_radians(beam: BeamConfig) -> None:
+def _warn_of_radians(beam: Any) -> None:
     given = {f"ply_angles_deg.{wall}": angles for wall, angles in beam.ply_angles_deg}
     given |= {"pretwist_deg": (beam.pretwist_deg,), "presetting_deg": (beam.presetting_deg,)}
     for name, angles in given.items():

@@ -8,6 +8,7 @@ import numpy as np
 
 from beamenv.configuration import Choice, Flag, Number, Patches, Refused, Text, configuration
 from beamenv.configuration.numbers import DEGREES
+from beamenv.configuration.sentence import in_millimetres
 from beamenv.patches.material import FIBRE_ANGLE_DEG, PATCH_MATERIALS, PatchMaterial
 from beamenv.structure.sizes import SPAN, WIDTH
 from beamenv.structure.walls.inlay import FACE, Inlay
@@ -58,7 +59,7 @@ class PatchGroup:
         last = self.outermost * beam_length - self.length
         tolerance = 1e-9 * beam_length
         if last < 0.0:
-            meant = " (did you give millimetres?)" if 1e-3 * self.length <= self.outermost * beam_length else ""
+            meant = in_millimetres(self.length, self.outermost * beam_length)
             raise Refused("blade.patches.length", self.length, f"at most {self.outermost} of the {beam_length:.6g} m span", meant)
         patches = self.positions
         apart = f"at least one patch length, {self.length:.6g} m, apart so that patches do not overlap"

@@ -98,7 +98,10 @@ def test_paths_are_taken_for_their_names():
 
 
 SENTENCES = [
-    (lambda: blade_config(overrides={"beam": {"length": [1.0]}}), "blade.beam.length is [1.0], but must be a number above 0 and at most 250 (m)."),
+    (
+        lambda: blade_config(overrides={"beam": {"length": [1.0]}}),
+        "blade.beam.length is [1.0], but must be a number above 0 and at most 250 (m).",
+    ),
     (lambda: BeamConfig(-1.0), "blade.beam.length is -1.0, but must be a number above 0 and at most 250 (m)."),
     (lambda: replace(BladeConfig(), gyroscopic="no"), "blade.gyroscopic is 'no', but must be True or False."),
     (lambda: blade_config(overrides={"patches": {"passive": "no"}}), "blade.patches.passive is 'no', but must be True or False."),
