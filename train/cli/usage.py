@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Sequence
-from inspect import cleandoc
 from typing import Any
 
 from pydantic import ValidationError
@@ -19,11 +18,6 @@ from train.cli.said import OPTIONS, options_of
 
 class OneSentence(TyperGroup):
     """The commands, of which a wrong use is told as any other bad input is."""
-
-    def __init__(self, *given: Any, **named: Any) -> None:
-        super().__init__(*given, **named)
-        for command in self.commands.values():
-            command.help = _flowing(command.help or "")
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """A command by its name, whose options are how its arguments are called from here on."""
@@ -43,11 +37,6 @@ class OneSentence(TyperGroup):
                 raise
             sys.exit(_told(error))
         sys.exit(status if isinstance(status, int) else 0)
-
-
-def _flowing(text: str) -> str:
-    """A help text whose paragraphs are broken by the terminal, not where the source breaks them."""
-    return "\n\n".join(" ".join(paragraph.split()) for paragraph in cleandoc(text).split("\n\n"))
 
 
 def _told(error: Any) -> int:
