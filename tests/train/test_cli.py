@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import asdict
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from beamenv.blade.build import build_beam
 from beamenv.blade.presets import blade_config
 from beamenv.structure.steady_deformation import steady_deformation
 from train.cli.app import app
+from train.cli.frequencies import _slow
 from train.shared.interruption import Interrupted
 
 COMMANDS = ("frequencies", "evaluate", "train", "compare", "benchmark", "speed")
@@ -247,15 +249,11 @@ def test_what_a_blade_s_file_leaves_to_the_default_blade_is_told(tmp_path):
     assert json.loads(run("frequencies", "--count", "1", "--json").stdout)["assumed"] == []
 
 
-def test_a_first_period_far_beyond_an_episode_is_told(tmp_path):
-    file = tmp_path / "soft.toml"
-    file.write_text("speed = 0.0\n[beam]\nlength = 60.0\nthickness = 0.0001\nwidth = 0.01\ndepth = 0.002\n")
-    words = ("frequencies", "--blade", str(file), "--count", "1", "--no-patches")
-    printed = " ".join(run(*words).stdout.split())
-    period = 2.0 * np.pi / json.loads(run(*words, "--json").stdout)["speeds"][0]["natural_frequencies"][0]
-    told = float(printed.partition("the first period is ")[2].partition(" s, an episode lasts 0.5 s")[0])
-    assert told == pytest.approx(period, rel=0.01) and told > 50.0
-    assert "were lengths given in millimetres?" not in run("frequencies", "--count", "1").stdout
+@pytest.mark.parametrize(("hertz", "told"), [(0.01, True), (0.019, True), (0.021, False), (5.0, False)])
+def test_a_first_period_beyond_a_hundred_episodes_is_told(hertz, told):
+    slow = _slow([SimpleNamespace(natural_frequencies=np.array([2.0 * np.pi * hertz, 90.0]))])
+    said = f"the first period is {1.0 / hertz:.3g} s, an episode lasts 0.5 s: were lengths given in millimetres?"
+    assert slow == (said if told else "")
 
 
 def test_a_preset_beside_a_file_is_refused(tmp_path):
