@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 from beamenv.blade.electronics import ElectronicsConfig
 from beamenv.blade.fit import in_words
 from beamenv.blade.load_shapes import LoadShape
-from beamenv.blade.units import SOFTEST, asked, check_moduli, check_units, laminae
+from beamenv.blade.units import LEAST, check_moduli, check_units, laminae
 from beamenv.configuration import (
     Choice,
     Count,
@@ -30,6 +30,7 @@ from beamenv.configuration import (
 from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
+from beamenv.configuration.sentence import in_millimetres
 from beamenv.patches import PatchLayout
 from beamenv.patches.layout import SIDES
 from beamenv.plant.limits import VOLTAGES
@@ -48,13 +49,13 @@ from beamenv.structure.held_and_heated import (
 )
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.planform import TABLE, Steps
-from beamenv.structure.section.section import THEORY, Metres, Section
+from beamenv.structure.section.section import THEORY, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
+from beamenv.structure.sizes import HUB, SPAN, WALL, WIDTH
 from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import PLY_ANGLES
-from beamenv.structure.walls.materials import MODULI
 from beamenv.structure.walls.named import MATERIALS
 
 ON_EVERY_WALL = "all"
@@ -103,19 +104,19 @@ def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[
 class BeamConfig:
     """The bare blade: a box of the thesis (§3.5) unless said otherwise."""
 
-    length: Metres = 2.023
+    length: Annotated[float, SPAN] = 2.023
     """m."""
-    width: Metres = 0.254
+    width: Annotated[float, WIDTH] = 0.254
     """m, of the mid-line box along the chord."""
-    depth: Metres = 0.0508
+    depth: Annotated[float, WIDTH] = 0.0508
     """m, of the mid-line box."""
-    thickness: Metres = 0.01016
+    thickness: Annotated[float, WALL] = 0.01016
     """m, of the walls."""
-    hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.2023
+    hub_radius: Annotated[float, HUB] = 0.2023
     """m."""
-    material: Annotated[
-        str | Lamina | FunctionallyGraded, Choice(MATERIALS, (Lamina, FunctionallyGraded), dict.fromkeys(MODULI, SOFTEST))
-    ] = "graphite-epoxy"
+    material: Annotated[str | Lamina | FunctionallyGraded, Choice(MATERIALS, (Lamina, FunctionallyGraded), LEAST)] = (
+        "graphite-epoxy"
+    )
     """A name, a lamina, or a FunctionallyGraded through the walls; in a dictionary or file also a table of a lamina's fields, which
     completes from the material before, or of ``inner``, ``outer`` and ``exponent``."""
     ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
@@ -184,7 +185,7 @@ class BeamConfig:
             return BoxSection(self.width, self.depth, self.thickness)
         except Refused as refused:
             name = refused.name.replace("section", "blade.beam", 1)  # whose numbers these are
-            raise Refused(name, refused.value, refused.allowed, asked(float(refused.value), self.depth)) from None
+            raise Refused(name, refused.value, refused.allowed, in_millimetres(float(refused.value), self.depth)) from None
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
@@ -284,7 +285,7 @@ class BladeConfig:
     """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
 
     def __post_init__(self) -> None:
-        check_units(self)
+        check_units(self.beam)
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
         check_held_and_heated(self.model, self.beam, "blade.beam")
         sheets = (group.patch for side in SIDES for group in self.patches.groups(side))
