@@ -13,7 +13,7 @@ BLADES: Mapping[str, str] = MappingProxyType(
         "thesis-pretwisted": "The thesis' box with 30° of presetting too, as in its Figs. 5.2 and 5.7.",
         "chandra-chopra": "The CAS box of the thesis' Table 3.2 at 1000 rev/min, with 7 mm wide MFC.",
         "aluminium-cantilever": "A 300 mm strip of aluminium on a bench, a sheet of PIC255 on either face; it does not turn.",
-        "takacs-beam": "The 550 mm cantilever of Takács and Rohaľ-Ilkiv: wafers of piezoceramic, read at the tip.",
+        "takacs-beam": "The 550 mm cantilever of Takács and Rohaľ-Ilkiv: piezoceramic wafers drive it, a laser reads its tip.",
         "airfoil-blade": "A hollow NACA 0012, 1.3 m long, with one web, at 72 rad/s; four MFC on either side.",
     }
 )

@@ -75,7 +75,7 @@ def cost_response(plant: Plant, controller: LinearController, frequencies: Array
 
 
 def h_infinity_norm(plant: Plant | SampledPlant, controller: LinearController) -> float:
-    """Largest gain, √(J s), of ``cost_response`` over all frequencies: noise n with Σ|n|² = 1 costs no more than its square.
+    """The largest gain, √(J s), of ``cost_response`` over all frequencies. Noise n with Σ|n|² = 1 costs at most its square, J s.
 
     Infinite when the loop is unstable. Raises ValueError for a controller that is not linear.
     """

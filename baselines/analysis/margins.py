@@ -45,8 +45,8 @@ class StabilityMargins:
 def stability_margins(plant: Plant, controller: LinearController, at: Literal["input", "output"] = "input") -> StabilityMargins:
     """Margins of a controller on a plant, both sampled, with the loops broken at the plant's voltages or at its measurements.
 
-    Singular values mix loops, in units of the drive limits or of the sensors' full scale. Raises ValueError for a loop that is
-    unstable to begin with, for another place or for a controller that is not linear.
+    Singular values depend on units: voltages are in units of the drive limits, readings in units of full scale. Raises ValueError
+    for a loop that is unstable, for another ``at``, and for a controller that is not linear.
     """
     checked("at", at, Choice(("input", "output")))
     checked_plant(plant)

@@ -17,14 +17,15 @@ from beamenv.plant.plant import Plant, SampledPlant
 
 
 def small_gain(plant: Plant, controller: LinearController, others: Sequence[Plant]) -> float:
-    """Max σ̄(K S) ℓ over all frequencies, ℓ = max σ̄(G_i − G) over the ``others``, sampled: below 1 the loop is stable on each of
-    them, and on whatever stable plant differs from ``plant`` by no more.
+    """The small-gain test: if the result is below 1, the loop is stable on each of the ``others``.
 
-    K S is what the controller makes of a disturbance of the readings, in the closed loop of ``plant``; voltages are in units of
-    the drive limits, readings of the sensors' full scale. Sufficient, and necessary if nothing is known of the differences but ℓ
-    (Doyle and Stein, IEEE Trans. Automatic Control 26, 1981). Infinite where the loop on ``plant`` or one of the ``others`` by
-    itself is unstable. Raises ValueError for a controller that is not linear, and for others that are no plants with as many
-    voltages and sensors.
+    The result is the largest σ̄(K S) ℓ over all frequencies, with ℓ = max σ̄(G_i − G) over the ``others``, all sampled. Below 1
+    the loop is stable on every stable plant that differs from ``plant`` by no more than ℓ. K S leads from a disturbance of the
+    readings to the voltages, in the closed loop with ``plant``; voltages are in units of the drive limits, readings in units of
+    full scale. The test is sufficient; it is necessary if nothing but ℓ is known of the differences (Doyle and Stein, IEEE Trans.
+    Automatic Control 26, 1981). The result is infinite if the loop on ``plant`` is unstable, or one of the ``others`` by itself.
+    Raises ValueError for a controller that is not linear, and for ``others`` that are not plants with as many voltages and
+    sensors as ``plant``.
     """
     checked_plant(plant)
     law = linear(controller)

@@ -12,9 +12,9 @@ from beamenv.plant.plant import Plant, SampledPlant
 
 
 def stationary_cost(plant: Plant | SampledPlant, controller: LinearController) -> float:
-    """Mean of J per second (J) in the long run, under the plant's white loads and sensor noise, voltages unlimited.
+    """The long-run mean of J per second (J), under the plant's white loads and sensor noise, without drive limits.
 
-    A plant that is sampled already, such as one with states of loads that last, is taken as it is.
+    A plant that is sampled already, such as one with the states of a sustained load, is taken as it is.
 
     With X = [x; ξ] and noise n = [d; v], X⁺ = Φ X + Γ n and z = [x; u; d] = Z_x X + Z_n n, so Σ = ΦΣΦᵀ + ΓNΓᵀ and the mean
     is tr(cost (Z_x Σ Z_xᵀ + Z_n N Z_nᵀ))/Δt. Infinite when the loop is unstable. Raises ValueError for a controller that is not

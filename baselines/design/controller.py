@@ -25,7 +25,7 @@ LEAST_TIER: Mapping[str, int] = MappingProxyType(
 
 @runtime_checkable
 class Controller(Protocol):
-    """Anything with Stable-Baselines3's ``predict``: the controllers of this package and SB3's own models."""
+    """Any object with Stable-Baselines3's ``predict``: controllers of this package, and SB3's own models."""
 
     def predict(
         self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = True

@@ -29,7 +29,7 @@ BIAS_LASTS = 10.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hypothesis(ReadOnly):
-    """One of the things that may be the case throughout an episode.
+    """One of the cases that a multiple-model controller considers, taken to hold throughout an episode.
 
     Voltages u asked for act ``delay`` control intervals later, as g u; readings are s C x + b + v. Raises ``ValueError`` of one
     sentence for what is out of range or of another number than the plant's voltages or sensors.

@@ -28,7 +28,7 @@ class Instruments(ReadOnly):
     interval: float
     """s: voltages are held over it."""
     observes: Observes = "observation"
-    """What is measured; the true state (n,) is what no real blade offers."""
+    """What is measured: the readings, perhaps with the rotor speed or the truth, or the true state (n,), which no sensor offers."""
 
     def __post_init__(self) -> None:
         """Arrays of one's own, which nobody writes to; ``ValueError`` for scales and limits that no law could stand behind."""

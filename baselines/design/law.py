@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Law(ABC):
-    """A sampled law with a memory of ``order`` numbers, zero at the start of an episode, for one blade or a batch.
+    """Base class of controllers: sampled, with a memory of ``order`` numbers, zero at an episode's start, for one blade or a batch.
 
-    A law says how it decides; batches, forgetting, bad input and units are the same for all and stand here.
+    A subclass says how it decides. Batches, the reset of the memory, checks of the input and units are the same for all, and are
+    handled here.
     """
 
     name: str
@@ -51,11 +52,11 @@ class Law(ABC):
         episode_start: ArrayLike | None = None,
         deterministic: bool = True,
     ) -> tuple[Array, Array | None]:
-        """Action (m,) or (N, m) in units of the drive limit, and the next memory (None for a law without memory).
+        """Action (m,) or (N, m) in units of the drive limit, and the next memory (None for a controller without memory).
 
-        ``observation`` (p,) or (N, p) is normalised as the environment gives it, and what the law ``observes``; rows where
-        ``episode_start`` is true forget their memory. ValueError for an observation of another length, not finite, and
-        for a state or starts that are not of this law and this batch.
+        ``observation`` (p,) or (N, p) is what the controller ``observes``, normalised as the environment gives it; in rows where
+        ``episode_start`` is true the memory is reset. Raises ValueError for an observation of another length or not finite, and
+        for a ``state`` or ``episode_start`` that does not fit this controller and this batch.
         """
         seen, order = observed(observation, self.name, self.observes, self.instruments.measurement_scale.size), self.order
         action, following = self.decide(seen, remembered(state, episode_start, seen.shape[:-1], order))
@@ -67,11 +68,11 @@ class Law(ABC):
         return self.instruments.observes
 
     def in_physical_units(self) -> Self:
-        """The same law taking amperes and giving volts, for an environment made with ``physical_units=True``."""
+        """The same controller, taking amperes and giving volts, for an environment made with ``physical_units=True``."""
         return replace(self, instruments=self.instruments.in_physical_units())
 
     def to_control(self) -> control.StateSpace:
-        """A linear law as a ``control.StateSpace``; ValueError for any other."""
+        """A linear controller as a ``control.StateSpace``; ValueError for any other."""
         kind = f"{self.name} ({type(self).__name__})"
         raise ValueError(f"law = {kind} is not linear, so it is no control.StateSpace: allowed is a LinearController.")
 

@@ -100,7 +100,8 @@ class LinearController(Law):
     def to_control(self) -> control.StateSpace:
         """The controller from measurements (A) to voltages (V) within its limits, a ``control.StateSpace`` with the plant's clock.
 
-        ξ⁺ = (F + HM) ξ + (G + HT) y, u = M ξ + T y. Its sign is that of the law: ``control.feedback(plant, law, sign=1)``.
+        ξ⁺ = (F + HM) ξ + (G + HT) y, u = M ξ + T y. The sign is that of u: ``control.feedback(plant, controller, sign=1)`` closes
+        the loop.
         """
         import control
 

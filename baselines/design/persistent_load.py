@@ -13,11 +13,11 @@ from beamenv.configuration import configuration
 
 @configuration("persistent_load")
 class PersistentLoad:
-    """Line loads in lag and flap that last: independent first-order Gauss–Markov processes.
+    """Sustained line loads in lag and flap: independent first-order Gauss–Markov processes.
 
-    The rule for both numbers: root mean square and length of what may come. Of the nominal scenario's load cases a quarter
-    are steps of 30 N/m in any direction, 10 N/m root mean square over all episodes, and they stay for most of 0.5 s. Neither
-    needs care: on the default blade from 5 to 20 N/m and from 0.2 to 0.5 s J moves by less than 2 %.
+    The rule for both numbers: root mean square and length of the loads to be expected. A quarter of the nominal scenario's load
+    cases are steps of 30 N/m in any direction, which is 10 N/m root mean square over all episodes, and they stay for most of 0.5 s.
+    Neither number is critical: on the default blade, from 5 to 20 N/m and from 0.2 to 0.5 s, J changes by less than 2 %.
     """
 
     magnitude: Annotated[float, MAGNITUDE] = 10.0

@@ -27,7 +27,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Episodes:
-    """What N blades did over the T control intervals of a whole episode; NaN after the failure of a blade that did not bear it."""
+    """What N blades did over the T control intervals of a whole episode. After a blade has failed its entries are NaN."""
 
     seeds: tuple[int, ...]
     cost: Array
@@ -35,10 +35,10 @@ class Episodes:
     effort: Array
     """(T, N), J s: the actuators' share of them."""
     tip_displacement: Array
-    """(T, N, q), m, at the end of each interval: lag, flap; of a model of one's own as many as it tells, or none."""
+    """(T, N, q), m, at the end of each interval: lag and flap; for your own model, as many displacements as it has, or none."""
     load_response: Array
-    """(T, N, q), m: the part of it that the load case caused, without the tremor under white load and sensor noise: the tip
-    displacement less that of a second run on the same seed, in which the load case is absent."""
+    """(T, N, q), m: the part of the displacement that the load case causes, without the tremor from white load and sensor noise:
+    the tip displacement minus that of a second run on the same seed without the load case."""
     voltages: Array
     """(T, N, m), V: as asked for, within the drive limits; what delay, hysteresis or failure make of them is not recorded."""
     failed: NDArray[np.bool_]
@@ -48,7 +48,7 @@ class Episodes:
     interval: float
     """s."""
     conditions: Conditions | None = field(default=None, repr=False)
-    """What decided them besides; None of an environment that does not tell."""
+    """The further conditions of the episodes; None if the environment does not say."""
 
     def __post_init__(self) -> None:
         """``ValueError`` for series whose shapes are not those of N seeds, T control intervals and m voltages."""
@@ -106,7 +106,7 @@ def _takes_two(function: Callable[..., Any]) -> bool:
 
 
 def roll_out(controller: ControllerArgument, env: Environment, seeds: Sequence[int], progress: Progress | None = None) -> Episodes:
-    """One episode for each seed. Equal seeds mean equal loads and noise, so that controllers are compared in pairs.
+    """Run one episode for each seed. Equal seeds mean equal loads and noise, so that controllers can be compared in pairs.
 
     ``controller`` is a controller of this package, anything with SB3's ``predict``, or a function from observations (N, p) to
     actions (N, m). Each seed is run twice, the second time for ``Episodes.load_response``. ``env`` is one environment or a batch,

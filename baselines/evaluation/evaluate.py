@@ -23,13 +23,13 @@ WIDEST_BATCH = 1024
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Evaluation:
-    """How one controller did on N seeds, beside no control on the same seeds."""
+    """What one controller achieved on N seeds, and what happened without control on the same seeds."""
 
     name: str
     confidence: float
     """Of every interval, 0.95 unless asked otherwise."""
     relative_cost: Estimate
-    """J over J without control: ratio of the means, its interval from seeds resampled in pairs.
+    """J divided by J without control: the ratio of the means, with an interval from resampling the seeds in pairs.
 
     A blade that fails under the controller alone makes it infinite; one that fails without control too counts as no better, and one
     that the controller saves is compared with ``uncontrolled``."""
@@ -54,7 +54,8 @@ class Evaluation:
     metrics: EpisodeMetrics
     """Seed by seed."""
     uncontrolled: Array
-    """(N,), J s: J without control, seed by seed. One that fails is charged to the end of its episode as in its last interval."""
+    """(N,), J s: J without control, seed by seed. For a blade that fails, the cost of its last interval is charged until the end of
+    the episode."""
     episodes: Episodes
     """What was recorded."""
     reference: Episodes
@@ -111,15 +112,19 @@ def evaluate(
     confidence: float = 0.95,
     progress: Progress | None = None,
 ) -> Evaluation:
-    """Run a controller through one episode for each seed and compare it with no control on the very same episodes.
+    """Run a controller through one episode for each seed, and compare it with no control on the same episodes.
 
-    ``controller`` is a controller of this package, an SB3 model or anything else with SB3's ``predict``, or a plain function that
-    is called with the observations (N, p) of all blades and returns their actions (N, m); a controller that ``observes`` the
-    "state" is given the true state. ``env`` is an environment, a vector environment (wrapped as the controller needs it) or the id
-    of one. ``reference`` spares the run without control: the ``reference`` of an evaluation of the very same episodes.
-    ``progress(done, total)`` is called as episodes of this controller finish. Raises ValueError for what is no controller or does
-    not fit the environment, wrappers that act otherwise than the blade, no seeds or equal ones, a confidence outside (0, 1), a
-    reference of other episodes, and where nothing moves without control: no cost is relative to that.
+    - ``controller``: a controller of this package, an SB3 model or another object with SB3's ``predict``, or a plain function from
+      the observations (N, p) of all blades to their actions (N, m). A controller that ``observes`` "state" gets the true state.
+    - ``env``: an environment, a vector environment (with the wrappers that the controller needs), or an environment's id.
+    - ``seeds``: random seeds of the episodes, all different.
+    - ``reference``: the ``reference`` of an earlier evaluation on the same episodes, which saves the run without control.
+    - ``confidence``: of the intervals, between 0 and 1.
+    - ``progress(done, total)``: called whenever episodes of this controller have finished.
+
+    Raises ValueError for what is no controller or does not fit the environment, for wrappers that change actions, for no seeds or
+    equal ones, for a confidence outside (0, 1), for a ``reference`` of other episodes, and if nothing moves without control, since
+    then there is no cost to compare with.
     """
     confidence, seeds = checked("confidence", confidence, Number(gt=0.0, lt=1.0)), _unlike(checked_seeds(seeds))
     controller, progress = as_controller(controller), checked_progress(progress)

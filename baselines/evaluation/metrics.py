@@ -24,7 +24,7 @@ EPISODES = "Episodes, such as roll_out returns"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EpisodeMetrics:
-    """One array (N,) each, a blade a row; NaN for what is said of the tip where an environment tells no displacement."""
+    """One array (N,) for each metric, an entry per blade. Metrics of the tip are NaN if the environment has no displacement."""
 
     cost: Array
     """J, J s: vibration energy and actuator effort integrated over the episode; infinite if the blade failed."""
@@ -37,7 +37,7 @@ class EpisodeMetrics:
     settled: Array
     """1 if it had settled when the last fifth of the episode began, else 0."""
     peak_tip: Array
-    """m: greatest distance of the tip from where it rests without load. This and the rest up to a failure."""
+    """m: greatest distance of the tip from where it rests without load. This and the following count up to a failure."""
     rms_tip: Array
     """m."""
     peak_voltage: Array

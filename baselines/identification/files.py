@@ -37,12 +37,11 @@ def read_measurement(
 ) -> Measurement:
     """The measurement in a CSV file whose first line names its columns, each perhaps with its unit: ``y1 [A]``.
 
-    ``voltages`` and ``readings`` are names of columns; left out, those that begin with u and with y. The rate is that of the column
-    ``time`` (s), left out ``time`` or ``t``, or is given by ``interval`` (s) where there is none. With ``before`` the voltages of a
-    row were on before its readings were taken, as where both are sampled together. Raises ``ValueError`` of one
-    sentence with the file's name, and with the line where there is one, for a file that cannot be read, columns that are not there,
-    cells that hold no number, rows that are missing or not at one rate, a rate that is not the ``interval`` given, and what
-    ``Measurement`` refuses.
+    ``voltages`` and ``readings`` are names of columns; by default those that begin with u and with y. The rate follows from the
+    column ``time`` (s), by default ``time`` or ``t``; if there is none, give the ``interval`` (s). ``before`` says that the
+    voltages of each row were applied before its readings were taken, as when both are sampled together. Raises ``ValueError`` for
+    a file that cannot be read, columns that are not there, cells without a number, rows that are missing or unevenly spaced, a
+    rate other than ``interval``, and what ``Measurement`` refuses; the sentence names the file and, if there is one, the line.
     """
     place = checked_path("data", path, (ENDING,))
     asked = {name: None if each is None else checked(name, each, Texts()) for name, each in _asked(voltages, readings).items()}

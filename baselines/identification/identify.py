@@ -44,14 +44,16 @@ def identify(
     collocated: float | None = None,
     progress: Progress | None = None,
 ) -> Identified:
-    """The model of a measurement, or of the CSV file that holds one (``read_measurement``).
+    """Identify a model from a measurement, or from the CSV file that holds one (``read_measurement``).
 
-    ``order`` is its number of states; "auto" takes as many as rows held back, the last share ``held_back`` of them, need to be
-    predicted by. ``collocated`` is for piezoelectric sensors, of current in A, that lie where the actuators do, one each: the ratio
-    of what they are per strain and per volt, 1 where both are the same patch; modes then have their energy in joules. ``progress``
-    is told what is done. Raises ``ValueError`` for another order or share, for a measurement too short, for one whose
-    voltages have nothing to do with its readings, and as ``Measurement`` and
-    ``read_measurement`` do.
+    - ``order``: its number of states; with "auto" it is chosen by how well the rows held back are predicted.
+    - ``held_back``: share of the rows, at the end, that is held back to judge the model; from 0.05 to 0.5.
+    - ``collocated``: for piezoelectric sensors of current (A), one at the place of each actuator: the ratio of the sensor's charge
+      per strain to the actuator's moment per volt, 1 if both are the same patch. With it the energy of modes is known, in joules.
+    - ``progress``: called with what is being done and how much of it is done.
+
+    Raises ``ValueError`` for another order or share, for a measurement that is too short, for one whose voltages explain nothing
+    of its readings, and as ``Measurement`` and ``read_measurement`` do.
     """
     measurement = data if isinstance(data, Measurement) else read_measurement(data)
     wanted = None if isinstance(order, str) and order == "auto" else _checked_order(order)

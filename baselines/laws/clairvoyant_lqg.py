@@ -26,10 +26,11 @@ class ClairvoyantLQG(TimeVaryingLQG):
 
 
 def clairvoyant_lqg(truth: Truth) -> ClairvoyantLQG:
-    """LQG with the loads that can be foreseen, for batches whose episodes may each have another truth.
+    """LQG that is told each episode's plant, delay and faults, and knows the loads that can be foreseen.
 
-    Its gains are worked out when a truth is first met, those of a batch together. ``ValueError`` for what is no ``Truth``, for a
-    bank of several blades, and for plants that wander within an episode, as in `drift`: its gains are of plants that stay.
+    The episodes of a batch may differ in all of these. Gains are computed when a case is first met, for a whole batch together.
+    Raises ``ValueError`` for what is no ``Truth``, for a bank of several blades, and for plants that change within an episode, as
+    in `drift`, because its gains are for constant plants.
     """
     truth = instance("truth", truth, Truth, "a beamenv.knowledge.Truth, such as env.unwrapped.task.truth")
     return ClairvoyantLQG("clairvoyant LQG", Instruments.of(truth.plant, "observation and truth"), truth)

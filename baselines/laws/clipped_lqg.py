@@ -20,7 +20,7 @@ from beamenv.plant.plant import Plant
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ClippedLQG(Law):
-    """The sampled LQG with a reading predicted as it will be taken, for one blade or a batch.
+    """The sampled LQG whose filter predicts readings clipped at full scale, for one blade or a batch.
 
     With the memory x̂, the state predicted from the interval before and zero at the start of an episode,
 
@@ -72,12 +72,12 @@ def clipped_lqg(
     R: ArrayLike | None = None,
     verify: bool = True,
 ) -> ClippedLQG:
-    """The sampled LQG of a design plant, with a filter that knows that readings end at full scale; ``lqg`` while none does.
+    """The sampled LQG of a design plant, whose filter takes into account that readings clip at full scale.
 
-    ``persistent_load`` adds a load that lasts to the state, and ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``;
-    ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``. What it is while nothing clips, LQG, is ``verified`` on
-    ``plant`` unless ``verify=False``; of what it does while readings or voltages clip nothing is promised. Raises ValueError as
-    ``lqg`` does.
+    While no reading clips it is the controller of ``lqg``. ``persistent_load`` adds a sustained load to the state, and ``Q`` and
+    ``R`` replace the plant's weights, as in ``lqg``; ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``. The
+    loop without clipping is ``verified`` on ``plant`` unless ``verify=False``; while readings or voltages clip, nothing is
+    promised. Raises ValueError as ``lqg`` does.
     """
     load = checked_persistent_load(persistent_load)
     name = "LQG, clipping known" if load is None else "LQG with load estimate, clipping known"

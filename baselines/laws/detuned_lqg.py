@@ -20,7 +20,7 @@ from beamenv.plant.plant import Plant, SampledPlant
 
 @configuration("detuning")
 class Detuning:
-    """What an LQG's design is told; by default the reference's rate penalty alone."""
+    """The fictitious delay, weights and noise of an LQG's design; by default the reference's price on quick changes alone."""
 
     delay: Annotated[int, Count(0, MOST_LATE)] = 0
     """d, control intervals by which voltages come late."""
@@ -41,7 +41,9 @@ one, 24 validation seeds from 3 000 000 on: nominal 0.577 and 0.591, delay 3.67 
 
 
 def detuned_lqg(plant: Plant, detuning: Detuning, *loads: Load, name: str = "detuned LQG") -> LinearController:
-    """The sampled optimum for a plant that is what its design is told, ``verified`` there; ``loads`` are those it may foresee.
+    """The sampled LQG of a plant with the delay, weights and noise of ``detuning``; the loop is ``verified`` on that plant.
+
+    ``loads`` are the loads that may be part of its state, if ``detuning.foresees`` says so.
 
     Robustness by fictitious noise and weights is loop transfer recovery's idea (Doyle and Stein, IEEE Trans. Automatic Control 24,
     1979; Anderson and Moore, Optimal Control, 1990, ch. 8). Raises ``ValueError`` as ``lqg`` does.

@@ -28,18 +28,19 @@ _BISECTION = 1e-5
 def h_infinity(
     plant: Plant, back_off: float = 1.5, *, Q: ArrayLike | None = None, R: ArrayLike | None = None, verify: bool = True
 ) -> LinearController:
-    """Output feedback with ``h_infinity_norm`` below γ, ``back_off`` times the least that is possible.
+    """Output feedback whose ``h_infinity_norm`` is below γ, which is ``back_off`` times the least possible value.
 
-    The problem is the sampled LQG's, with its very cost and noise, but the noise n = [W^-½ d; V^-½ v] is the worst of its energy:
+    Cost and noise are those of the sampled LQG, but the noise n = [W^-½ d; V^-½ v] is the worst that its energy allows:
 
         Σ zᵀ cost z < γ² Σ |n|²,        z = [x; u; d],
 
-    and the law is the central solution, which becomes LQG as γ → ∞. Solved in discrete time, so that nothing is lost to sampling:
+    and the controller is the central solution, which becomes LQG as γ → ∞. It is solved in discrete time, so that sampling costs
+    nothing:
     Whittle, Risk-sensitive Optimal Control (1990), and Başar and Bernhard, H∞-Optimal Control (1995), the discrete counterpart of
     Doyle, Glover, Khargonekar and Francis (IEEE Trans. Automatic Control 34, 1989). The rule for γ: half as much again as
-    the least, near which gains grow without bound. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. Stable and
-    below γ on ``plant``, ``verified`` unless ``verify=False``. Raises ValueError unless ``back_off`` exceeds 1 and white loads act,
-    and as ``lqg`` does.
+    the least, near which gains grow without bound. ``Q`` and ``R`` replace the plant's weights, as in ``lqg``. That the loop on
+    ``plant`` is stable and its norm below γ is ``verified`` unless ``verify=False``. Raises ValueError for a ``back_off`` of 1 or
+    less, for a plant without white loads, and as ``lqg`` does.
     """
     back_off = checked("back_off", back_off, Number(gt=1.0))
     plant = weighted(plant, Q, R)

@@ -32,9 +32,9 @@ SHIPPED = Path(__file__).with_name("informed_lqg.csv")
 
 
 def informed_lqg(prior: Prior) -> LinearController:
-    """The ``detuned_lqg`` of the plant that all others depart from, told what ``chosen_detuning`` says.
+    """The ``detuned_lqg`` of the plant that the scenario's plants vary about, with the ``Detuning`` of ``chosen_detuning``.
 
-    ``ValueError`` for what is no ``Prior``.
+    Raises ``ValueError`` for what is no ``Prior``.
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
     return _law(prior, chosen_detuning(prior))

@@ -11,10 +11,10 @@ from beamenv.knowledge import Prior
 
 
 def informed_mpc(prior: Prior) -> PredictiveController:
-    """The predictive controller of what ``informed_lqg``'s rule chooses: voltages that come late are part of what it predicts with.
+    """The predictive controller ``mpc`` with the delay, weights and loads that the rule of ``informed_lqg`` chooses.
 
-    As long as no limit is in sight it is ``informed_lqg``, but for a filter that knows that readings clip. ``ValueError`` for what
-    is no ``Prior``, ModuleNotFoundError without DAQP.
+    As long as its plan meets no limit it is ``informed_lqg``, with a filter that takes clipping into account. Raises
+    ``ValueError`` for what is no ``Prior``, and ModuleNotFoundError without DAQP.
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
     detuning, plant = chosen_detuning(prior), prior.blade.truth

@@ -79,9 +79,9 @@ def inverse_hysteresis(law: LinearController, loop: Any) -> InverseHysteresis:
     """A controller behind the inverse of the Prandtl–Ishlinskii operator with this ``loop``
     (``beamenv.simulation.signals.hysteresis``).
 
-    Inverse control in the sense of Kuhnen (European J. Control 9, 2003), by bisection to 1e-12 of the range. Within the drive's
-    limits the blade moves as under ``law`` without hysteresis, whose verified loop therefore stays what it is. A ``loop`` of 0 is
-    none. Raises ``ValueError`` for what is no ``LinearController``, and for a loop that is not from 0 to 0.5.
+    Inverse control in the sense of Kuhnen (European J. Control 9, 2003), by bisection to 1e-12 of the range. Within the drive
+    limits the blade moves as it would under ``law`` without hysteresis, so that the loop verified for ``law`` remains valid. A
+    ``loop`` of 0 means no hysteresis. Raises ``ValueError`` for what is no ``LinearController``, and for a loop outside 0 to 0.5.
     """
     law = instance("law", law, LinearController, "a LinearController, such as lqg(plant)")
     return InverseHysteresis(f"{law.name}, hysteresis inverted", law.instruments, law, loop)

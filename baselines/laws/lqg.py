@@ -36,27 +36,27 @@ def lqg(
     R: ArrayLike | None = None,
     verify: bool = True,
 ) -> LinearController:
-    """LQG controller of a design plant, ``verified`` on it; its filter starts from its own estimate, zero.
+    """The LQG controller of a design plant, ``verified`` on that plant; the estimate of its filter starts at zero.
 
-    ``design="sampled"``: the optimum for the cost and the noise of the environment, both exactly sampled, with y_k used for u_k:
-    x̂ ← x̂ + L (y − C x̂), u = −K x̂, x̂⁺ = A x̂ + B u.
+    ``design="sampled"`` is the optimum for the cost and the noise of the environment, both sampled exactly; reading y_k already
+    acts on voltage u_k: x̂ ← x̂ + L (y − C x̂), u = −K x̂, x̂⁺ = A x̂ + B u.
 
-    ``design="continuous"``: the thesis' compensator, Eqs. 5.11 and 5.18–5.21,
+    ``design="continuous"`` is the thesis' compensator, Eqs. 5.11 and 5.18–5.21,
 
         x̂̇ = (A − BK − LC) x̂ + L y + B (clip(u) − u),        u = −K x̂,
 
     whose last term, zero unless the drive saturates, keeps it from winding up (B less LD where sensors feel the voltages). It is
-    integrated exactly from sample to sample with the newest reading held over the interval that it ends, so that y_k acts on u_k.
-    (With y_k held over the interval that it begins, as is more usual, the loop through the blade's upper modes, up to 1.4 rad a
-    sample, is unstable.) It still needs a filter slower than the sampling: with sensors of next to no noise, or loads that reach
-    fast modes, it is unstable too.
+    integrated exactly from sample to sample, with the newest reading held over the interval that ends with it, so that y_k acts on
+    u_k. (With y_k held over the interval that begins with it, as is more usual, the loop through the blade's upper modes, up to
+    1.4 rad per sample, is unstable.) The filter must still be slower than the sampling: with nearly noiseless sensors, or with
+    loads that reach fast modes, this controller is unstable too.
 
-    ``persistent_load`` (sampled design only) adds a load that lasts to the state, for filter and regulator alike.
-    ``Q`` (n, n) and ``R`` (m, m) are weights of your own in ∫(xᵀQx + uᵀRu)dt, in the plant's coordinates, in place of the plant's:
-    the vibration energy ½ xᵀx in J, and what the actuators store, J/V². ``verify=False`` asks for the controller as it comes out,
-    the thesis' included where it is unstable. Raises ValueError for another design, for a persistent load with the continuous one,
+    ``persistent_load`` (sampled design only) adds a sustained load to the state, for filter and regulator alike. ``Q`` (n, n) and
+    ``R`` (m, m) are your own weights in ∫(xᵀQx + uᵀRu)dt, in the plant's coordinates. They replace the plant's weights: the
+    vibration energy ½ xᵀx in J, and the energy stored by the actuators, J/V². With ``verify=False`` the controller is returned
+    unchecked, even an unstable one. Raises ValueError for another ``design``, for a persistent load with the continuous design,
     for weights that are not symmetric or not positive, for a controller that is not stable on ``plant``, and for a plant with an
-    undamped mode out of reach, which it names.
+    undamped mode that no voltage reaches or no sensor sees; the sentence names the mode.
     """
     plant, load = weighted(plant, Q, R), checked_persistent_load(persistent_load)
     if checked("design", design, Choice(("sampled", "continuous"))) == "sampled":

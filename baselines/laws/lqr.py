@@ -27,14 +27,14 @@ def lqr(
     R: ArrayLike | None = None,
     verify: bool = True,
 ) -> LinearController:
-    """Feedback u = −K x with the gain that is least in the environment's own cost, integrated exactly between samples.
+    """State feedback u = −K x with the gain of least cost, in the environment's own cost integrated exactly between samples.
 
-    It ``observes`` the true state (n,), which ``evaluate`` hands it: a reference, no rival. It is a bound with white loads and no
-    saturation: nothing that holds its voltages over the control interval costs less. Under a load that lasts it is none: it takes
-    the static deflection for motion. ``persistent_load`` makes it one again: the load of each past interval is worked out exactly
-    from two true states, filtered (it is the lasting load and the white one together; without white loads it is known as it is),
-    and answered. ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``; in them it is the optimum then. ``verified`` on
-    ``plant`` unless ``verify=False``; raises ValueError as ``lqg`` does.
+    The controller ``observes`` the true state (n,), which ``evaluate`` hands to it and no sensor offers: it is a reference, not a
+    rival. With white loads and no saturation its cost is a lower bound for every controller that holds its voltages over the
+    control interval. Under a sustained load it is no bound, because it takes the static deflection for motion. With
+    ``persistent_load`` it is one again: the load of each past interval follows exactly from two true states, is filtered (it is
+    the sum of the sustained load and the white one) and answered. ``Q`` and ``R`` replace the plant's weights, as in ``lqg``; the
+    gain is then optimal for these. The loop is ``verified`` on ``plant`` unless ``verify=False``. Raises ValueError as ``lqg``.
     """
     held, load = sample(weighted(plant, Q, R)), checked_persistent_load(persistent_load)
     if load is not None:

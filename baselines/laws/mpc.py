@@ -112,17 +112,16 @@ def mpc(
 ) -> PredictiveController:
     """Constrained model-predictive control of a design plant, with the Kalman filter of the sampled ``lqg``.
 
-    Least Σ (xᵀQx + 2xᵀNu + uᵀRu) + x_hᵀPx_h over the next h intervals, subject to the drive limits: the environment's own cost,
-    exactly sampled, and beyond the horizon that of LQG (Scokaert and Rawlings, IEEE Trans. Automatic Control 43, 1998). As long as
-    no limit is in sight the controller is therefore LQG itself.
+    It minimises Σ (xᵀQx + 2xᵀNu + uᵀRu) + x_hᵀPx_h over the next h intervals within the drive limits: the environment's own cost,
+    sampled exactly, and beyond the horizon the cost of LQG (Scokaert and Rawlings, IEEE Trans. Automatic Control 43, 1998). As
+    long as the plan meets no limit the controller is therefore LQG itself.
 
     The voltages are held over ``move_blocks``, in control intervals, whose sum is the horizon h, at most 1000; by default they are
-    ``doubling_blocks`` of the plant. ``persistent_load`` adds a load that lasts to the state, for filter and prediction alike;
+    ``doubling_blocks`` of the plant. ``persistent_load`` adds a sustained load to the state, for filter and prediction alike;
     ``rate_weight`` is a price on quick changes, as in ``full_order_lqg``; voltages act ``delay`` control intervals after they are
-    asked for; ``Q`` and ``R`` are other weights than the plant's, as in ``lqg``. What it is while no limit is in sight, LQG, is
-    ``verified`` on ``plant`` unless ``verify=False``. One controller may serve several threads at once. Raises ValueError for
-    blocks that are not positive whole numbers, for a delay that is not from 0 to 20, and as ``lqg`` does, ModuleNotFoundError
-    without DAQP.
+    asked for; ``Q`` and ``R`` replace the plant's weights, as in ``lqg``. The loop without limits, LQG, is ``verified`` on
+    ``plant`` unless ``verify=False``. One controller may serve several threads at once. Raises ValueError for blocks that are not
+    positive whole numbers, for a delay outside 0 to 20, and as ``lqg`` does; ModuleNotFoundError without DAQP.
     """
     load = checked_persistent_load(persistent_load)
     name = "MPC" if load is None else "MPC with load estimate"

@@ -70,12 +70,12 @@ def multiple_model(
 
     No hypothesis fits where the mean normalised innovation squared per reading over a fading ``window`` of instants, averaged with
     the weights, is more than ``allowance`` times the quantile of χ²/ν at ``confidence``, ν = (2 window − 1) p (Bar-Shalom, Li and
-    Kirubarajan 2001, section 5.4). From then on, until the episode ends, ``fallback`` is in charge, which has followed all along;
-    None: no test.
+    Kirubarajan 2001, section 5.4). From then on, until the episode ends, ``fallback`` acts; its filter has followed the readings
+    from the start. With None there is no such test.
 
     Each hypothesis' own loop is ``verified`` on its own plant, faults, delay and all, unless ``verify=False``; of their mixture
-    nothing is promised. Raises ``ValueError`` for hypotheses that differ in their instruments, for a matrix of no probabilities,
-    and as ``lqg`` does.
+    nothing is promised. Raises ``ValueError`` for hypotheses that differ in their instruments, for a ``transition`` that holds no
+    probabilities, and as ``lqg`` does.
     """
     those = _checked(hypotheses)
     first = those[0].plant

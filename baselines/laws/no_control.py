@@ -10,5 +10,5 @@ from beamenv.plant.plant import Plant
 
 
 def no_control(plant: Plant) -> LinearController:
-    """Zero volts always, whatever the sensors say. There is no loop to be verified: the blade stays as it is."""
+    """The controller that always gives zero volts, whatever the sensors show. There is no loop to verify."""
     return static_law(plant, "no control", np.zeros((checked_plant(plant).B.shape[1], len(plant.C))))

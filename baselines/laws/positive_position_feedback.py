@@ -48,15 +48,16 @@ def positive_position_feedback(
 
         q̈_k + 2 ζ_f ω_k q̇_k + ω_k² q_k = ω_k² q,        q̇ = y_j − (leak ω_1) q,
 
-    filters the sensor's charge q, for the sensor tells the rate of strain and positive position feedback wants strain. c_j is the
-    charge that a volt on the same pair brings about at rest, so that a single mode with a single filter is stable just as long as
-    g < 1 (Fanson and Caughey, AIAA Journal 28, 1990). Ganged drive takes the sensors' mean.
+    filters the sensor's charge q, because the sensor shows the rate of strain and positive position feedback needs strain. c_j is
+    the charge that one volt on the same pair causes at rest, so that a single mode with a single filter is stable if and only if
+    g < 1 (Fanson and Caughey, AIAA Journal 28, 1990). With ganged drive the one voltage answers the mean of the sensors.
 
-    ``gain`` (modes,) or one number for all are the g_k. By default those of least stationary cost under the plant's white loads
-    and sensor noise, among stable loops: the best common one of a few, then each for itself (Nelder and Mead's simplex). Integrated
-    exactly from sample to sample, the newest reading held over the interval that it ends. ``verified`` on ``plant`` unless
-    ``verify=False``. Raises ValueError when sensors and actuators cannot be paired, for modes, damping, leak or gains that are not
-    allowed, and where the loop is unstable, be it with the gains given or with any.
+    ``gain`` gives the g_k: an array (modes,), or one number for all. By default they are the gains with the least stationary cost
+    under the plant's white loads and sensor noise, among stable loops: first the best common gain of a few, then each by itself
+    (Nelder and Mead's simplex). The filters are integrated exactly from sample to sample, with the newest reading held over the
+    interval that ends with it. The loop is ``verified`` on ``plant`` unless ``verify=False``. Raises ValueError if sensors and
+    actuators cannot be paired, for modes, damping, leak or gains that are not allowed, and if the loop is unstable with the given
+    gains or with every gain that was tried.
     """
     known = len(checked_plant(plant).natural_frequencies)
     count = min(3, known) if modes is None else checked("modes", modes, Count(1, known))

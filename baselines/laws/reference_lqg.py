@@ -35,11 +35,11 @@ def full_order_lqg(
     name: str = "LQG",
     verify: bool = True,
 ) -> LinearController:
-    """The sampled optimum for the plant's cost with ``rate_weight`` (u − u₋)ᵀ diag(R) (u − u₋) of each interval on top.
+    """The sampled LQG for the plant's cost plus, in each interval, ``rate_weight`` (u − u₋)ᵀ diag(R) (u − u₋).
 
-    ``load`` adds the states of a load that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``, or of several.
-    ``verified`` on ``plant`` unless ``verify=False``. Raises ``ValueError`` for a weight that is negative, for what is no load, and
-    as ``lqg`` does.
+    The added term is a price on quick changes: u₋ is the voltage of the interval before. ``load`` adds the states of one or
+    several loads that can be foreseen, such as ``PersistentLoad`` or ``RotorHarmonics``. The loop is ``verified`` on ``plant``
+    unless ``verify=False``. Raises ``ValueError`` for a negative weight, for what is no load, and as ``lqg`` does.
     """
     loads = checked_loads("load", load)
     held, regulated, filtered = sampled_design(checked_plant(plant), *loads, rate_weight=rate_weight)
@@ -56,11 +56,12 @@ def reference_lqg(
     name: str = "LQG",
     verify: bool = True,
 ) -> LinearController:
-    """``full_order_lqg`` with ``order`` numbers in its memory; None: the least even number that adds no more than 0.5 % to the mean
-    cost under the plant's own noise and the ``load``.
+    """The LQG of ``full_order_lqg``, reduced in the closed loop to ``order`` states.
 
-    ``plant`` is all that is known of the blade, such as ``Design.full_plant``; the controller is ``verified`` there, reduced,
-    unless ``verify=False``. Only what is stable can be reduced: raises ``ValueError`` as its parts do.
+    By default ``order`` is the least even number with which the mean cost, under the plant's own noise and the ``load``, rises by
+    no more than 0.5 %. ``plant`` is all that is known of the blade, such as ``Design.full_plant``; the reduced controller is
+    ``verified`` on it unless ``verify=False``. Raises ``ValueError`` as ``full_order_lqg`` does, and for a full-order loop that
+    is not stable, which cannot be reduced.
     """
     whole = full_order_lqg(plant, rate_weight, load=load, name=name)
     loaded = sampled_with_loads(plant, *checked_loads("load", load))

@@ -38,12 +38,12 @@ SHIPPED = Path(__file__).with_name("robust_lqg.csv")
 
 
 def robust_lqg(design: Design) -> LinearController:
-    """The ``detuned_lqg`` of the design's full plant that costs least in the mean over it and a bank of ``modelling_errors``.
+    """The ``detuned_lqg`` of the design's full plant with the least mean cost over that plant and a bank of ``modelling_errors``.
 
-    Cost is the stationary one under the plants' white loads and a load that lasts; a plant on which the loop is unstable is charged
-    a hundredfold what no control costs. Robustness by design on many plants: Ackermann, IEEE Trans. Automatic Control 25, 1980;
-    Vidyasagar, Automatica 37, 2001, for plants drawn at random. Nothing of any scenario is known. Where the search, of seconds,
-    has been made for the design it is not made again. ``ValueError`` for what is no ``Design``.
+    The cost is the stationary one under the plants' white loads and a sustained load; a plant on which the loop is unstable counts
+    as a hundred times the cost without control. Designs on many plants: Ackermann, IEEE Trans. Automatic Control 25, 1980;
+    Vidyasagar, Automatica 37, 2001, for plants drawn at random. The controller knows nothing of any scenario. The search takes
+    seconds and is made once for each design. Raises ``ValueError`` for what is no ``Design``.
     """
     design = instance("design", design, Design, "a beamenv.Design, such as env.unwrapped.task.design")
     if design.config is None:

@@ -22,9 +22,9 @@ from beamenv.plant.plant import Plant
 
 @configuration("harmonics")
 class RotorHarmonics:
-    """Line loads in lag and flap at whole multiples of the rotor speed: oscillators that all but keep their phase.
+    """Line loads in lag and flap at whole multiples of the rotor speed: oscillators that lose their phase only slowly.
 
-    The rule for the numbers: the first four harmonics, each of the size of the environment's harmonic loads, whose mean amplitude
+    The rule for the numbers: the first four harmonics, each as large as the environment's harmonic loads, whose mean amplitude
     of 3 N/m in any direction is 1.5 N/m root mean square in lag and in flap, and steady over an episode of 0.5 s.
     """
 

@@ -102,9 +102,9 @@ def scheduled_lqg(
     """The sampled LQG of each plant of a family, all in its common coordinates; ``persistent_load`` as in ``lqg``, and
     ``rate_weight`` a price on quick changes as in ``full_order_lqg``.
 
-    Each controller is ``verified`` on the plant of its own speed unless ``verify=False``; of speeds between, and of a speed that
-    changes, nothing is promised. Raises ValueError for plants that differ in their sensors' range, drive or clock, and as ``lqg``
-    does.
+    Each controller is ``verified`` on the plant of its own speed unless ``verify=False``; nothing is promised for speeds between
+    them, or for a speed that changes. Raises ValueError for plants that differ in sensor range, drive limits or control interval,
+    and as ``lqg`` does.
     """
     load = checked_persistent_load(persistent_load)
     first = instance("family", family, SpeedFamily, "a SpeedFamily, such as speed_family(config, speeds)").plants[0]
@@ -128,10 +128,9 @@ def scheduled_lqg_for(
 ) -> ScheduledLQG:
     """The scheduled LQG of a blade over ``speeds`` (rad/s), by default nine within 20 % of the configuration's own.
 
-    ``full`` designs it on all that is known of the blade, as ``speed_family`` has it, in place of the design plant.
+    With ``full`` it is designed on all that is known of the blade, as in ``speed_family``, instead of on the design plant.
 
-    Raises ValueError for speeds that ``speed_family`` refuses, for a blade that does not turn and has none to be scheduled with,
-    and as ``scheduled_lqg`` does.
+    Raises ValueError for speeds that ``speed_family`` refuses, for a blade that does not turn, and as ``scheduled_lqg`` does.
     """
     config = instance("config", config, BladeConfig, 'a BladeConfig, such as blade_config("thesis")')
     checked_persistent_load(persistent_load)

@@ -16,7 +16,7 @@ from beamenv.scenarios.tables import PlantVariation
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SpinUpLQG(TimeVaryingLQG):
-    """The optimum under white noise for a blade that does what it was designed to, over the episode; it sees the readings alone."""
+    """The optimum over an episode under white noise, for a blade that follows the planned spin-up; it sees only the readings."""
 
     def told(self, seen: Array) -> tuple[Array, Array]:
         """Of every blade that it is the first of the bank, or spins up along it, with the mean delay and nothing broken."""
@@ -29,10 +29,10 @@ def spin_up_lqg(prior: Prior) -> SpinUpLQG:
     """LQG with the gains of a linear time-varying plant (Kwakernaak and Sivan, Linear Optimal Control Systems, 1972, sections 3.3,
     4.3 and 5.3), for scenarios whose rotor spins up or down on a course that is known.
 
-    Along the spin-up each interval has its own plant, and the filter begins with what the start of the spin-up itself excites.
-    Where the rotor does not spin up all intervals have the plant that others depart from; what is left then are gains that know
-    when episodes begin and end. Other plants that a scenario draws, and what may be broken, it does not know of. It is no loop that
-    has to last, and so nothing is verified but that its recursions have solutions. ``ValueError`` for what is no ``Prior``.
+    Along the spin-up each interval has its own plant, and the filter starts from what the start of the spin-up itself excites. If
+    the rotor does not spin up, all intervals have the plant that the scenario's plants vary about; the gains then only know when
+    episodes begin and end. The controller knows nothing of other plants that the scenario draws, or of faults. Since the loop ends
+    with the episode, only the existence of the recursions' solutions is verified. Raises ``ValueError`` for what is no ``Prior``.
     """
     prior = instance("prior", prior, Prior, "a beamenv.Prior, such as env.unwrapped.task.prior")
     if prior.scenario.plants.spin_up is None:

@@ -23,15 +23,16 @@ _DECADES = np.linspace(-6.0, 1.0, 36)
 def velocity_feedback(
     plant: Plant, gain: ArrayLike | None = None, *, tuned_on: Plant | None = None, verify: bool = True
 ) -> LinearController:
-    """u_j = −g_j y_j, where y_j is the current of the sensor under actuator j; ganged drive (m = 1) takes the sensors' mean.
+    """Collocated velocity feedback: u_j = −g_j y_j, where y_j is the current of the sensor under actuator j.
 
-    ``gain`` in V/A is one number or one for each actuator. By default the gains are those with the least stationary cost under the
+    With ganged drive (m = 1) the one voltage answers the mean of the sensors. ``gain`` in V/A is one number, or one for each
+    actuator. By default the gains are those with the least stationary cost under the
     white loads and sensor noise of the plant, or of ``tuned_on``, such as ``Design.full_plant``, among those that keep that sampled
     loop stable. The thesis' sensors lie across the section from their actuators and so feel bending alike but extension with the
     opposite sign: with one gain for all pairs the extension mode soon goes unstable, with one each the pairs keep it damped between
-    them. ``verified`` on the plant, or on ``tuned_on``, unless ``verify=False``. Raises ValueError when sensors and actuators
-    cannot be paired, for a plant with filters between blade and readings, which hide what a pair feels, for a gain of another
-    shape, and where the loop is unstable, be it with the gain given or with any.
+    them. The loop is ``verified`` on the plant, or on ``tuned_on``, unless ``verify=False``. Raises ValueError if sensors and
+    actuators cannot be paired, if the plant has filters between blade and readings (they hide what a pair feels), if ``gain`` has
+    another shape, and if the loop is unstable with the given gain or with every gain that was tried.
     """
     pairs = pairing(checked_plant(plant), "velocity feedback")
     meant_for = optional_instance("tuned_on", tuned_on, Plant, "a beamenv.Plant, such as design.full_plant") or plant

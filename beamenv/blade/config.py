@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 from beamenv.blade.electronics import ElectronicsConfig
 from beamenv.blade.fit import in_words
 from beamenv.blade.load_shapes import LoadShape
-from beamenv.blade.units import SOFTEST, asked, check_moduli, check_units, laminae
+from beamenv.blade.units import LEAST, check_moduli, check_units, laminae
 from beamenv.configuration import (
     Choice,
     Count,
@@ -30,6 +30,7 @@ from beamenv.configuration import (
 from beamenv.configuration.instead import InsteadOf
 from beamenv.configuration.kinds import JsonSchema, Kind, plain
 from beamenv.configuration.numbers import DEGREES
+from beamenv.configuration.sentence import in_millimetres
 from beamenv.patches import PatchLayout
 from beamenv.patches.layout import SIDES
 from beamenv.plant.limits import VOLTAGES
@@ -48,13 +49,13 @@ from beamenv.structure.held_and_heated import (
 )
 from beamenv.structure.model import FLOW, MODEL, STEADY_STATE, check_steady_state, checked_flow
 from beamenv.structure.planform import TABLE, Steps
-from beamenv.structure.section.section import THEORY, Metres, Section
+from beamenv.structure.section.section import THEORY, Section
 from beamenv.structure.section.shapes import SHAPES, AnySection
+from beamenv.structure.sizes import HUB, SPAN, WALL, WIDTH
 from beamenv.structure.walls.curves import ROOM
 from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import PLY_ANGLES
-from beamenv.structure.walls.materials import MODULI
 from beamenv.structure.walls.named import MATERIALS
 
 ON_EVERY_WALL = "all"
@@ -103,19 +104,19 @@ def _each_once(walls: tuple[tuple[str, tuple[float, ...]], ...]) -> tuple[tuple[
 class BeamConfig:
     """The bare blade: a box of the thesis (§3.5) unless said otherwise."""
 
-    length: Metres = 2.023
+    length: Annotated[float, SPAN] = 2.023
     """m."""
-    width: Metres = 0.254
+    width: Annotated[float, WIDTH] = 0.254
     """m, of the mid-line box along the chord."""
-    depth: Metres = 0.0508
+    depth: Annotated[float, WIDTH] = 0.0508
     """m, of the mid-line box."""
-    thickness: Metres = 0.01016
+    thickness: Annotated[float, WALL] = 0.01016
     """m, of the walls."""
-    hub_radius: Annotated[float, Number(ge=0.0, unit="m")] = 0.2023
+    hub_radius: Annotated[float, HUB] = 0.2023
     """m."""
-    material: Annotated[
-        str | Lamina | FunctionallyGraded, Choice(MATERIALS, (Lamina, FunctionallyGraded), dict.fromkeys(MODULI, SOFTEST))
-    ] = "graphite-epoxy"
+    material: Annotated[str | Lamina | FunctionallyGraded, Choice(MATERIALS, (Lamina, FunctionallyGraded), LEAST)] = (
+        "graphite-epoxy"
+    )
     """A name, a lamina, or a FunctionallyGraded through the walls; in a dictionary or file also a table of a lamina's fields, which
     completes from the material before, or of ``inner``, ``outer`` and ``exponent``."""
     ply_angles_deg: Annotated[tuple[tuple[str, tuple[float, ...]], ...], PlyAngles()] = ((ON_EVERY_WALL, (30.0,) * 6),)
@@ -125,15 +126,15 @@ class BeamConfig:
     taper: Positive = 1.0
     shear: Annotated[str, THEORY] = "higher_order"
     shear_flow: Annotated[str | None, FLOW] = None
-    """Around the closed cell; None: that of the blade's model, "consistent", or "thesis" in the thesis'."""
+    """Shear flow around the closed cell. None: that of the model, which is "consistent", or "thesis" in the thesis' model."""
     steady_state: Annotated[str | None, STEADY_STATE] = None
-    """What the turning blade vibrates about; None: "nonlinear", or the blade at rest in the thesis' model, which has no other."""
+    """The steady state about which the turning blade vibrates. None: "nonlinear"; the thesis' model has only the blade at rest."""
     terms: Annotated[int | None, TERMS] = None
     """Trial functions of each field along the span; None: 16, or 10 in the thesis' model."""
     discretisation: Annotated[str, DISCRETISATION] = "galerkin"
     """What fields are made of along the span: "galerkin", polynomials over all of it, or "finite-elements"."""
     elements: Annotated[int | None, ELEMENTS] = None
-    """Finite elements along the span, at least; None: 12."""
+    """Least number of finite elements along the span. None: 12."""
     element_order: Annotated[int | None, ELEMENT_ORDER] = None
     """Polynomial order of a finite element; None: 4."""
     mesh: Annotated[tuple[float, ...] | None, MESH] = None
@@ -145,12 +146,12 @@ class BeamConfig:
     chord_table: Annotated[Steps | None, TABLE, InsteadOf("taper", 1.0)] = None
     """Size along the span in place of ``taper``: pairs of the share of the span and the size over that of the root."""
     temperature: Annotated[float | None, BLADE_KELVIN] = None
-    """K, of the blade and its patches. None: that at which all data hold, and nothing is strained; beside a difference that of
-    reference."""
+    """K, of the blade and its patches. None: the temperature at which all data hold and nothing is strained; with a
+    ``temperature_difference``, the ``reference_temperature``."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of ``temperature``: pairs of the share of the span, from 0 to 1, and K."""
     temperature_difference: Annotated[float, DIFFERENCE] = 0.0
-    """K: at the greatest y of each section (the top wall) less that at its least, straight in between."""
+    """K: temperature at the greatest y of each section (the top wall) minus that at the least y, linear in between."""
     reference_temperature: Annotated[float, BLADE_KELVIN] = ROOM
     """K: at which the blade is free of thermal strain."""
     tip_springs: Annotated[tuple[float, ...] | None, SPRINGS] = None
@@ -184,7 +185,7 @@ class BeamConfig:
             return BoxSection(self.width, self.depth, self.thickness)
         except Refused as refused:
             name = refused.name.replace("section", "blade.beam", 1)  # whose numbers these are
-            raise Refused(name, refused.value, refused.allowed, asked(float(refused.value), self.depth)) from None
+            raise Refused(name, refused.value, refused.allowed, in_millimetres(float(refused.value), self.depth)) from None
 
     def build(self, layout: PatchLayout | None = None, model: str = "blade") -> RotatingBeam:
         """The blade in a ``BladeConfig``'s model, with the inlays of passive patches when a layout is given."""
@@ -244,31 +245,31 @@ class BladeConfig:
     beam: BeamConfig = field(default_factory=BeamConfig)
     patches: PatchLayout = field(default_factory=PatchLayout)
     model: Annotated[str, MODEL] = "blade"
-    """"blade": the blade as it is; "thesis": the thesis' world whole, in which its tables and figures are reproduced."""
+    """"blade": the blade as it is; "thesis": all of the thesis' assumptions, with which its tables and figures are reproduced."""
     speed: Annotated[float, Number(ge=0.0, unit="rad/s")] = 200.0
     """rad/s."""
     modes: Whole = 11
-    """Modes of the plant that controllers are designed for: what a pretwisted blade's tip displacement and voltages need (thesis
-    Fig. 5.2)."""
+    """Number of modes of the plant that controllers are designed for: as many as a pretwisted blade's tip displacement and voltages
+    need (thesis Fig. 5.2)."""
     gyroscopic: Annotated[bool, Flag()] = True
     damping_ratio: Annotated[float, Number(ge=0.0, lt=1.0)] = 0.01
     """Of every mode."""
     effort_weight: Annotated[float, Number(ge=1e-9, le=1e9)] = 0.5
     """ρ in R = ρ FᵀK⁻¹F: with ½, uᵀRu is the energy (J) that the actuators store in the blade at rest."""
     strain_limit: Annotated[str, STRAIN_LIMIT] = "vibration"
-    """Which strain fails the blade where it exceeds what its patches are rated for: that of "vibration" alone, or the "total", with
-    the steady state's."""
+    """The strain that must not exceed what the patches bear: that of "vibration" alone, or the "total", which includes the steady
+    state's. Beyond it the blade fails."""
     white_load: Annotated[float, Number(ge=0.0, le=1e6, unit="N/m")] = 3.0
-    """N/m on a blade whose reference load is 30 N/m, and in proportion to it: standard deviation, in lag and in flap, of the white
-    line load of each interval."""
+    """N/m: standard deviation, in lag and in flap, of the white line load of each interval, for a blade whose reference load is
+    30 N/m; it is scaled in proportion to the reference load."""
     reference_load: Annotated[float | None, Number(ge=1e-9, le=1e6, unit="N/m")] = None
-    """N/m: what stands for 30 N/m of a scenario, by which all its loads, the white one and the sensors' range are scaled. None: 30
-    on a box of the thesis' size, on any other blade five times what its patches can hold (``beamenv.blade.held_load``)."""
+    """N/m: the load that stands for 30 N/m of a scenario. All loads, the white one and the sensors' range are scaled by it. None:
+    30 for a box of the thesis' size; for any other blade, five times what its patches can hold (``beamenv.blade.held_load``)."""
     sensor_noise_fraction: Annotated[float, Number(ge=0.0, le=100.0)] = 0.02
     """Standard deviation of one sample over the sensors' full scale."""
     sensor_full_scale: Annotated[float | None, Number(ge=1e-15, le=1e6, unit="A")] = None
-    """A: the range of the data acquisition, and with it its noise, where patches move but the instrument stays; None fits it to
-    the blade's largest current after a sudden reference load."""
+    """A: the range of the data acquisition, which also sets its noise. Give it to keep the instrument while patches move. None: by
+    the largest current that a sudden reference load causes."""
     voltage_limits: Annotated[tuple[float, float], VOLTAGES] = (-1500.0, 1500.0)
     """V, as in the thesis; the data sheet of the MFC has −500 … 1500 V."""
     sensors: Annotated[tuple[Sensor, ...], Variants("kind", SENSORS)] = ()
@@ -278,13 +279,13 @@ class BladeConfig:
     """Where further loads act on the true blade; a scenario with loads of its own fills this in, and says how large they are."""
     electronics: ElectronicsConfig = field(default_factory=ElectronicsConfig)
     truth_modes: Annotated[int | None, Count()] = None
-    """Modes of the plant that moves; None: every one up to the Nyquist frequency π/``control_interval``, and no fewer than
+    """Number of modes of the plant that moves. None: all up to the Nyquist frequency π/``control_interval``, and no fewer than
     ``modes``; in the thesis' model ``modes``."""
     control_interval: Annotated[float, Number(ge=1e-6, le=1.0, unit="s")] = 0.5e-3
     """s: 1.4 rad, or between four and five samples a period, of the eleventh mode (2.7 krad/s)."""
 
     def __post_init__(self) -> None:
-        check_units(self)
+        check_units(self.beam)
         checked_flow(self.model, self.beam.shear_flow, "beam.shear_flow")
         check_held_and_heated(self.model, self.beam, "blade.beam")
         sheets = (group.patch for side in SIDES for group in self.patches.groups(side))

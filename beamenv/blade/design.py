@@ -13,7 +13,7 @@ from beamenv.plant.plant import Plant
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Design:
-    """The design plant and what it was built from; the blade that really turns may be another one, which is not in here."""
+    """The design plant and the blade that it was built from. The blade that really turns may differ, and is not part of this."""
 
     plant: Plant
     """Of the design's ``modes`` modes, without electronics."""

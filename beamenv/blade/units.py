@@ -8,28 +8,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamenv.configuration import Refused
+from beamenv.configuration.sentence import in_millimetres
+from beamenv.structure.sizes import THICKEST, WIDEST
 from beamenv.structure.walls.graded import FunctionallyGraded
 from beamenv.structure.walls.materials import MODULI, Lamina
-
-if TYPE_CHECKING:
-    from beamenv.blade.config import BeamConfig, BladeConfig
-
-LONGEST = 250.0
-"""m: the longest rotor blades, of wind turbines, have some 150."""
-
-WIDEST = 20.0
-"""m: the chord of those is below 8."""
-
-THICKEST = 0.25
-"""m, of a wall or a solid strip: at the root of those, laminates are 0.15 thick."""
-
-THICKEST_SHEET = 0.02
-"""m: piezoelectric sheets have tenths of a millimetre, stacked plates some."""
 
 SLENDEREST = 2000.0
 """Span over the section's larger size: wind turbines' blades have 20, a wire of 1 mm and 1 m has 1000."""
@@ -37,22 +24,24 @@ SLENDEREST = 2000.0
 SOFTEST = 1e6
 """Pa: that of soft rubber, and above any material's in GPa; any metal's in MPa is below."""
 
-LIGHTEST, HEAVIEST = 25.0, 25_000.0
-"""kg/m³: between the lightest foams of sandwiches, which have 30, and osmium with 22 600; in g/cm³ all would be below 25."""
+LIGHTEST = 25.0
+"""kg/m³: below the lightest foams of sandwiches, which have 30; in g/cm³ all densities would be below it."""
+
+LEAST = {**dict.fromkeys(MODULI, SOFTEST), "density": LIGHTEST}
+"""Of a lamina, which as such may be softer and lighter."""
 
 RADIAN_STEP, RADIAN_DIGITS = np.pi / 36.0, 5e-5
 """Angles of whole multiples of 5°, printed in radians to four digits: so is hardly any angle in degrees."""
 
 
-def check_units(config: BladeConfig) -> None:
-    """``ValueError`` of one sentence, with the unit that may have been meant, for a number that no blade has.
+def check_units(beam: Any) -> None:
+    """``ValueError`` of one sentence, with the unit that may have been meant, for a number of a ``BeamConfig`` that no blade has.
 
     ``UserWarning`` where angles look like radians, which they may all the same not be.
     """
-    beam = config.beam
-    for path, value, most in [*_lengths(beam), *_sheets(config)]:
+    for path, value, most in _sizes(beam):
         if value > most:
-            raise Refused(path, value, f"at most {most:g} (m)", asked(value, most))
+            raise Refused(path, value, f"at most {most:g} (m)", in_millimetres(value, most))
     _check_slender(beam)
     for path, lamina in laminae(beam.material):
         _check_density(f"beam.{path}", lamina)
@@ -78,9 +67,8 @@ def laminae(material: str | Lamina | FunctionallyGraded) -> list[tuple[str, Lami
     return [(path, each) for path, each in parts if isinstance(each, Lamina)]
 
 
-def _lengths(beam: BeamConfig) -> Iterator[tuple[str, float, float]]:
-    """Paths of lengths, themselves and what they are at most, m."""
-    yield from (("beam.length", beam.length, LONGEST), ("beam.hub_radius", beam.hub_radius, LONGEST))
+def _sizes(beam: Any) -> Iterator[tuple[str, float, float]]:
+    """Paths of a section's lengths, themselves and what they are at most, m."""
     home, section = _section(beam)
     for name in ("width", "depth", "chord"):
         yield f"{home}.{name}", getattr(section, name, 0.0), WIDEST
@@ -92,48 +80,36 @@ def _lengths(beam: BeamConfig) -> Iterator[tuple[str, float, float]]:
         yield f"{home}.thicknesses.{wall}", thickness, THICKEST
 
 
-def _section(beam: BeamConfig) -> tuple[str, Any]:
+def _section(beam: Any) -> tuple[str, Any]:
     return ("beam", beam) if beam.section is None else ("beam.section", beam.section)
 
 
-def _size(beam: BeamConfig) -> float:
+def _size(beam: Any) -> float:
     """m: the larger of what the section extends over along x and y."""
     if beam.section is None:
         return max(beam.width, beam.depth)
     return float(np.ptp(beam.section.vertices, axis=0).max())
 
 
-def _sheets(config: BladeConfig) -> Iterator[tuple[str, float, float]]:
-    for path, group in config.patches.named_groups():
-        yield from ((f"{path}.length", group.length, LONGEST), (f"{path}.width", group.width, WIDEST))
-        for name in ("thickness", "electrode_spacing"):
-            yield f"{path}.material.{name}", getattr(group.patch, name), THICKEST_SHEET
-
-
-def _check_slender(beam: BeamConfig) -> None:
+def _check_slender(beam: Any) -> None:
     """``ValueError`` where span and section cannot have been given in the same unit."""
     size, (home, section) = _size(beam), _section(beam)
     name = next((each for each in ("chord", "width", "corners", "lines") if hasattr(section, each)), "section")
     if beam.length > SLENDEREST * size:
         most = SLENDEREST * size
         allowed = f"at most {SLENDEREST:g} times the section's size, {most:.4g} (m), by {home}.{name}"
-        raise Refused("beam.length", beam.length, allowed, asked(beam.length, most))
+        raise Refused("beam.length", beam.length, allowed, in_millimetres(beam.length, most))
     if size > beam.length:
-        raise Refused(f"{home}.{name}", size, f"at most the beam's length, {beam.length:g} (m)", asked(size, beam.length))
-
-
-def asked(value: float, most: float) -> str:
-    """What is asked of a length that is more than it can be, m: whether it is that of millimetres."""
-    return " (did you give millimetres?)" if 1e-3 * value <= most else ""
+        raise Refused(f"{home}.{name}", size, f"at most the beam's length, {beam.length:g} (m)", in_millimetres(size, beam.length))
 
 
 def _check_density(path: str, lamina: Lamina) -> None:
-    if not LIGHTEST <= lamina.density <= HEAVIEST:
-        meant = " (did you give g/cm³?)" if 0.5 < lamina.density < LIGHTEST else ""
-        raise Refused(f"{path}.density", lamina.density, f"a number from {LIGHTEST:g} to {HEAVIEST:g} (kg/m³)", meant)
+    if lamina.density < LIGHTEST:
+        meant = " (did you give g/cm³?)" if lamina.density > 0.5 else ""
+        raise Refused(f"{path}.density", lamina.density, f"at least {LIGHTEST:g} (kg/m³)", meant)
 
 
-def _warn_of_radians(beam: BeamConfig) -> None:
+def _warn_of_radians(beam: Any) -> None:
     given = {f"ply_angles_deg.{wall}": angles for wall, angles in beam.ply_angles_deg}
     given |= {"pretwist_deg": (beam.pretwist_deg,), "presetting_deg": (beam.presetting_deg,)}
     for name, angles in given.items():

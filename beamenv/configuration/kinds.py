@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from beamenv.configuration.sentence import NAMES, an
+from beamenv.configuration.sentence import METRES, NAMES, an
 
 JsonSchema = dict[str, Any]
 
@@ -64,8 +64,9 @@ class Kind(ABC):
         """The validation with one sentence for all that it refuses."""
         inner = core_schema.nullable_schema(self.core()) if optional else self.core()
         allowed = f"None or {self.allowed}" if optional else self.allowed
-        names = {NAMES: list(getattr(self, "names", ()))}
-        return core_schema.custom_error_schema(inner, "allowed", custom_error_message=allowed, custom_error_context=names)
+        most = getattr(self, "le", None) if getattr(self, "unit", "") == "m" else None
+        context = {NAMES: list(getattr(self, "names", ())), METRES: most}
+        return core_schema.custom_error_schema(inner, "allowed", custom_error_message=allowed, custom_error_context=context)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return self.schema(type(None) in get_args(source))

@@ -15,6 +15,9 @@ CLASS_EXPECTED = {"dataclass_exact_type": "class_name", "is_instance_of": "class
 NAMES = "names"
 """Where a complaint has the names of which one is allowed."""
 
+METRES = "metres"
+"""Where a complaint has the largest length that is allowed."""
+
 LONGEST = 160
 """Characters of a value that are shown."""
 
@@ -76,7 +79,15 @@ def sentence(error: ValidationError, path: str, known: Sequence[str]) -> ValueEr
         if isinstance(cause, Refused):
             return Refused(joined(where, cause.name), cause.value, cause.allowed, cause.meant)
         return ValueError(str(cause))
-    return Refused(where, first["input"], _allowed(first), meant(first["input"], first.get("ctx", {}).get(NAMES, ())))
+    value, context = first["input"], first.get("ctx", {})
+    hint = meant(value, context.get(NAMES, ())) or in_millimetres(value, context.get(METRES))
+    return Refused(where, value, _allowed(first), hint)
+
+
+def in_millimetres(value: Any, most: float | None) -> str:
+    """What is put behind a length of more metres than it can have: whether they are millimetres."""
+    lies = most is not None and isinstance(value, (int, float)) and 1e-3 * value <= most < value
+    return " (did you give millimetres?)" if lies else ""
 
 
 def _is_member(error: ErrorDetails) -> bool:

@@ -52,11 +52,11 @@ Rows = NDArray[np.int64]
 
 
 class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
-    """``num_envs`` blades, each in an episode of its own: ``RotatingBeamEnv`` on the same stepping kernel.
+    """``num_envs`` blades, each in an episode of its own: a batch of ``RotatingBeamEnv`` with the same stepping kernel.
 
-    In the scenarios with several plants (`off-speed`, `off-model`) every episode draws its own from one bank, in `spin-up` each
-    blade is at its own time of the spin-up, and `delay` and `failure` draw faults blade by blade; ``rotor_speed`` (N,) and
-    ``design_state`` (N, d) are those of each blade.
+    In scenarios with several plants (`off-speed`, `off-model`) every episode draws its plant from one bank. In `spin-up` each
+    blade is at its own time of the spin-up; `delay` and `failure` draw faults blade by blade. ``rotor_speed`` (N,) and
+    ``design_state`` (N, d) hold the values of each blade.
 
     ```python
     >>> import gymnasium, beamenv
@@ -71,10 +71,10 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
     ``spread`` are those of ``RotatingBeamEnv``; the others are
 
     - `num_envs`: how many blades, default 1.
-    - `dtype`: None, the default, steps with 64 bits and has spaces of `"float32"`, as a blade alone has. `"float64"` has these of
-      64 bits too. `"float32"` steps with 32 bits, everything that is returned included: about twice as fast. With seeds of
-      its own each blade then meets the same episode, and all that is returned agrees within 10⁻⁴ of its largest; with one seed for
-      the batch the noise is drawn with 32 bits and is another.
+    - `dtype`: with None, the default, the batch steps with 64 bits and has spaces of `"float32"`, as a single blade has. With
+      `"float64"` the spaces have 64 bits too. With `"float32"` it also steps with 32 bits and returns only such numbers: about
+      twice as fast. If each blade has its own seed, the episodes are then the same, and results agree within 10⁻⁴ of the largest;
+      with one seed for the batch, noise is drawn with 32 bits and differs.
     - `autoreset_mode`: an `AutoresetMode` or its value. `"NextStep"` (Gymnasium's own default): the step after the last one of an
       episode ignores the action, begins the next episode and returns its first observation with reward 0. `"SameStep"` (what
       Stable-Baselines3 expects): the last step returns the first observation and info of the next episode, and those of the
@@ -82,17 +82,17 @@ class RotatingBeamVectorEnv(Specified, OfTask, SeededVectorEnv):
       has ended must begin another one by `reset(options={"reset_mask": mask})`, with a mask (N,) of bools, before the next step.
     - `max_episode_steps`: a time limit in control intervals, if it is to be shorter than `duration`.
     - `render_mode`: None or `"rgb_array"`; `render_index`: which blade is drawn, or a sequence of several. `render` returns a
-      tuple of one picture for each of them. None, the default, is all blades, as Gymnasium's wrappers want it; a batch of more
-      than 64 must be told which, for each takes 20 MB and 40 ms a picture.
+      tuple of one picture for each of them. None, the default, draws all blades, as Gymnasium's wrappers expect. A batch of more
+      than 64 needs a choice, because each drawn blade takes 20 MB, and 40 ms a picture.
 
     **Seeds.** `reset(seed=7)` makes one generator for the whole batch: fast. `reset(seed=[7, 8, ...])`, one for each blade,
     gives each blade its own, and with it exactly the load cases and noise, bit for bit, that `RotatingBeamEnv` has after
-    `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. None among them leaves a blade the generator
-    that it has. `reset()` never re-seeds. `np_random` and `np_random_seed` are then tuples, one for each blade.
+    `reset(seed=7)`: now and in its later episodes, whatever else is in the batch. With None among the seeds, that blade keeps its
+    generator. `np_random` and `np_random_seed` are then tuples, one entry for each blade. `reset()` never re-seeds.
 
-    **Info.** `volts` (N, m) asked for, after saturation, `tip_displacement` (N, 2), `energy`, `effort` and `cost_increment` (N,),
-    each with Gymnasium's mask `_volts`, …. `reset`, and a step with which blades begin another episode, tell of these the
-    `static_stretch`, `static_untwist`, `static_strain`, `static_strain_at` (N,) and `note` of `RotatingBeamEnv` too.
+    **Info.** `volts` (N, m), asked for, after saturation; `tip_displacement` (N, 2); `energy`, `effort` and `cost_increment` (N,).
+    Each has Gymnasium's mask, `_volts` and so on. For blades that begin an episode, in `reset` or in a step, there are also
+    `static_stretch`, `static_untwist`, `static_strain`, `static_strain_at` (N,) and `note`, as in `RotatingBeamEnv`.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 50, "autoreset_mode": AutoresetMode.NEXT_STEP}

@@ -76,7 +76,7 @@ class RollingHistory:
 
 
 class SensorHistory(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
-    """Observes the last ``length`` readings and own voltages in place of the last reading; see ``RollingHistory``.
+    """Shows the last ``length`` readings and voltages instead of the last reading alone; see ``RollingHistory`` for their order.
 
     - `env`: a `RotatingBeamEnv` with normalised units, under no wrapper that changes its readings.
     - `length`: instants shown, default 12: at 0.5 ms they cover 6 ms, a sixth of the slowest mode's period and

@@ -27,20 +27,21 @@ Layout = Mapping[Side, Positions | Drawn]
 
 
 class PlacementWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
-    """Puts the actuators and the sensors of a ``RotatingBeamEnv`` elsewhere.
+    """Moves the actuators and the sensors of a ``RotatingBeamEnv``.
 
-    - `env`: the environment; `actuators`, `sensors`: what to do with each side, as ``beamenv.blade.layouts.resolve`` takes it: None
-      (left where they are), positions in metres from the root, a number of patches (equally spaced), a name ("uniform",
-      "thesis-table-6.3" of actuators, "thesis-table-6.4" of sensors, "optimal", which is worked out once), or a range
-      {"low": …, "high": …, "count": …} to draw from at each reset.
+    - `env`: the environment.
+    - `actuators`, `sensors`: where they are to be, as in ``beamenv.blade.layouts.resolve``: None (left in place), positions in
+      metres from the root, a number of patches (equally spaced), a name ("uniform", "thesis-table-6.3" for actuators,
+      "thesis-table-6.4" for sensors, "optimal", which is computed once), or a range {"low": …, "high": …, "count": …} from which
+      each reset draws.
 
     Spaces follow the number of patches. `reset(options={"layout": …})` changes the layout, from this episode on, to a name or a
-    mapping {"actuators": …, "sensors": …}, with as many patches as before. `info["layout"]` tells the positions.
-    `unwrapped.plant` and `unwrapped.design_plant` are those of the layout: build controllers from them after `reset`. The data
+    mapping {"actuators": …, "sensors": …}, with as many patches as before. `info["layout"]` has the positions.
+    `unwrapped.plant` and `unwrapped.design_plant` belong to the layout: build controllers from them after `reset`. The data
     acquisition stays the same when sensors move: an observation of 1 is the same current wherever they are.
 
-    Apply it next to the environment, before wrappers that look at its spaces or its plant. Raises ValueError for a layout that
-    does not fit the blade; nothing has changed then.
+    Apply it directly to the environment, before wrappers that look at its spaces or its plant. Raises ValueError for a layout
+    that does not fit the blade, and changes nothing then.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], actuators: Any = None, sensors: Any = None) -> None:
@@ -87,9 +88,9 @@ class VectorPlacementWrapper(VectorWrapper):  # in Gymnasium 1.2 it takes no typ
     """``PlacementWrapper`` for the batched environment: one layout for all blades, or one for each.
 
     - `env`: a `RotatingBeamVectorEnv`; `actuators`, `sensors`: as for `PlacementWrapper`.
-    - `layouts`: instead, one name or mapping {"actuators": …, "sensors": …} for each blade, or one for all.
-    - `bank`: how many layouts are drawn from a range at each `reset`, default 16; blade k has layout k modulo `bank`. (A plant
-      takes some hundredths of a second to build.) An autoreset keeps the layout.
+    - `layouts`: instead of these two, a name or mapping {"actuators": …, "sensors": …} for each blade, or one for all.
+    - `bank`: number of layouts drawn from a range at each `reset`, default 16; blade k has layout k modulo `bank`. (A plant takes
+      some hundredths of a second to build.) An autoreset keeps the layout.
 
     `reset(options={"layout": …})` takes a name or a mapping for all blades, or a sequence of one for each; a side that is left
     out goes back to where `env` had it. `info["layout"]` has arrays (N, actuators) and (N, sensors). `unwrapped.plant` is the

@@ -126,8 +126,8 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
     ## Scenarios
 
-    A scenario is what may happen to a blade in an episode: loads, noises, and what is wrong with it. Those with names are
-    TOML files, each an environment of its own: `beamenv/RotatingBeam-overload-v0`. What is not named is as in the default.
+    A scenario says what may happen to a blade in an episode: loads, noises, and faults. Each named scenario is a TOML file and
+    has its own environment id, such as `beamenv/RotatingBeam-overload-v0`. What the table does not name is as in `nominal`.
 
     | Scenario     | What it has                                                                                            |
     |--------------|--------------------------------------------------------------------------------------------------------|
@@ -141,16 +141,17 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     | `failure`    | one actuator dead; one sensor dead (noise alone), or biased by 5 … 20 % of full scale                  |
     | `rotor`      | 6, 4, 2, 1 N/m, times 0.5 … 1.5, at 1 … 4 per revolution; turbulence of 5 N/m and 20 ms; pulses, releases |
     | `overload`   | steps of 500 N/m: the actuators saturate, the sensors clip                                             |
-    | `solid`      | the blade is a solid of three dimensions (finite elements, 11 modes), the design plant is the beam's   |
+    | `solid`      | the blade is a three-dimensional finite-element model with 11 modes, the design plant is the beam's    |
     | `solid-20`   | the same solid with 20 modes                                                                           |
     | `mid-failure` | an actuator or a sensor dies, 0.05 … 0.3 s into the episode                                         |
     | `gust-speed` | rotor speed wanders by 5 % (one standard deviation), up to 2 Hz; `rotor_speed` does not show it          |
     | `drift`      | up to 15 % heavier and 20 % softer within the episode, from a drawn instant on                         |
     | `unknown-everything` | speed, plies, mass, hysteresis, delay, lost readings, a weak actuator, a bias, rotor loads: all mild |
-    | `off-speed-failure`, `delay-off-model`, `delay-failure`, `hysteresis-rotor` | both of what the name says               |
+    | `off-speed-failure`, `delay-off-model`, `delay-failure`, `hysteresis-rotor` | both faults that the name says           |
     | `long-delay`, `two-dead-actuators`, `biased-sensor` | voltages 4 control intervals late; two dead; by 30 % of full scale |
 
-    A file of one's own (`scenario="gusts.toml"`) or a dictionary may depart from any of them by `preset`, table by table:
+    Your own file (`scenario="gusts.toml"`) or dictionary may start from any of them, named as its `preset`, and change it table
+    by table:
 
     ```python
     >>> import gymnasium, beamenv
@@ -158,9 +159,9 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
 
     ```
 
-    Two attributes are for controllers that are told more than the readings: `rotor_speed`, rad/s, what a tachometer shows now,
-    and `design_state`, the true state in the coordinates of the design plant, by displacements and velocities. (Of a solid: mode
-    by mode, as far as the beam has a counterpart.)
+    Two attributes are for controllers that are told more than the readings: `rotor_speed`, rad/s, is what a tachometer shows now;
+    `design_state` is the true state in the coordinates of the design plant, found from displacements and velocities. (In `solid`
+    and `solid-20` it is found mode by mode, as far as the beam has a mode like it.)
 
     ## Episode End
 
@@ -187,22 +188,22 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
       the changes in `blade`), or a whole `BladeConfig`; default: the true one.
     - `scenario`: a name in `beamenv.SCENARIOS`, the path of a `.toml` file, a dictionary of fields (with "preset" to depart from
       a named one), or a `Scenario`.
-    - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, in which 1 % of damping alone leaves
-      40 % of it. An environment's spec holds its number of steps: `gym.make(env.spec, duration=1.0, max_episode_steps=-1)` lets
-      it be longer.
+    - `duration`: of an episode in s, default 0.5: some 14 periods of the slowest mode, after which 1 % of damping alone leaves
+      40 % of its amplitude. An environment's spec holds its number of steps; for longer episodes use
+      `gym.make(env.spec, duration=1.0, max_episode_steps=-1)`.
     - `physical_units`: volts and amperes in place of normalised numbers; default False.
     - `dtype`: of both spaces and the observations, `"float32"` or `"float64"`; default `"float32"`, which agents' networks
       have. What is stepped, and info, has 64 bits always.
-    - `plant`: a model of one's own in the place of a blade: a `Plant`, the path of a `.npz`, `.mat` or `.json` file, a table of
-      matrices, or a list of several, one of which moves in each episode. Episodes last as many times longer as its first mode is
-      slower than the blade's, and loads and drive are scaled to it; pictures show its time histories alone. `design` is a model
-      then too.
-    - `spread`: of a `plant`, a table of relative half widths, "frequency", "damping", "actuator" and "sensor": each episode has one
-      of as many plants within it as `scenario`'s bank holds. Agents train on others than the ones they are judged on.
+    - `plant`: your own model instead of a blade: a `Plant`, the path of a `.npz`, `.mat` or `.json` file, a table of matrices, or a
+      list of several, one of which moves in each episode. Episodes are longer in the ratio by which its first mode is slower than
+      the blade's, and loads and drive are scaled to it; pictures show only its time histories. `design` is a model then too.
+    - `spread`: how much a `plant` varies: a table of relative half widths, "frequency", "damping", "actuator" and "sensor". Each
+      episode has one of the plants within it, of which `scenario`'s bank holds a number. Agents are trained on other plants than
+      those they are judged on.
     - `render_mode`: None, `"rgb_array"` (pictures 540 × 960 from `render`) or `"human"` (a window that shows every step); both
-      need `pip install "beamenv[render]"`. 50 pictures a second, one for each step, are 40 times slower than life. Deflections are
-      magnified by the largest that the scenario brings about without control. The title names scenario and seed, and before them
-      the controller if the attribute `controller` does.
+      need `pip install "beamenv[render]"`. There is one picture for each step; at 50 pictures a second they run 40 times slower
+      than real time. Deflections are magnified so that the largest without control, in this scenario, fits. The title names
+      scenario and seed, and before them the controller if the attribute `controller` is set.
 
     The control interval is 0.5 ms, a field of the configuration: more than four samples a period of the 11th mode
     (2.7 krad/s), the last one retained.
@@ -212,7 +213,7 @@ class RotatingBeamEnv(Specified, OfTask, gymnasium.Env[Any, Any]):
     out is drawn as ever. `reset(options={"initial_state": x})` starts in the state x (n,), in energy coordinates, or in the
     blade's own states (the first of them) with the electronics at rest.
 
-    A bad argument, option or action raises ValueError in one sentence, and nothing has changed.
+    A bad argument, option or action raises ValueError with one sentence, and changes nothing.
 
     ## Info
 

@@ -25,8 +25,8 @@ Array = NDArray[Any]
 class BladeVecEnv(VecEnv):
     """``num_envs`` blades for an agent of Stable-Baselines3; ``arguments`` are those of ``RotatingBeamVectorEnv``.
 
-    Observations and rewards are the environment's; an agent without memory wants ``VecFrameStack`` around it. ``set_options`` takes
-    the options of the next reset, one dictionary for all blades or a list of one for each.
+    Observations and rewards are the environment's; an agent without memory needs ``VecFrameStack`` around it. ``set_options`` takes
+    the options of the next reset: one dictionary for all blades, or a list with one for each.
     """
 
     def __init__(self, num_envs: int = 64, seed: int | None = None, **arguments: Any) -> None:

@@ -47,8 +47,8 @@ Step = tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor, dict[str, A
 class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
     """``num_envs`` blades on a device: ``RotatingBeamVectorEnv`` whose observations, rewards, ends and info are torch's tensors.
 
-    Noise and load cases are drawn on the device, and episodes begin there: a step copies nothing to the host nor from it, and
-    waits for nothing.
+    Noise and load cases are drawn on the device, and episodes begin there: a step copies nothing to or from the host, and does not
+    wait for the device.
 
     ```python
     >>> import beamenv, torch
@@ -67,15 +67,15 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
     - `dtype`: `"float32"` (the default) or `"float64"`: the numbers of the spaces and of what is stepped.
     - `differentiable`: keep the graph from actions to all that follows of them, across steps, until `detach()`. Otherwise steps
       run without gradients. Where an episode begins, nothing passes from the one before.
-    - `graph`: on a GPU capture the step as a CUDA graph, and replay it: to start the kernels of a small batch one by one takes
-      longer than they do.
+    - `graph`: on a GPU, capture the step as a CUDA graph and replay it. For a small batch, starting the kernels one by one takes
+      longer than running them.
     - `compiled`: trace the step and compile it (TorchInductor; on the processor that takes a C++ compiler): fewer passes over the
       memory, for 5 to 30 s at the first step. With either, steps are the same operations whatever the numbers are; where each
       blade has a seed of its own they are not recorded.
 
     **Actions** are a tensor (N, m) on the device; an array of NumPy, such as the action space samples, is taken too, and copied.
-    On the processor numbers that are not finite are refused; on a GPU nobody looks, which would be to wait for it: such a
-    blade's state is no longer finite either, and its episode terminates.
+    On the processor, numbers that are not finite are refused. On a GPU they are not looked for, because that would mean to wait for
+    the device: the blade's state is then not finite either, and its episode terminates.
 
     **Seeds.** `reset(seed=7)` seeds one generator of torch's on the device. The same seed gives the same episodes on the same
     kind of device with the same `dtype`, `num_envs`, arguments and release of torch; they are not NumPy's, but have the same
@@ -85,8 +85,8 @@ class TorchRotatingBeamVectorEnv(OfTask, SeededVectorEnv):
 
     **Autoreset.** As `RotatingBeamVectorEnv`'s; but every step tells the same names: with `"SameStep"` also `final_obs` (N, p) and
     `final_info`, with both that begin episodes also `static_stretch`, …, and the masks `_final_obs`, `_static_stretch`, … say for
-    which blades they hold. On a GPU all blades begin another episode in every step, of which a mask keeps those whose time it is:
-    that takes less than to wait for the device. With `"Disabled"` a step of blades whose episode is over is refused on the
+    which blades they hold. On a GPU every step begins another episode for all blades, and a mask keeps those that are due: that
+    takes less time than to wait for the device. With `"Disabled"`, a step of blades whose episode is over is refused on the
     processor; on a GPU they go on.
 
     **Info** is that of `RotatingBeamVectorEnv` without `note` and `assumed`, which are text: see `task.note`. The masks of what

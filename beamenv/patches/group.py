@@ -8,7 +8,9 @@ import numpy as np
 
 from beamenv.configuration import Choice, Flag, Number, Patches, Refused, Text, configuration
 from beamenv.configuration.numbers import DEGREES
+from beamenv.configuration.sentence import in_millimetres
 from beamenv.patches.material import FIBRE_ANGLE_DEG, PATCH_MATERIALS, PatchMaterial
+from beamenv.structure.sizes import SPAN, WIDTH
 from beamenv.structure.walls.inlay import FACE, Inlay
 
 Positions = tuple[float, ...]
@@ -25,9 +27,9 @@ class PatchGroup:
     """Root-side edges, m from the root, or a number of patches to be spaced equally over 0 … ``outermost``."""
     material: Annotated[str | PatchMaterial, Choice(PATCH_MATERIALS, PatchMaterial)] = "MFC"
     """A name or a sheet; in a dictionary or file also a table of a sheet's fields, which completes from the one before."""
-    length: Annotated[float, Number(gt=0.0, unit="m")] = 0.085
+    length: Annotated[float, SPAN] = 0.085
     """m along the span: the active area of an M-8557-P1."""
-    width: Annotated[float, Number(gt=0.0, unit="m")] = 0.057
+    width: Annotated[float, WIDTH] = 0.057
     """m along the contour."""
     wall: Annotated[str, Text()] = "top"
     face: Annotated[str, FACE] = "outer"
@@ -57,7 +59,7 @@ class PatchGroup:
         last = self.outermost * beam_length - self.length
         tolerance = 1e-9 * beam_length
         if last < 0.0:
-            meant = " (did you give millimetres?)" if 1e-3 * self.length <= self.outermost * beam_length else ""
+            meant = in_millimetres(self.length, self.outermost * beam_length)
             raise Refused("blade.patches.length", self.length, f"at most {self.outermost} of the {beam_length:.6g} m span", meant)
         patches = self.positions
         apart = f"at least one patch length, {self.length:.6g} m, apart so that patches do not overlap"

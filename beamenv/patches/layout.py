@@ -14,6 +14,7 @@ from beamenv.configuration.composite import Items
 from beamenv.configuration.kinds import JsonSchema
 from beamenv.patches.group import PatchGroup, Positions
 from beamenv.patches.material import MFC_STRAIN, PATCH_MATERIALS, PatchMaterial
+from beamenv.structure.sizes import SPAN, WIDTH
 from beamenv.structure.walls.inlay import Inlay
 
 Side = Literal["actuators", "sensors"]
@@ -72,9 +73,9 @@ class PatchLayout:
     """Likewise; an empty list: none."""
     material: Annotated[str | PatchMaterial, Choice(PATCH_MATERIALS, PatchMaterial)] = "MFC"
     """Of patches that are in no group, as is what follows."""
-    length: Annotated[float, Number(gt=0.0, unit="m")] = 0.085
+    length: Annotated[float, SPAN] = 0.085
     """m along the span: the active area of an M-8557-P1."""
-    width: Annotated[float, Number(gt=0.0, unit="m")] = 0.057
+    width: Annotated[float, WIDTH] = 0.057
     """m across."""
     passive: Annotated[bool, Flag()] = True
     """Whether the patches' own mass and stiffness count."""

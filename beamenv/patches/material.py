@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamenv.configuration import Number, Refused, checked, configuration
+from beamenv.structure.sizes import SHEET
 from beamenv.structure.walls.curves import DATA_KELVIN, ROOM
 from beamenv.structure.walls.inlay import Inlay
 from beamenv.structure.walls.laminate import Ply, power_integrals
@@ -48,9 +49,9 @@ class PatchMaterial:
     """Free strain along the span per field, m/V (= C/N)."""
     d12: Annotated[float, FreeStrain]
     """Free strain across the span per field, m/V."""
-    thickness: Annotated[float, Number(gt=0.0, unit="m")]
+    thickness: Annotated[float, SHEET]
     """m."""
-    electrode_spacing: Annotated[float, Number(gt=0.0, unit="m")]
+    electrode_spacing: Annotated[float, SHEET]
     """m: between the fingers of an MFC's electrodes, the thickness of a PZT sheet."""
     failure_strain: Annotated[float, Number(gt=0.0, le=1.0, unit="m/m")] = MFC_STRAIN
     """At which it breaks, m/m; an MFC's unless said otherwise. The least of a blade's sheets ends its episodes."""

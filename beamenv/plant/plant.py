@@ -25,7 +25,7 @@ __all__ = ["Plant", "SampledPlant", "drive_limit", "normalised", "sample", "samp
 class Plant(PlantMatrices):
     """Reduced-order blade with patches, or a model of another origin: n states, m voltages, p sensors, k disturbances.
 
-    What it consists of, and in which units, tells ``beamenv.plant.matrices.PlantMatrices``.
+    Its parts and their units are described at ``beamenv.plant.matrices.PlantMatrices``.
     """
 
     @classmethod

@@ -42,7 +42,8 @@ class PlantVariation:
     damping_ratio: Annotated[Pair | None, Range(1e-6, 0.9)] = None
     """Of every mode, drawn on a logarithmic scale; None: the configured one."""
     truth: Annotated[str | None, NameOrFile(NAMES, ENDING)] = None
-    """What moves in place of the beam, alone: a plant file (``beamenv.plant.files``), or the name of one that ships."""
+    """What moves instead of the beam: a plant file (``beamenv.plant.files``), or the name of one that comes with the package.
+    Nothing else varies then."""
     modes: Annotated[int | None, Count()] = None
     """Modes of the true plant; None: the configured number, all up to the Nyquist frequency unless said otherwise, or all that a
     plant file has."""
@@ -52,19 +53,19 @@ class PlantVariation:
     """rad/s: Ω(t) spins up or down from the first to the second over the episode (``spin_up`` of the simulation); nothing else
     varies then."""
     speed_wander: Annotated[float, Number(ge=0.0, le=0.1)] = 0.0
-    """σ over the configured speed: Ω(t) wanders about it within the episode (``Wander`` of the simulation), and no tachometer
-    follows; nothing else varies then."""
+    """σ over the configured speed: Ω(t) wanders about that speed within the episode (``Wander`` of the simulation). A tachometer
+    does not show it. Nothing else varies then."""
     wander_frequency: Annotated[float, Number(ge=1e-3, le=20.0, unit="Hz")] = 2.0
     """Up to which the speed wanders: far below the first mode, so that the steady state follows and sensors do not show it."""
     modulus_drift: Ratio = SAME
-    """Of every modulus of the laminate, over what it was at the start, when it no longer changes; nothing else varies then."""
+    """Every modulus of the laminate at the end of its change, over its value at the start. Nothing else varies then."""
     mass_drift: Ratio = SAME
-    """Of the laminate's density likewise."""
+    """The laminate's density at the end of its change, over its value at the start."""
     temperature: Annotated[Pair | None, Range(100.0, 2000.0, unit="K")] = None
-    """K, of blade and patches as the episode begins; None: that of the configuration, which is also what the design knows. Nothing
+    """K, of blade and patches when the episode begins. None: that of the configuration, for which controllers are designed. Nothing
     else varies then."""
     temperature_change: Annotated[Pair, Range(-500.0, 500.0, unit="K")] = (0.0, 0.0)
-    """K: by how much it has risen at the end of the drift (``Warming`` of the simulation)."""
+    """K: rise of the temperature by the end of the drift (``Warming`` of the simulation)."""
     pyroelectric: Annotated[bool, Flag()] = False
     """Whether sensor patches show that their temperature changes."""
     drift_onset: Annotated[Pair, Range(0.0, 1e6, unit="s")] = (0.0, 0.0)
@@ -153,7 +154,7 @@ class Failures:
     dead_actuators: Natural = 0
     """Actuators that do nothing and store nothing, or less than they should."""
     remaining: Annotated[Pair, Range(0.0, 1.0)] = (0.0, 0.0)
-    """What is left of the effect of an actuator that is not quite dead: the share of its voltage that acts."""
+    """The share of its voltage that still acts in an actuator that is not quite dead."""
     faulty_sensors: Natural = 0
     """Sensors that are dead (noise alone) or biased."""
     biased_share: Share = 0.5
@@ -161,9 +162,9 @@ class Failures:
     bias: Annotated[Pair, Range(0.0, 1.0)] = (0.05, 0.2)
     """Of full scale, of either sign."""
     onset: Annotated[Pair, Range(0.0, unit="s")] = (0.0, 0.0)
-    """s: when actuators and when sensors break, an instant of its own for each; they are sound before."""
+    """s: the instant at which patches break, drawn separately for actuators and for sensors; before it they are sound."""
     either: Annotated[bool, Flag()] = False
-    """Whether it is actuators or sensors that break in an episode, equally likely, instead of both."""
+    """Whether either actuators or sensors break in an episode, with equal chances, instead of both."""
 
     @property
     def drawn_instants(self) -> bool:

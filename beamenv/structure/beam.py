@@ -109,7 +109,7 @@ class RotatingBeam:
     inlays: tuple[InstanceOf[Inlay], ...] = ()
     """Foreign material let into the walls, with its mass and stiffness."""
     temperature: Annotated[float | None, BLADE_KELVIN] = None
-    """K, of the blade and its inlays. None: that at which their data hold, and nothing is strained; beside a difference that of
+    """K, of the blade and its inlays. None: that at which their data hold and nothing is strained; with a difference, that of
     reference."""
     temperature_table: Annotated[Steps | None, TABLE, InsteadOf("temperature", None)] = None
     """Temperature along the span in place of one: pairs of the share of the span, from 0 to 1, and K."""

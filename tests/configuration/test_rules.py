@@ -98,8 +98,11 @@ def test_paths_are_taken_for_their_names():
 
 
 SENTENCES = [
-    (lambda: blade_config(overrides={"beam": {"length": [1.0]}}), "blade.beam.length is [1.0], but must be a positive number (m)."),
-    (lambda: BeamConfig(-1.0), "blade.beam.length is -1.0, but must be a positive number (m)."),
+    (
+        lambda: blade_config(overrides={"beam": {"length": [1.0]}}),
+        "blade.beam.length is [1.0], but must be a number above 0 and at most 250 (m).",
+    ),
+    (lambda: BeamConfig(-1.0), "blade.beam.length is -1.0, but must be a number above 0 and at most 250 (m)."),
     (lambda: replace(BladeConfig(), gyroscopic="no"), "blade.gyroscopic is 'no', but must be True or False."),
     (lambda: blade_config(overrides={"patches": {"passive": "no"}}), "blade.patches.passive is 'no', but must be True or False."),
     (lambda: blade_config(overrides={"beam": {"material": {"E2": -1}}}),
@@ -179,7 +182,7 @@ def test_a_refusal_is_a_value_error():
         ("a.json", "[" * 100_000, "cannot be read"),
         ("a.json", "[1]", r"is \[1\], but must be a table of fields"),
         ("a.json", '{"speed": NaN}', ": blade.speed is nan, but must be zero or a positive number"),
-        ("a.toml", "[beam]\nlength = -1", ": blade.beam.length is -1, but must be a positive number"),
+        ("a.toml", "[beam]\nlength = -1", ": blade.beam.length is -1, but must be a number above 0"),
         ("a.yaml", "", "must be a file that ends in .toml or .json"),
     ],
 )
@@ -231,8 +234,8 @@ def test_a_wall_that_the_section_lacks_is_told_whatever_its_name(wall):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"beam": {"length": 1e6}}, "blade.beam.length is 1000000.0, but must be at most 250 [(]m[)]"),
-        ({"beam": {"width": 1e100}}, "blade.beam.width is 1e[+]100, but must be at most 20 [(]m[)]"),
+        ({"beam": {"length": 1e6}}, "blade.beam.length is 1000000.0, but must be a number above 0 and at most 250 [(]m[)]"),
+        ({"beam": {"width": 1e100}}, "blade.beam.width is 1e[+]100, but must be a number above 0 and at most 20 [(]m[)]"),
         ({"beam": {"taper": 5e-324}}, "beam cannot be computed"),
         ({"beam": {"material": {"G13": 1e100}}}, "thickness is 0.01016, but must be large enough"),
         ({"beam": {"material": {"E1": 1e308}}}, "beam cannot be computed"),

@@ -25,7 +25,7 @@ MISTAKEN = {
     "span in mm": (
         LAB,
         {"beam": {"length": 300.0}},
-        "beam.length is 300.0 (did you give millimetres?), but must be at most 250 (m).",
+        "beam.length is 300.0 (did you give millimetres?), but must be a number above 0 and at most 250 (m).",
     ),
     "short span in mm": (LAB, {"beam": {"length": 100.0}}, "but must be at most 2000 times the section's size, 60 (m)"),
     "strip in mm": (LAB, {"beam": {"section": strip(30.0, 2.0)}}, "beam.section.width is 30.0 (did you give millimetres?)"),

@@ -74,7 +74,10 @@ REFUSED = {
         placed(sensors=(1.32,)),
         r"blade.patches.sensors is \(1\.32,\), but must be .* within 0 and 0\.7 of the 2 m span",
     ),
-    "no room at all": (placed(length=1.5), r"blade.patches.length is 1\.5, but must be at most 0\.7 of the 2 m span"),
+    "no room at all": (
+        placed(length=1.5),
+        r"patches.length is 1\.5 \(did you give millimetres\?\), but must be at most 0\.7 of the",
+    ),
     "unknown material": (placed(material="PVDF"), "blade.patches.material is 'PVDF', but must be one of MFC, PZT"),
     "none": (placed(actuators=0), "blade.patches.actuators is 0, but must be a number of patches, at least one"),
     "minus one": (placed(sensors=-1), "blade.patches.sensors is -1, but must be a number of patches, at least one"),
@@ -88,13 +91,16 @@ REFUSED = {
         placed(actuators="root"),
         "blade.patches.actuators is 'root', but must be a number of patches, at least one, or a list",
     ),
-    "no length": (placed(length=0.0), r"blade.patches.length is 0\.0, but must be a positive number"),
-    "width as text": (placed(width="57 mm"), "blade.patches.width is '57 mm', but must be a positive number"),
+    "no length": (placed(length=0.0), r"blade.patches.length is 0\.0, but must be a number above 0"),
+    "width as text": (placed(width="57 mm"), "blade.patches.width is '57 mm', but must be a number above 0"),
     "wider than the wall, passive or not": (
         lambda: actuation(BLADE, PatchLayout(width=0.3, passive=False)),
-        r"width = 0\.3 m must be positive and at most the top wall's 0\.254 m",
+        r"inlay\.width is 0\.3, but must be positive and at most the top wall's 0\.254 m",
     ),
-    "off the blade": (lambda: patch_force(BLADE, MFC, "top", 1.95, 0.1, 0.05), "must lie on the blade, 0 to 2.0 m"),
+    "off the blade": (
+        lambda: patch_force(BLADE, MFC, "top", 1.95, 0.1, 0.05),
+        r"inlay\.start is 1\.95, but .*its end, 2\.05, on the blade",
+    ),
     "on no wall": (lambda: patch_force(BLADE, MFC, "nose", 0.1, 0.1, 0.05), "wall is 'nose', but must be one wall of the section"),
 }
 

@@ -117,7 +117,10 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path, monkeypatch):
 
 WRONG = [
     ({"tip": None}, "plant.tip is missing."),
-    ({"tips": np.eye(2)}, "plant has no field 'tips': its fields are natural_frequencies, gyroscopic, actuation, charges"),
+    (
+        {"tips": np.eye(2)},
+        "plant has no field 'tips' (did you mean tip?): its fields are natural_frequencies, gyroscopic, actuation, charges",
+    ),
     (
         {"natural_frequencies": [20.0, 10.0]},
         "plant.natural_frequencies is [20.0, 10.0], but must be numbers from 0.001 to 1e+09 (rad/s) that asc",

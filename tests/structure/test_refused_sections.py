@@ -14,7 +14,10 @@ from tests.structure.aluminium import ALUMINIUM, classical
 
 BOX = {"shape": "box", "width": 0.2, "depth": 0.06, "thickness": 0.004}
 REFUSED = {
-    "no such shape": ({"shape": "star"}, r"section\.shape is 'star', but must be one of box, tube, polygon, airfoil"),
+    "no such shape": (
+        {"shape": "star"},
+        r"section\.shape is 'star' \(did you mean strip\?\), but must be one of box, tube",
+    ),
     "a field missing": ({"shape": "box", "width": 0.2}, r"section\.depth is missing"),
     "walls that fill it": ({**BOX, "thickness": 0.07}, r"section\.thickness is 0\.07, but must be below 0\.06 m, where walls meet"),
     "a web beside it": (

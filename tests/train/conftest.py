@@ -15,13 +15,17 @@ from baselines import closed_loop_poles, lqg, lqr, no_control
 
 @pytest.fixture(scope="session")
 def ticking():
-    """Within it the trainers' clock goes on by so many seconds whenever it is read: a budget is a number of steps."""
+    """Within it the trainers' clock goes on by so many seconds whenever it is read: a budget is a number of steps.
+
+    Looks at the policy, which are no part of the training's time, take none.
+    """
 
     @contextmanager
     def clock(seconds):
         with pytest.MonkeyPatch.context() as patch:
             readings = itertools.count()
             patch.setattr("train.learning.session.time", SimpleNamespace(monotonic=lambda: seconds * next(readings)))
+            patch.setattr("train.learning.job.time", SimpleNamespace(monotonic=lambda: 0.0))
             yield
 
     return clock

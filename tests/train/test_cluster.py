@@ -180,7 +180,7 @@ def test_a_cluster_that_does_not_answer_is_told_before_anything_is_written(comma
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(app, [*command, "--cluster", address])
     assert result.exit_code == 2
-    assert result.output.startswith("beamenv: cluster ") and result.output.count("\n") == 1
+    assert result.output.startswith("beamenv: --cluster ") and result.output.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
 
 

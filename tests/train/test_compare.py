@@ -147,7 +147,7 @@ def test_an_interrupted_run_keeps_the_agents_it_has(tmp_path, ticking):
 
 
 def test_a_training_that_was_cut_off_resumes_from_its_checkpoint(tmp_path, monkeypatch, ticking):
-    def cut_off(training, budget, report, keep, elapsed):
+    def cut_off(training, budget, report, keep, elapsed, aside):
         follow(training, budget, lambda progress: None, keep, elapsed=0.9 * budget.seconds)
         raise ValueError("the machine went down")
 

@@ -139,7 +139,7 @@ def test_what_cannot_be_of_a_model_is_one_sentence_before_any_work(tmp_path):
     plant = write(tmp_path / "mine.npz")
     for words, sentence in (
         (("--scenario", "rotor"), "scenario.rotor.harmonics is "),
-        (("--speed", "20"), "speed is 20.0, but must be left out with a plant of one's own"),
+        (("--speed", "20"), "--speed is 20.0, but must be left out with a plant of one's own"),
     ):
         result = CliRunner().invoke(app, ["compare", "--folder", str(tmp_path / "results"), "--plant", plant, *words])
         assert result.exit_code == 2 and result.stderr.startswith(f"beamenv: {sentence}")

@@ -66,7 +66,7 @@ def test_ranges_of_sensors_are_one_for_each_reading(tmp_path):
     command = ["identify", str(data), "--order", "6", "--ensemble", "0", "--folder", str(tmp_path / "mine")]
     short = CliRunner().invoke(app, [*command, "--full-scale", "2"])
     assert (short.exit_code, (tmp_path / "mine").exists()) == (2, False)
-    assert "full_scale is [2.0], but must be 2 numbers, one for each of y1, y2." in short.stderr
+    assert "--full-scale is [2.0], but must be 2 numbers, one for each of y1, y2." in short.stderr
     assert CliRunner().invoke(app, [*command, "--full-scale", "2", "--full-scale", "3"]).exit_code == 0
     assert Plant.from_file(tmp_path / "mine" / "plant.npz").sensor_full_scale.tolist() == [2.0, 3.0]
 

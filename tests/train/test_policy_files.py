@@ -102,7 +102,10 @@ def test_a_folder_without_an_agent_is_refused(tmp_path):
         ({"settings": {"input_gain": 1.0, "held": 0}}, r"settings.held is 0, but must be a whole number not below 1"),
         ({"settings": {"input_gain": float("nan"), "held": 1}}, r"settings.input_gain is nan, but must be a finite number"),
         ({"settings": {"input_gain": True, "held": 1}}, r"settings.input_gain is True, but must be a finite number"),
-        ({"settings": {"input_gain": 1.0, "held": 1, "activation": "gelu"}}, r"settings.activation is 'gelu', but must be one of"),
+        (
+            {"settings": {"input_gain": 1.0, "held": 1, "activation": "gelu"}},
+            r"settings.activation is 'gelu' [(]did you mean relu[?][)], but must be one of",
+        ),
         ({"settings": {"input_gain": 1.0, "held": 1, "squashed": "no"}}, r"settings.squashed is 'no', but must be True or False"),
     ],
 )

@@ -31,6 +31,15 @@ def test_no_number_is_cut_off_on_a_narrow_terminal():
     assert "…" not in narrow
 
 
+def test_a_warning_is_a_sentence_of_the_command(tmp_path):
+    path = tmp_path / "blade.toml"
+    path.write_text("[beam]\npretwist_deg = 0.5236\n")
+    shown = beamenv("frequencies", "--blade", str(path))
+    assert shown.returncode == 0
+    sentence = "beamenv: blade.beam.pretwist_deg is taken for 0.5236 degrees; if these are radians, give 30.\n"
+    assert shown.stderr.decode() == sentence
+
+
 def test_a_reader_that_has_gone_ends_a_command_quietly():
     read, write = os.pipe()
     os.close(read)

@@ -62,7 +62,7 @@ def benchmark(
     progress: Progress | None = None,
     recording: Recording | None = None,
 ) -> BenchmarkTable:
-    """Put controllers through scenarios, and write what came of it to ``folder`` if there is one.
+    """Run controllers in scenarios and return the table of results, which is also written to ``folder`` if one is given.
 
     - ``own``: objects with Stable-Baselines3's ``predict``, or plain functions, by the names they are to have. They are given the
       readings (N, p) of N blades; an SB3 model trained behind ``beamenv.SensorHistory`` is shown what it was trained to see.
@@ -72,16 +72,16 @@ def benchmark(
     - ``seeds``: held-out episodes, equal for every controller.
     - ``runs``: of each agent that many of its training runs, the first ones; all of them if None.
     - ``models``: files of SB3 models. Loading one may run code that is in it: ``trusted`` says that you know where they are from.
-    - ``jobs``: processes, which objects of yours must be able to travel to; with 1, as if left out, everything stays in this one.
+    - ``jobs``: number of parallel processes, to which your objects must be able to travel; by default only this one.
     - ``cluster``: HOST:PORT or ray://HOST:PORT of a Ray cluster whose processes do it, or "local" for one that is started here; as
       many as it has processors if ``jobs`` is left out.
     - ``environment``: further keyword arguments of the environment, such as a "blade".
-    - ``validation``: on the seeds and the bank of plants that contenders are chosen on, in place of those they are compared on.
+    - ``validation``: run on the seeds and the bank of plants for choosing controllers, instead of those for comparing them.
     - ``progress``: called with cells done, their number, and the cell.
     - ``recording``: called as the page's episode is recorded, with controllers done, their number, and the next one's name.
 
-    Of a model of one's own, the "plant" of the ``environment``, what can be had is run, and ``left_out`` of the table says what
-    cannot and why. What is asked for by its name and cannot be had is refused before anything runs.
+    With a model of your own, "plant" in ``environment``, controllers and scenarios that it does not allow are left out; the table's
+    ``left_out`` says why. If you name one of them, it is refused before anything runs.
 
     A folder that holds cells of an earlier run is resumed: a cell is kept unless something it depends on has changed.
     A failure stays in its own cell. Raises ValueError for unknown controllers, untrusted models, fewer than 2 seeds, when

@@ -23,6 +23,7 @@ from train.controllers.shipped import GENERALIST as GENERALIST
 from train.controllers.sources import Classical, Given, ModelFile, Source, Trained
 from train.controllers.tiers import LEARNT as LEARNT
 from train.controllers.tiers import own_tier, told_tier
+from train.learning.recipes import title
 
 ORDER = (*KINDS, "learned", "own")
 """Kinds, as tables and figures order them."""
@@ -130,7 +131,7 @@ def agents(folder: Path) -> list[ListedController]:
             LEARNT,
             _sources(each.everywhere),
             {scenario: _sources(runs) for scenario, runs in each.only_in.items()},
-            title=each.title,
+            title=title(each.id, each.title),
         )
         for each in shipped_agents(folder).values()
     ]

@@ -87,8 +87,8 @@ def evaluate(
     controller: Annotated[
         str,
         typer.Argument(
-            help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one. Of several runs "
-            "all, with mean and spread."
+            help="Id of a controller or of a shipped agent (see beamenv list), or the folder of a trained agent. If it has several "
+            "runs, all are evaluated: mean and spread are printed."
         ),
     ],
     preset: PresetOption = "thesis",
@@ -96,7 +96,7 @@ def evaluate(
     blade: BladeOption = None,
     scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
-    episodes: Annotated[int, typer.Option(min=2, help="How many held-out ones.")] = 64,
+    episodes: Annotated[int, typer.Option(min=2, help="Number of held-out episodes.")] = 64,
     trained_seed: TrainedSeedOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -131,9 +131,9 @@ def evaluate(
 
 @app.command()
 def compare(
-    folder: Annotated[Path, typer.Option(help="Where tables, figures and agents are written.")] = Path("results/compare"),
-    minutes: Annotated[float, typer.Option(help="Training time of both agents together; 0 trains none.")] = 1.5,
-    episodes: Annotated[int, typer.Option(min=2, help="How many held-out ones.")] = 64,
+    folder: Annotated[Path, typer.Option(help="Folder for tables, figures and agents.")] = Path("results/compare"),
+    minutes: Annotated[float, typer.Option(help="Minutes of training of both agents together; with 0 none is trained.")] = 1.5,
+    episodes: Annotated[int, typer.Option(min=2, help="Number of held-out episodes.")] = 64,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
@@ -171,17 +171,17 @@ def compare(
 
 @app.command()
 def explore(
-    port: Annotated[int, typer.Option(help="Where the page is served; 0 takes any free one.")] = 8050,
-    host: Annotated[str, typer.Option(help="A loopback address: the page is for this computer alone.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port of the page; 0 takes any free one.")] = 8050,
+    host: Annotated[str, typer.Option(help="Loopback address: the page can be opened on this computer only.")] = "127.0.0.1",
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
 ) -> None:
     """Serve a page that shows a blade and its LQG, and redraws what its controls change. Ctrl-C ends it.
 
-    Section, frequencies, mode shapes, damping, step response, poles, margins, sensitivity, Bode diagram and singular values, by
-    the blade's geometry, plies, patches, noise and weights. The page's address holds its state, and it saves the blade as a file
-    for --blade.
+    It shows section, frequencies, mode shapes, damping, step response, poles, margins, sensitivity, Bode diagram and singular
+    values; geometry, plies, patches, noise and weights can be changed. The page's address holds its state, and the page saves the
+    blade as a file for --blade.
     """
     with one_sentence():
         check_names(preset, blade=blade)
@@ -204,17 +204,20 @@ def explore(
 
 @app.command()
 def reproduce(
-    names: Annotated[list[str] | None, typer.Argument(help="Tables and figures, say table-3.4 figure-5.7; all if none.")] = None,
-    folder: Annotated[Path, typer.Option(help="Where CSV and PNG of each, and the page, are written.")] = Path("results/thesis"),
-    overwrite: Annotated[bool, overwriting("what is finished already")] = False,
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Tables and figures, such as table-3.4 figure-5.7. Default: all.")
+    ] = None,
+    folder: Annotated[Path, typer.Option(help="Folder for the page, and for CSV and PNG files.")] = Path("results/thesis"),
+    overwrite: Annotated[bool, overwriting("results that are already finished")] = False,
     docs: Annotated[
-        Path | None, typer.Option(help="Folder that gets the pages too: thesis.md, one a chapter, and figures/.")
+        Path | None,
+        typer.Option(help="Folder that also gets the documentation's pages: thesis.md, a page for each chapter, and figures/."),
     ] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Regenerate the thesis' tables and figures and judge its statements twice. About a minute on two cores.
+    """Compute the thesis' tables and figures anew and judge its statements, by our model and by its own. A minute on two cores.
 
     An interrupted run resumes from what its folder holds.
     """

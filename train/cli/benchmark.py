@@ -72,11 +72,11 @@ def benchmark(
     docs: DocsOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Every controller in every scenario on the same held-out episodes; with --quick a few, with --submit one of yours.
+    """Run every controller in every scenario on the same held-out episodes; with --quick a few, with --submit one of yours.
 
-    An interrupted run resumes from what its folder holds; a folder with a benchmark of other settings is refused. What cannot be
-    measured is reported in one sentence each, the rest is measured, and the status is then 1. What cannot be had of a --plant is
-    left out with its reason, which is no failure; asked for by name, it is refused.
+    An interrupted run resumes from what its folder holds; a folder with a benchmark of other settings is refused. If something
+    cannot be measured, one sentence says why, the rest is measured, and the exit status is 1. Controllers and scenarios that a
+    --plant does not allow are left out, each with the reason; if you name one of them, it is refused.
     """
     with one_sentence(RESUMES):
         check_all(scenario or (), controller or (), (model or ()) if trust else (), submit, plant)

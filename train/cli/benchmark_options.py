@@ -15,42 +15,46 @@ SEEDS = 128
 ScenariosOption = Annotated[
     list[str] | None,
     typer.Option(
-        help=f"Name (see beamenv list scenarios) or TOML file of a scenario, or {', '.join(GROUPS)} of them; repeat for more. "
-        "All if left out."
+        help=f"Scenario name (see beamenv list scenarios), TOML file, or a group: {', '.join(GROUPS)}. Repeat for several. "
+        "Default: all."
     ),
 ]
 ControllersOption = Annotated[
     list[str] | None,
     typer.Option(
-        help="Id of a controller or of an agent that ships (see beamenv list), or a trained one's folder; repeat for more. "
-        "All with an id if left out."
+        help="Id of a controller or of a shipped agent (see beamenv list), or the folder of a trained agent. Repeat for several. "
+        "Default: all that have an id."
     ),
 ]
-EpisodesOption = Annotated[int | None, typer.Option(min=2, help=f"How many held-out episodes; {SEEDS} if left out.")]
+EpisodesOption = Annotated[int | None, typer.Option(min=2, help=f"Number of held-out episodes. Default: {SEEDS}.")]
 RunsOption = Annotated[
-    int | None, typer.Option(min=1, help="How many training runs of each agent, the first ones; all of them if left out.")
+    int | None, typer.Option(min=1, help="Number of training runs of each agent, from the first on. Default: all.")
 ]
 FolderOption = Annotated[
     Path | None,
-    typer.Option(help="Where cells, tables, heat map and page are written; results/benchmark, or …-WHAT IS CHOSEN, if left out."),
+    typer.Option(
+        help="Folder for cells, tables, heat map and page. Default: results/benchmark, with the names of what you choose appended."
+    ),
 ]
 ModelsOption = Annotated[
     list[Path] | None,
-    typer.Option(help="Stable-Baselines3 model to take part. Such a file can run code when it is loaded: see --trust."),
+    typer.Option(help="File of a Stable-Baselines3 model that takes part. Loading such a file can run code: see --trust."),
 ]
-TrustOption = Annotated[bool, typer.Option("--trust", help="Load model files: I know where they are from.")]
+TrustOption = Annotated[bool, typer.Option("--trust", help="Load the model files: you know where they come from.")]
 QuickOption = Annotated[
-    bool, typer.Option("--quick", help=f"Less than a minute on two cores: {told()}. What else is given comes first.")
+    bool, typer.Option("--quick", help=f"Less than a minute on two cores: {told()}. Other options override these choices.")
 ]
 SubmitOption = Annotated[
     str | None,
     typer.Option(
-        help="Enter a trained agent's folder, a model's .zip or a controller by its id on the leaderboard, once it has been run "
-        "in every scenario."
+        help="Run a trained agent (its folder), a model (.zip) or a controller (its id) in every scenario, and enter it on the "
+        "leaderboard."
     ),
 ]
-TierOption = Annotated[int | None, typer.Option(help="Of the entry: 0, 1 or 2; what it says of itself, or 1, if left out.")]
+TierOption = Annotated[int | None, typer.Option(help="Tier of the entry: 0, 1 or 2. Default: what it says of itself, or else 1.")]
 DocsOption = Annotated[
     Path | None,
-    typer.Option(help="Folder that gets benchmark.md and its heat map; with --submit that of the leaderboard, else results."),
+    typer.Option(
+        help="Folder that gets benchmark.md and its heat map. With --submit: folder of the leaderboard (default: results)."
+    ),
 ]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
+from pathlib import Path
+from typing import Any
 
 _OWN_PACKAGES = ("beamenv", "baselines", "train")
 _EXTRAS = {
@@ -31,6 +34,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
+    warnings.showwarning = _warn
     try:
         with ending_as_interrupted():
             _run()
@@ -46,6 +50,15 @@ def main() -> None:
             raise
         extra = _EXTRAS.get(package, "train")
         sys.exit(f"beamenv: the Python package '{package}' is missing; install it with pip install 'beamenv[{extra}]'.")
+
+
+def _warn(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, file: Any = None, line: str | None = None
+) -> None:
+    """Our own warnings as the command's sentences; those of other packages in Python's form."""
+    homes = [Path(str(sys.modules[name].__file__)).parent for name in _OWN_PACKAGES if name in sys.modules]
+    ours = any(Path(filename).is_relative_to(home) for home in homes)
+    sys.stderr.write(f"beamenv: {message}\n" if ours else warnings.formatwarning(message, category, filename, lineno))
 
 
 def _run() -> None:

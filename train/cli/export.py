@@ -37,24 +37,24 @@ STEPS, PASSES = 2000, 20
 def export(
     controller: ControllerArgument,
     format: Annotated[
-        str | None, typer.Option("--format", help=f"{', '.join(FORMATS)}; what the output ends in if left out, or else c.")
+        str | None, typer.Option("--format", help=f"{', '.join(FORMATS)}. Default: by the output's ending, or else c.")
     ] = None,
     output: Annotated[
-        Path | None, typer.Option(help="The file; the controller's name with the format's ending if left out.")
+        Path | None, typer.Option(help="File to write. Default: the controller's name with the format's ending.")
     ] = None,
     precision: Annotated[str, typer.Option(help=f"{' or '.join(PRECISIONS)}.")] = "double",
-    name: Annotated[str | None, typer.Option(help="Of functions and types; the controller's if left out.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name of functions and types. Default: the controller's.")] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
     scenario: ScenarioOption = "nominal",
     plant: PlantOption = None,
     trained_seed: TrainedSeedOption = None,
-    measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and time a step.")] = False,
+    measure: Annotated[bool, typer.Option("--measure", help="Compile the C file and measure the time of a step.")] = False,
     overwrite: Annotated[bool, overwriting("a file that is there")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write a controller for your hardware: from what the sensors show to voltages, with its scales, limits and clock."""
+    """Write a controller for your hardware: it turns sensor readings into voltages, with its scales, limits and clock."""
     with one_sentence():
         check_names(preset, scenario, blade, plant)
         whose = found(controller, scenario, trained_seed)

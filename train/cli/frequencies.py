@@ -29,18 +29,18 @@ FASTEST = 1e6
 def frequencies(
     preset: PresetOption = "thesis",
     speed: Annotated[
-        list[float] | None, typer.Option(help="Rotor speed in rad/s; repeat for more. 0 and the preset's if left out.")
+        list[float] | None, typer.Option(help="Rotor speed in rad/s; repeat for several. Default: 0 and the blade's own.")
     ] = None,
-    count: Annotated[int, typer.Option(help="How many modes.")] = 6,
-    gyroscopic: Annotated[bool, typer.Option(help="With gyroscopic coupling.")] = True,
-    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
+    count: Annotated[int, typer.Option(help="Number of modes.")] = 6,
+    gyroscopic: Annotated[bool, typer.Option(help="Include gyroscopic coupling.")] = True,
+    patches: Annotated[bool, typer.Option(help="Include the patches' mass and stiffness.")] = True,
     blade: BladeOption = None,
     plant: PlantOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Natural frequencies of a blade, each with the family its motion belongs to, and what steady rotation does to it.
+    """Print a blade's natural frequencies, the kind of motion of each mode, and what steady rotation does to the blade.
 
-    Of a model of your own, its frequencies and damping ratios, and what was assumed of it.
+    With --plant, print the frequencies and damping ratios of your model, and what was assumed about it.
     """
     if plant is not None:
         _of_model(plant, preset, speed, blade, count, as_json)

@@ -18,35 +18,43 @@ from train.shared.files import check_folder
 
 
 def identify(
-    data: Annotated[Path, typer.Argument(help="CSV whose first line names its columns; units may follow in brackets, y1 [A].")],
-    order: Annotated[str, typer.Option(help="Number of states, or auto: as many as rows held back ask for.")] = "auto",
-    folder: Annotated[Path, typer.Option(help="Where plant, report and figures are written.")] = Path("results/identified"),
+    data: Annotated[
+        Path, typer.Argument(help="CSV file whose first line names its columns; a unit may follow in brackets, as in y1 [A].")
+    ],
+    order: Annotated[str, typer.Option(help="Number of states, or auto: chosen by the rows that are held back.")] = "auto",
+    folder: Annotated[Path, typer.Option(help="Folder for plant, report and figures.")] = Path("results/identified"),
     voltage: Annotated[
-        list[str] | None, typer.Option(help="Column of an actuator's voltage; repeat for more. All that begin with u if left out.")
+        list[str] | None, typer.Option(help="Column of an actuator's voltage; repeat for several. Default: all that begin with u.")
     ] = None,
     reading: Annotated[
-        list[str] | None, typer.Option(help="Column of a sensor's reading; repeat for more. All that begin with y if left out.")
+        list[str] | None, typer.Option(help="Column of a sensor's reading; repeat for several. Default: all that begin with y.")
     ] = None,
-    time: Annotated[str | None, typer.Option(help="Column of the time, s; time or t if left out.")] = None,
-    interval: Annotated[float | None, typer.Option(help="s between rows, where no column tells.")] = None,
-    before: Annotated[bool, typer.Option("--before", help="The voltages of a row were on before its readings were taken.")] = False,
-    held_back: Annotated[float, typer.Option(help="Share of the rows, the last, that the model is judged by.")] = 0.25,
+    time: Annotated[str | None, typer.Option(help="Column of the time in s. Default: time or t.")] = None,
+    interval: Annotated[float | None, typer.Option(help="Seconds between rows, needed if no column holds the time.")] = None,
+    before: Annotated[
+        bool, typer.Option("--before", help="The voltages of each row were applied before its readings were taken.")
+    ] = False,
+    held_back: Annotated[float, typer.Option(help="Share of the rows, from the end, that the model is judged on.")] = 0.25,
     collocated: Annotated[
         float | None,
-        typer.Option(help="Where each current sensor lies at an actuator: charge per strain over moment per volt; 1 for equals."),
+        typer.Option(
+            help="If each current sensor lies at an actuator: its charge per strain over moment per volt; 1 for equal patches."
+        ),
     ] = None,
-    ensemble: Annotated[int, typer.Option(help="How many plants within the spread are written besides.")] = 16,
-    seed: Annotated[int, typer.Option(help="Of the ensemble.")] = 0,
-    drive_limit: Annotated[float | None, typer.Option(help="V, either way; as far as they went if left out.")] = None,
+    ensemble: Annotated[int, typer.Option(help="Number of further plants to write, drawn within the estimated uncertainty.")] = 16,
+    seed: Annotated[int, typer.Option(help="Random seed of the ensemble.")] = 0,
+    drive_limit: Annotated[
+        float | None, typer.Option(help="Largest voltage of the actuators, V. Default: the largest in the data.")
+    ] = None,
     full_scale: Annotated[
         list[float] | None,
-        typer.Option(help="Range of a sensor, in its unit; one for each reading. From what moves the plant if left out."),
+        typer.Option(help="Range of a sensor, in its unit; one for each reading. Default: from the loads that move the plant."),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """From measured voltages and readings to a plant: its modes, its noise, how well all is known.
+    """Identify a plant from measured voltages and readings: its modes, its noise, and how uncertain they are.
 
-    The folder gets plant.npz, an ensemble of plants within the spread, report.md, report.json, stabilisation.png and fit.png.
+    The folder gets plant.npz, an ensemble of plants within the uncertainty, report.md, report.json, stabilisation.png and fit.png.
     """
     with one_sentence():
         content_of(data, 1)

@@ -42,7 +42,7 @@ class Listed:
 
 
 def list_ids(
-    kind: Annotated[Kind, typer.Argument(help="What is listed.")],
+    kind: Annotated[Kind, typer.Argument(help="What to list.")],
     as_json: JsonOption = False,
 ) -> None:
     """List every controller, agent, scenario or preset: its id, what it is and knows, and how to get it in Python."""
@@ -68,11 +68,12 @@ def controllers() -> Listed:
 def agents() -> Listed:
     """Those that ship."""
     from train.controllers.known import known_agents
+    from train.learning.recipes import title
 
     rows = [
         {
             "id": each.id,
-            "title": each.title,
+            "title": title(each.id, each.title),
             "tier": each.tier,
             "told": each.told,
             "scenarios": list(each.scenarios),
@@ -82,7 +83,8 @@ def agents() -> Listed:
         for each in known_agents().values()
     ]
     note = (
-        "Generalists are trained on several scenarios at once and run in all, specialists on each that is named. All are of tier 1."
+        "A generalist was trained on several scenarios at once and takes part in all; a specialist was trained on each scenario "
+        "named above, and takes part in those alone. All agents are of tier 1."
     )
     return Listed(rows, ("runs",), note, f'{CONTROLLER}; controller("residual-generalist", env, trained_seed=0)')
 
@@ -102,7 +104,7 @@ def scenarios() -> Listed:
         }
         for name, title in titles().items()
     ]
-    groups = "In: groups, which beamenv benchmark --scenario takes too; what is unseen is kept for judging."
+    groups = "In: the scenario's groups, which beamenv benchmark --scenario takes too. No agent was trained on those in unseen."
     return Listed(rows, ("in",), groups, 'gym.make("beamenv/RotatingBeam-v0", scenario="delay")')
 
 
@@ -130,7 +132,8 @@ LISTS: dict[Kind, Callable[[], Listed]] = {
 def _tiers() -> str:
     from beamenv.titles import TIERS
 
-    return f"Tier: what it is told, each what those before are too: {', '.join(f'{tier} {what}' for tier, what in TIERS.items())}."
+    told = ", ".join(f"{tier} {what}" for tier, what in TIERS.items())
+    return f"Tier: what the controller is told, besides what lower tiers are told: {told}."
 
 
 def _show(kind: str, found: Listed) -> None:

@@ -28,27 +28,33 @@ RESUMES = "what was finished is kept, and the same command resumes"
 JOBS = 2
 """Processes, if nobody says how many."""
 
-PresetOption = Annotated[str, typer.Option(help=f"Configuration to begin with: {', '.join(PRESETS)}.")]
-SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s; the preset's if left out.")]
-BladeOption = Annotated[Path | None, typer.Option(help="JSON or TOML file of a blade, in place of the preset.")]
+PresetOption = Annotated[str, typer.Option(help=f"Blade that comes with the package: {', '.join(PRESETS)}.")]
+SpeedOption = Annotated[float | None, typer.Option(help="Rotor speed in rad/s. Default: the blade's own.")]
+BladeOption = Annotated[Path | None, typer.Option(help="TOML or JSON file of a blade, used instead of the preset.")]
 PlantOption = Annotated[
     Path | None,
-    typer.Option(help="A model of your own in the place of a blade: .npz, .mat or .json, with A, B, C and what is known."),
+    typer.Option(
+        help="File with a model of your own, used instead of a blade: .npz, .mat or .json, with A, B, C and what else is known."
+    ),
 ]
-ScenarioOption = Annotated[str, typer.Option(help=f"What may happen: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
+ScenarioOption = Annotated[str, typer.Option(help=f"Scenario: {', '.join(SCENARIOS)}, or a TOML or JSON file.")]
 JobsOption = Annotated[
-    int | None, typer.Option(min=1, help=f"Processes at work side by side; {JOBS}, or on a cluster as many as it has, if left out.")
+    int | None, typer.Option(min=1, help=f"Number of parallel processes. Default: {JOBS}, or on a cluster as many as it has.")
 ]
 ClusterOption = Annotated[
     str | None,
-    typer.Option(help="HOST:PORT or ray://HOST:PORT of a Ray cluster that runs, or local: Ray here. Of the extra cluster."),
+    typer.Option(
+        help="HOST:PORT or ray://HOST:PORT of a running Ray cluster, or local for Ray on this machine. Needs the extra cluster."
+    ),
 ]
 ControllerArgument = Annotated[
-    str, typer.Argument(help="Id of a controller or of an agent that ships (see beamenv list), or the folder of a trained one.")
+    str, typer.Argument(help="Id of a controller or of a shipped agent (see beamenv list), or the folder of a trained agent.")
 ]
 TrainedSeedOption = Annotated[
     int | None,
-    typer.Option(help="Run of an agent that ships, by its training seed; if left out all, or the first where one alone is wanted."),
+    typer.Option(
+        help="Training seed that selects one run of a shipped agent. Default: all runs, or the first where only one is needed."
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else, to standard output.")]
 

@@ -17,37 +17,46 @@ from train.shared.files import check_picture
 
 
 def place(
-    actuators: Annotated[int | None, typer.Option(help="How many actuators to place.")] = None,
-    sensors: Annotated[int | None, typer.Option(help="How many sensors to place.")] = None,
+    actuators: Annotated[int | None, typer.Option(help="Number of actuators to place.")] = None,
+    sensors: Annotated[int | None, typer.Option(help="Number of sensors to place.")] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
-    patches: Annotated[bool, typer.Option(help="With the patches' mass and stiffness.")] = True,
-    method: Annotated[str, typer.Option(help=f"{', '.join(METHODS)}; ga+sqp is the thesis', grid is for one or two.")] = METHOD,
-    seed: Annotated[int, typer.Option(help="Of the search.")] = 0,
+    patches: Annotated[bool, typer.Option(help="Include the patches' mass and stiffness.")] = True,
+    method: Annotated[
+        str, typer.Option(help=f"{', '.join(METHODS)}; the thesis used ga+sqp, grid is for one or two patches.")
+    ] = METHOD,
+    seed: Annotated[int, typer.Option(help="Random seed of the search.")] = 0,
     leave_unreached: Annotated[
         bool,
-        typer.Option("--leave-unreached", help="Leave modes that no patch moves to their own damping."),
+        typer.Option("--leave-unreached", help="Accept modes that no patch can move: they keep their own damping."),
     ] = False,
-    together: Annotated[bool, typer.Option("--together", help="Place both sides at once, by the closed loop's cost.")] = False,
+    together: Annotated[
+        bool, typer.Option("--together", help="Place actuators and sensors at once, by the closed loop's cost.")
+    ] = False,
     size: Annotated[
         bool,
-        typer.Option("--size", help="Size patches too, and as many at most: the trade-off between the loop's cost and mass."),
+        typer.Option(
+            "--size", help="Choose sizes too, of as many patches at most: the trade-off between the closed loop's cost and mass."
+        ),
     ] = False,
-    mass: Annotated[float | None, typer.Option(help="With --size: kg of piezo sheet at most.")] = None,
-    channels: Annotated[int | None, typer.Option(help="With --size: voltages at most.")] = None,
-    power: Annotated[float | None, typer.Option(help="With --size: W at most, ½CV²f of all actuators.")] = None,
-    frequency: Annotated[float | None, typer.Option(help="With --size: f in Hz; the first mode's if left out.")] = None,
+    mass: Annotated[float | None, typer.Option(help="With --size: largest mass of the piezo sheets, kg.")] = None,
+    channels: Annotated[int | None, typer.Option(help="With --size: largest number of voltages.")] = None,
+    power: Annotated[float | None, typer.Option(help="With --size: largest power, W: ½CV²f of all actuators.")] = None,
+    frequency: Annotated[float | None, typer.Option(help="With --size: f of the power, Hz. Default: the first mode's.")] = None,
     output: Annotated[
         Path | None,
-        typer.Option(help="With --size: JSON file of the best blade within the mass, or no heavier than its own patches."),
+        typer.Option(
+            help="With --size: JSON file for the best blade within --mass; without it, no heavier than its present patches."
+        ),
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option(help="PNG of the blade, its patches and the cost along the span; with --size of the trade-off.")
+        Path | None,
+        typer.Option(help="PNG file for the blade, its patches and the cost along the span; with --size for the trade-off."),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Where the patches belong: least tr(P) of the regulator for actuators, least tr(S) of the filter for sensors.
+    """Find the best positions of patches: actuators by least tr(P) of the regulator, sensors by least tr(S) of the filter.
 
     Both sides are placed, with as many patches as the blade has, unless the options name one.
     """

@@ -27,7 +27,7 @@ QUICK_RUNS = 2
 def told() -> str:
     """What it is, for whoever asks."""
     return (
-        f"{len(QUICK_LAWS)} laws and {QUICK_RUNS} runs of each generalist that ships in {len(QUICK_SCENARIOS)} scenarios on "
+        f"{len(QUICK_LAWS)} controllers and {QUICK_RUNS} runs of each shipped generalist in {len(QUICK_SCENARIOS)} scenarios on "
         f"{QUICK_SEEDS} episodes"
     )
 

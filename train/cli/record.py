@@ -36,19 +36,19 @@ if TYPE_CHECKING:
 def record(
     controller: ControllerArgument,
     scenario: ScenarioOption = "nominal",
-    episodes: Annotated[int, typer.Option(min=1, help="How many.")] = 100,
+    episodes: Annotated[int, typer.Option(min=1, help="Number of episodes.")] = 100,
     seed: Annotated[
         int | None,
         typer.Option(
             min=0,
-            help="Of the first episode, each of the next has one more; not those that controllers are compared on. Behind all "
-            "of those if left out.",
+            help="Random seed of the first episode; each further episode has one more. Seeds on which controllers are compared are "
+            "refused; the default lies behind them.",
         ),
     ] = None,
-    name: Annotated[str | None, typer.Option(help="Of the data set; beamenv/CONTROLLER-SCENARIO-v0 if left out.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the data set. Default: beamenv/CONTROLLER-SCENARIO-v0.")] = None,
     folder: Annotated[
         Path | None,
-        typer.Option(help="Of all data sets; if left out where Minari looks, MINARI_DATASETS_PATH or ~/.minari/datasets."),
+        typer.Option(help="Folder of all data sets. Default: where Minari looks, MINARI_DATASETS_PATH or ~/.minari/datasets."),
     ] = None,
     trained_seed: TrainedSeedOption = None,
     overwrite: Annotated[bool, overwriting("the data set of this name")] = False,
@@ -60,8 +60,7 @@ def record(
 ) -> None:
     """Record a controller's episodes as a Minari data set, for offline learning.
 
-    Of a scenario that is kept for judging it says so. Nothing is written unless all is: an interrupted recording leaves no data
-    set.
+    If the scenario is kept for judging, the data set says so. An interrupted recording leaves no data set behind.
     """
     with one_sentence("nothing is kept"):
         check_names(preset, scenario, blade, plant)

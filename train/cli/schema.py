@@ -21,10 +21,10 @@ class Kind(str, Enum):
 
 
 def schema(
-    kind: Annotated[Kind, typer.Argument(help="What the files describe.")],
-    output: Annotated[Path | None, typer.Option(help="File to write; standard output if left out.")] = None,
+    kind: Annotated[Kind, typer.Argument(help="What the file describes.")],
+    output: Annotated[Path | None, typer.Option(help="File to write. Default: standard output.")] = None,
 ) -> None:
-    """The JSON schema of blade or scenario files: with it an editor completes names, explains them and marks wrong values."""
+    """Write the JSON schema of blade or scenario files: with it an editor completes names, explains them and marks wrong values."""
     with one_sentence():
         from beamenv.blade.files import blade_schema
         from beamenv.scenarios.scenario import scenario_schema

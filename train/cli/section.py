@@ -26,11 +26,13 @@ SEEN = 1e-6
 def section(
     preset: PresetOption = "thesis",
     blade: BladeOption = None,
-    at: Annotated[float, typer.Option(help="Where along the span: 0 at the root, 1 at the tip.")] = 0.0,
-    picture: Annotated[Path | None, typer.Option(help="PNG of the section with its walls, patches and centres.")] = None,
+    at: Annotated[float, typer.Option(help="Position along the span: 0 is the root, 1 the tip.")] = 0.0,
+    picture: Annotated[
+        Path | None, typer.Option(help="PNG file for a picture of the section with its walls, patches and centres.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Stiffness, mass and centres of a blade's section, without its patches, about the origin of its coordinates."""
+    """Print stiffness, mass and centres of a blade's section, without its patches, about the origin of its coordinates."""
     with one_sentence():
         check_names(preset, blade=blade)
         at = checked("at", at, Number(ge=0.0, le=1.0))

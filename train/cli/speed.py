@@ -17,11 +17,11 @@ from train.speed.rows import ROWS, TARGETS, met
 
 def speed(
     check: Annotated[
-        bool, typer.Option("--check", help="Beside what is to be reached on this project's machine; status 1 where it is not.")
+        bool, typer.Option("--check", help="Also show the targets of this project's machine; exit status 1 if one is missed.")
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """How fast it is: steps/s beside CartPole's, imports, assembly. About half a minute."""
+    """Measure the speed: steps per second beside CartPole's, imports, assembly. About half a minute."""
     with one_sentence():
         results = measured()
     missed = [name for name in TARGETS if name in results and not met(name, results[name])] if check else []

@@ -80,9 +80,9 @@ def train(
 ) -> None:
     """Train an agent and save it; Ctrl-C keeps what it has learnt. `beamenv evaluate FOLDER` then measures how good it is.
 
-    The folder gets the policy, its learning curve (learning.csv, learning.png), checkpoints and TensorBoard's files. Of several
-    agents, scenarios and seeds each with each is a training, by several processes or a cluster; --resume then begins those that
-    have not begun. One that fails costs no other.
+    The folder gets the policy, its learning curve (learning.csv, learning.png), checkpoints and TensorBoard's files. With several
+    agents, scenarios or seeds every combination is trained, in parallel processes or on a cluster; --resume then also starts the
+    trainings that have not begun. If one fails, the others go on.
     """
     homes: dict[Path, tuple[str, str, int]] = {}
     with one_sentence(lambda: _resumed_by(context, list(homes))):

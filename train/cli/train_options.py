@@ -10,42 +10,48 @@ import typer
 from train.learning.recipes import NAMES
 
 AgentsArgument = Annotated[
-    list[str], typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or the agent of --recipe; several of them.")
+    list[str], typer.Argument(help=f"Recipe: {', '.join(NAMES)}; or with --recipe any name for the agent. Several may be given.")
 ]
 ScenariosOption = Annotated[
     list[str] | None,
     typer.Option(
-        help="A name (see beamenv list scenarios), a .toml file, or generalist: all but those kept for judging; repeat for more. "
-        "nominal if left out."
+        help="Scenario name (see beamenv list scenarios), .toml file, or generalist: all scenarios but those kept for judging. "
+        "Repeat for several. Default: nominal."
     ),
 ]
-MinutesOption = Annotated[float | None, typer.Option(help="Training time; by the clock, so not reproducible bit for bit.")]
-UpdatesOption = Annotated[int | None, typer.Option(help="Updates of the policy; the recipe's if neither is given.")]
+MinutesOption = Annotated[float | None, typer.Option(help="Minutes of training. The result then depends on the machine's speed.")]
+UpdatesOption = Annotated[int | None, typer.Option(help="Number of policy updates. Default, without --minutes: the recipe's.")]
 SeedsOption = Annotated[
-    list[int] | None, typer.Option(min=0, max=2**63 - 1, help="Of the training; repeat for more. 0 if left out.")
+    list[int] | None, typer.Option(min=0, max=2**63 - 1, help="Random seed of the training; repeat for several. Default: 0.")
 ]
 FolderOption = Annotated[
     Path | None,
     typer.Option(
-        help="Where it is written; results/agents/AGENT-SCENARIO-SEED if left out. Of several the folder of such folders."
+        help="Folder of the training. Default: results/agents/AGENT-SCENARIO-SEED. For several trainings: the folder above theirs."
     ),
 ]
-RecipeOption = Annotated[Path | None, typer.Option(help="A recipe of your own, a TOML file.")]
+RecipeOption = Annotated[Path | None, typer.Option(help="TOML file with a recipe of your own.")]
 StartOption = Annotated[
-    Path | None, typer.Option("--from", help="Folder of a trained policy to clone first, then to tune; its best run of several.")
+    Path | None,
+    typer.Option("--from", help="Folder of a trained policy that is cloned first and then trained on. Of several runs: the best."),
 ]
 LooksOption = Annotated[
     int | None,
     typer.Option(
         min=0,
         max=10_000,
-        help="At the policy without exploration, on validation episodes, for its learning curve; 0: none. Twelve if left out, or "
-        "fewer where they would take more than a tenth of the training's time. Recipes with validation look by themselves.",
+        help="How often the policy is tested without exploration, on validation episodes, for the learning curve; 0 for never. "
+        "Default: 12, or fewer if the tests would take more than a tenth of the training time. Recipes that set validation test "
+        "by themselves.",
     ),
 ]
 ResumeOption = Annotated[
-    bool, typer.Option("--resume", help="Resume from the folder's checkpoint, with the same arguments, to the same result.")
+    bool,
+    typer.Option(
+        "--resume",
+        help="Resume from the checkpoint in the folder. With the same arguments the result is that of an uninterrupted training.",
+    ),
 ]
 DeviceOption = Annotated[
-    str | None, typer.Option(help="cpu or cuda, of what is trained through the plant; the recipe's if left out.")
+    str | None, typer.Option(help="cpu or cuda, for recipes trained through the plant. Default: the recipe's.")
 ]

@@ -39,32 +39,32 @@ if TYPE_CHECKING:
 
 
 def tune(
-    recipe: Annotated[str, typer.Argument(help=f"A recipe: {', '.join(NAMES)}; or one of your own, a TOML file.")],
+    recipe: Annotated[str, typer.Argument(help=f"Recipe: {', '.join(NAMES)}; or a TOML file of your own.")],
     scenario: Annotated[
-        str, typer.Option(help="A name, a .toml file, or generalist: all scenarios but those kept for judging.")
+        str, typer.Option(help="Scenario name, .toml file, or generalist: all scenarios but those kept for judging.")
     ] = "nominal",
-    trials: Annotated[int, typer.Option(min=2, help="How many: the recipe as it is, and others drawn.")] = 16,
-    updates: Annotated[int | None, typer.Option(help="That each trial may have; the recipe's if left out.")] = None,
-    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of every training, and of what is drawn.")] = 0,
+    trials: Annotated[int, typer.Option(min=2, help="Number of trials: the recipe as it is, and variants drawn at random.")] = 16,
+    updates: Annotated[int | None, typer.Option(help="Policy updates of each trial. Default: the recipe's.")] = None,
+    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Random seed of every training and of the variants.")] = 0,
     space: Annotated[
-        Path | None, typer.Option(help="What is tried, a TOML file; what ships for the recipe's trainer if left out.")
+        Path | None, typer.Option(help="TOML file of what is tried. Default: the one shipped for the recipe's trainer.")
     ] = None,
-    folder: Annotated[
-        Path | None, typer.Option(help="Where it is written; results/tuning/RECIPE-SCENARIO-SEED if left out.")
-    ] = None,
+    folder: Annotated[Path | None, typer.Option(help="Folder of the search. Default: results/tuning/RECIPE-SCENARIO-SEED.")] = None,
     overwrite: Annotated[bool, overwriting("another tuning that the folder holds")] = False,
     cluster: ClusterOption = "local",
-    jobs: Annotated[int | None, typer.Option(min=1, help="Trials side by side; as many as there are cores if left out.")] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Number of trials in parallel. Default: as many as there are cores.")
+    ] = None,
     preset: PresetOption = "thesis",
     speed: SpeedOption = None,
     blade: BladeOption = None,
     plant: PlantOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Search a recipe's settings on validation seeds, and write the best recipe for `beamenv train --recipe`.
+    """Search better settings of a recipe on validation seeds, and write the best recipe for `beamenv train --recipe`.
 
-    Trials have the same budget of updates; those that are behind at a sixteenth or a quarter of it are stopped (ASHA, by Ray Tune).
-    An interrupted search resumes from what its folder holds; the same command with more --trials goes on from there.
+    All trials have the same budget of updates; after a sixteenth and a quarter of it the worse ones are stopped (ASHA, by Ray
+    Tune). An interrupted search resumes from what its folder holds; the same command with more --trials continues it.
     """
     name = recipe if recipe in NAMES else Path(recipe).stem
     home = folder or Path("results/tuning") / f"{name}-{Path(scenario).stem}-{seed}"

@@ -55,22 +55,23 @@ def record(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> MinariDataset:
-    """Let a controller act in episodes and keep them as a data set; what Minari loads of it.
+    """Record a controller's episodes as a data set of Minari, and return it as Minari loads it.
 
-    - ``controller``: a name, say "lqg", an agent that ships, the folder of a trained one, an object with Stable-Baselines3's
-      ``predict``, or a function of the readings (N, p).
+    - ``controller``: id of a controller, such as "lqg", or of a shipped agent, the folder of a trained agent, an object with
+      Stable-Baselines3's ``predict``, or a function of the readings (N, p).
     - ``scenario``: a name, a file, a table or a ``Scenario``. Its plants are those of ``on_recording_bank``.
-    - ``episodes``: how many; ``seed``: of the first, each of the next has one more. The first episodes of a longer data set are, on
-      the same machine, those of a shorter one, bit for bit.
-    - ``name``: the data set's, "beamenv/CONTROLLER-SCENARIO-v0" if left out; ``folder``: of all data sets, or else Minari's own.
+    - ``episodes``: their number. ``seed``: random seed of the first; each further episode has one more. On the same machine, the
+      first episodes of a longer data set are those of a shorter one, bit for bit.
+    - ``name``: name of the data set, by default "beamenv/CONTROLLER-SCENARIO-v0". ``folder``: folder of all data sets, by default
+      Minari's own.
     - ``environment``: keyword arguments of the environment, ``preset``, ``plant``, ``duration`` and so on.
-    - ``trained_seed``: training seed of an agent that ships.
+    - ``trained_seed``: training seed that selects a run of a shipped agent.
     - ``overwrite``: whether to replace a data set of this name.
     - ``progress``: called with the number of episodes done and their total.
 
-    A data set of a scenario that is kept for judging says so. Nothing is written unless all is: an interruption leaves no data set,
-    and one that was to be replaced as it was. Raises ``ValueError`` for what is wrong with an argument, for seeds on which
-    controllers are compared, tuned or chosen, and for a controller that does not fit the environment.
+    A data set of a scenario that is kept for judging says so. An interrupted recording leaves no data set behind, and leaves one
+    that it would have replaced unchanged. Raises ``ValueError`` for a wrong argument, for seeds on which controllers are compared,
+    tuned or chosen, and for a controller that does not fit the environment.
     """
     count, overwrite = checked("episodes", episodes, EPISODES), checked("overwrite", overwrite, Flag())
     seeds, progress = recorded(seed, count), checked_progress(progress)

@@ -26,8 +26,9 @@ Array = NDArray[np.float64]
 class JointProblem:
     """Where to put a blade's actuators and its sensors.
 
-    The cost is the mean of ½xᵀx + uᵀRu, J, in the long run under LQG: tr(PW̄) + tr(S KᵀRK). A layout is the actuators' positions and
-    then the sensors', (a + s,) in m. ``of`` makes a problem; the constructor raises ``ValueError`` for sides of different blades.
+    The cost, J, is the long-run mean of ½xᵀx + uᵀRu under LQG: tr(PW̄) + tr(S KᵀRK). A layout (a + s,), m, lists the positions of
+    the actuators and then those of the sensors. Make a problem by ``of``; the constructor raises ``ValueError`` for sides of
+    different blades.
     """
 
     actuators: PlacementProblem

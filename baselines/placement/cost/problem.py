@@ -46,14 +46,14 @@ NOISE: Mapping[Side, Number] = MappingProxyType({"actuators": Number(ge=0.0), "s
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacementProblem:
-    """Where to put actuators (or sensors) of a blade whose other patches stay.
+    """Where to put the actuators, or the sensors, of a blade whose other patches stay in place.
 
-    Actuators: tr(P) in s, of PA + AᵀP + Q − PBR⁻¹BᵀP = 0. ½xᵀx is the vibration energy, so tr(P)/r is the mean cost (J s per J)
-    of bringing the blade to rest, over initial states of 1 J in every direction of its 2r states.
-    Sensors: tr(S) in J, of AS + SAᵀ + W − SCᵀV⁻¹CS = 0 with the environment's noise; ½tr(S) is the mean energy of the filter's
-    error. The data acquisition, and so V, stays as it is when sensors move.
+    Actuators minimise tr(P), s, with P from PA + AᵀP + Q − PBR⁻¹BᵀP = 0. Since ½xᵀx is the vibration energy, tr(P)/r is the cost
+    (J s per J) of bringing the blade to rest, averaged over initial states of 1 J in every direction of its 2r states.
+    Sensors minimise tr(S), J, with S from AS + SAᵀ + W − SCᵀV⁻¹CS = 0 and the environment's noise; ½tr(S) is the mean energy of
+    the filter's error. The data acquisition, and with it V, stays the same when sensors move.
 
-    ``of`` makes one; the constructor raises ``ValueError`` for parts of another kind, and bounds that are not those of the blade.
+    Make a problem by ``of``; the constructor raises ``ValueError`` for parts of another kind, and for bounds beyond the blade.
     """
 
     config: BladeConfig

@@ -28,12 +28,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SizingProblem:
-    """How many patches, how large and where.
+    """How many patches to use, how large, and where.
 
-    The cost is the mean of ½xᵀx + r uᵀu in the long run under LQG, J, with u the voltages over what makes the same field in a sheet
-    as thick as the blade's own, and r the mean weight that its own patches, equally spaced, have. (By the blade's own weight,
-    ρFᵀK⁻¹F, weak patches would be as good as strong ones: their voltages would cost less in the same measure.) Loads and the noise
-    of the data acquisition stay as they are. ``of`` makes a problem.
+    The cost, J, is the long-run mean of ½xᵀx + r uᵀu under LQG. In it u are the voltages that make the same field in sheets as
+    thick as the blade's own, and r is the mean weight of the blade's own patches, equally spaced. (With the weight ρFᵀK⁻¹F of the
+    patches themselves, weak patches would be as good as strong ones, since their voltages would cost less in the same measure.)
+    Loads and the noise of the data acquisition stay the same. Make a problem by ``of``.
     """
 
     config: BladeConfig

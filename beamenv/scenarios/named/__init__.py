@@ -10,10 +10,10 @@ NOMINAL = "nominal"
 
 LOADS: Mapping[str, str] = MappingProxyType(
     {
-        "step": "A load that sets in and stays, in every episode.",
-        "pulse": "A rectangular pulse in every episode.",
-        "deflection": "Every episode starts from rest in a static deflection, released at t = 0.",
-        "harmonic": "A sinusoidal load in every episode.",
+        "step": "Every episode has a load that sets in and stays.",
+        "pulse": "Every episode has a rectangular pulse.",
+        "deflection": "Every episode starts at rest in a static deflection, which is released at t = 0.",
+        "harmonic": "Every episode has a sinusoidal load.",
         "white": "White loads and sensor noise alone: what LQG is designed for.",
         "quiet": "Nothing at all: no load and no noise.",
     }

@@ -1,4 +1,4 @@
-"""The reference LQG and a neural network that learns, within each episode, what moves the blade and is not in the design."""
+"""The reference LQG with a neural network that learns, within each episode, what the design does not contain."""
 
 from baselines import Controller, adaptive_neural
 from beamenv import Design

@@ -1,4 +1,4 @@
-"""LQG that is told each episode's plant, delay and faults: what there is to be gained from knowing them."""
+"""LQG that is told each episode's plant, delay and faults: it shows how much there is to gain by knowing them."""
 
 from baselines import Controller, clairvoyant_lqg
 from beamenv.knowledge import Truth

@@ -1,4 +1,4 @@
-"""LQG of all that is known of the blade, with a filter that knows that readings clip at full scale."""
+"""LQG designed on all that is known of the blade; its filter takes into account that readings clip at full scale."""
 
 from baselines import Controller, clipped_lqg
 from baselines.laws.reference_lqg import RATE_WEIGHT

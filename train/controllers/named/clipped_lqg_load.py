@@ -1,4 +1,4 @@
-"""LQG that knows of clipping and estimates a load that lasts."""
+"""The LQG of clipped-lqg, whose filter also estimates a sustained load."""
 
 from baselines import Controller, PersistentLoad, clipped_lqg
 from baselines.laws.reference_lqg import RATE_WEIGHT

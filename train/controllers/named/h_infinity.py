@@ -1,4 +1,4 @@
-"""H-infinity output feedback: the noise of a given energy that is worst."""
+"""H-infinity output feedback: the least cost under the worst noise of a given energy."""
 
 from baselines import Controller, h_infinity
 from beamenv import Design

@@ -1,4 +1,4 @@
-"""LQG detuned for the scenario by an automatic rule, on tuning episodes of the training bank."""
+"""LQG detuned for the scenario by an automatic rule, which is tried on episodes of the training plants."""
 
 from baselines import Controller, informed_lqg
 from beamenv import Prior

@@ -1,4 +1,4 @@
-"""Model-predictive control within the drive limits, with the delay, weights and loads that the scenario's rule chooses."""
+"""Model-predictive control within the drive limits; a rule chooses delay, weights and loads for the scenario."""
 
 from baselines import Controller, informed_mpc
 from beamenv import Prior

@@ -1,4 +1,4 @@
-"""LQG with the loads that the scenario lets foresee, behind the inverse of its actuators' hysteresis."""
+"""LQG with the loads to be expected in the scenario, followed by the inverse of the actuators' hysteresis."""
 
 from baselines import Controller, full_order_lqg, inverse_hysteresis
 from baselines.laws.foreseen_load import foreseen_loads

@@ -1,4 +1,4 @@
-"""The reference LQG: designed on all that is known of the blade; every other controller is compared with it in pairs."""
+"""The reference LQG, designed on all that is known of the blade: every other controller is compared with it, episode by episode."""
 
 from baselines import Controller, reference_lqg
 from beamenv import Design

@@ -1,4 +1,4 @@
-"""The reference LQG with a filter that also estimates a load that lasts."""
+"""The reference LQG with a filter that also estimates a sustained load."""
 
 from baselines import Controller, PersistentLoad, reference_lqg
 from beamenv import Design

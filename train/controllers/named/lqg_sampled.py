@@ -1,4 +1,4 @@
-"""LQG of the sampled design plant: the optimum on its eleven modes, and of them alone."""
+"""LQG of the sampled design plant: optimal for its eleven modes, and for them alone."""
 
 from baselines import Controller, lqg
 from beamenv import Design

@@ -1,4 +1,4 @@
-"""LQG of the plant that really moves, which no rival can know; where plants are drawn, of the one that they depart from."""
+"""LQG designed on the plant that really moves, which no rival can know. If plants are drawn: on the one that they vary about."""
 
 from baselines import Controller, lqg
 from beamenv.knowledge import Truth

@@ -1,4 +1,4 @@
-"""LQR on the full state (no sensor offers it) and an estimate of a load that lasts."""
+"""LQR on the full state (no sensor offers it) and an estimate of a sustained load."""
 
 from baselines import Controller, PersistentLoad, lqr
 from beamenv.knowledge import Truth

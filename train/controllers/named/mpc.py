@@ -1,4 +1,4 @@
-"""Model-predictive control within the drive limits, with the filter of LQG, of all that is known of the blade."""
+"""Model-predictive control within the drive limits, with LQG's filter, designed on all that is known of the blade."""
 
 from baselines import Controller, mpc
 from baselines.laws.reference_lqg import RATE_WEIGHT

@@ -1,4 +1,4 @@
-"""Model-predictive control whose filter also estimates a load that lasts."""
+"""Model-predictive control whose filter also estimates a sustained load."""
 
 from baselines import Controller, PersistentLoad, mpc
 from baselines.laws.reference_lqg import RATE_WEIGHT

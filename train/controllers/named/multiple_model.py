@@ -1,4 +1,4 @@
-"""An LQG with load estimate for each thing that may be the case in the scenario, weighed by what is read (Magill 1965)."""
+"""One LQG with load estimate for each case that is possible in the scenario, weighed by the readings (Magill 1965)."""
 
 from baselines import Controller, multiple_model
 from baselines.laws.detuned_lqg import CAUTIOUS, detuned_lqg

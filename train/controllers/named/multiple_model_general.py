@@ -1,4 +1,4 @@
-"""One multiple-model law for every scenario, not told in which it is: over what may be the case in any of the seen ones."""
+"""One multiple-model controller for all scenarios, not told which it is in; its cases are those of all but the unseen ones."""
 
 from baselines import Controller
 from beamenv import Prior

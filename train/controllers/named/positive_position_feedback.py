@@ -1,4 +1,4 @@
-"""Positive position feedback on the sensors' charge, its gains those of least stationary cost."""
+"""Positive position feedback on the sensors' charge, with the gains of least stationary cost."""
 
 from baselines import Controller, positive_position_feedback
 from baselines.laws.velocity_feedback import pairing

@@ -1,4 +1,4 @@
-"""LQG detuned until it holds a bank of blades that are not quite as the model says, whatever the scenario."""
+"""LQG detuned until it stabilises a bank of blades that differ somewhat from the model, whatever the scenario."""
 
 from baselines import Controller, robust_lqg
 from beamenv import Design

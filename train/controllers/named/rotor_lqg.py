@@ -1,4 +1,4 @@
-"""The reference LQG with a model of the loads at one to four per revolution, and of one that lasts."""
+"""The reference LQG with a model of the loads at one to four per revolution, and of a sustained load."""
 
 from baselines import Controller, PersistentLoad, RotorHarmonics, reference_lqg
 from beamenv import Design

@@ -1,4 +1,4 @@
-"""LQG that knows the course of the rotor's spin-up, with the gains of each instant; without one, those of the nominal plant."""
+"""LQG that knows the course of the rotor's spin-up and has gains for each instant; without a spin-up, the nominal plant's."""
 
 from baselines import Controller, spin_up_lqg
 from beamenv import Prior
