@@ -35,9 +35,9 @@ SYMBOLS = (
     f"{shown_verdict(Verdict.UNTESTABLE)}, or evaluated: the thesis does not say enough.",
 )
 WEAKEST = (
-    "A table, a figure or a conclusion has the weakest verdict of those statements it stands on that can be tested; where none can, "
-    "it cannot be tested either. The rules are strict in most places, but lenient in some: “marginally up” leaves a trend to any "
-    "rise, “within 1.66 %” is judged at 2 %, and “close agreement” is 4 %."
+    "A table, a figure or a conclusion has the weakest verdict of those statements it stands on that can be tested; where none "
+    "can, it cannot be tested either. The rules are strict in most places, but lenient in some: “marginally up” leaves a trend to "
+    "any rise, “within 1.66 %” is judged at 2 %, and “close agreement” is 4 %."
 )
 HOW: tuple[tuple[Text, ...], ...] = (
     (
@@ -58,8 +58,8 @@ HOW: tuple[tuple[Text, ...], ...] = (
     (
         "Questions of our own stand beside the thesis' statements and decide nothing. Step loads are 30 N/m, so that the limit "
         "of ±1500 V matters. The thesis prints a load for chapter 6 only: section 6.5 has 500 kg/m, as a weight 4905 N/m, which is "
-        "far more than its patches can balance. Where chapter 5 is computed with 500 N/m too, this number is taken as N/m. Where the "
-        "thesis leaves a configuration open or misprints it, the page names the one that was computed.",
+        "far more than its patches can balance. Where chapter 5 is computed with 500 N/m too, this number is taken as N/m. Where "
+        "the thesis leaves a configuration open or misprints it, the page names the one that was computed.",
     ),
 )
 FUTURE_WORK_INTRODUCTION: tuple[Text, ...] = (
@@ -146,17 +146,17 @@ def why(records: Sequence[Record]) -> str:
     return (
         f"Of {len(first)} statements {first.count(Verdict.REPRODUCED)} hold in nature, {first.count(Verdict.TREND)} hold in trend, "
         f"{first.count(Verdict.NOT_REPRODUCED)} do not hold and {first.count(Verdict.UNTESTABLE)} cannot be tested. "
-        "Strict rules are one reason: one step in hundreds that goes the other way leaves only a trend, and one statement that fails "
-        f"makes its table or figure fail. Of the {none} that fail in nature, {partly} have other statements that hold. This explains "
-        "trends, tables and figures, but no statement that does not hold. "
+        "Strict rules are one reason: one step in hundreds that goes the other way leaves only a trend, and one statement that "
+        f"fails makes its table or figure fail. Of the {none} that fail in nature, {partly} have other statements that hold. This "
+        "explains trends, tables and figures, but no statement that does not hold. "
         f"The thesis' model is another. Of the {len(missed)} statements that do not fully hold in nature, its equations explain "
-        f"{found[Verdict.REPRODUCED]}, and {found[Verdict.TREND]} in trend: these follow, fully or in trend, from equations that do "
-        f"not hold of the blade, but {alike} of the {found[Verdict.TREND]} are no more than a trend in nature too. The rest is "
+        f"{found[Verdict.REPRODUCED]}, and {found[Verdict.TREND]} in trend: these follow, fully or in trend, from equations that "
+        f"do not hold of the blade, but {alike} of the {found[Verdict.TREND]} are no more than a trend in nature too. The rest is "
         f"unexplained: {found[Verdict.NOT_REPRODUCED]} do not follow from the thesis' equations either, and "
-        f"{found[Verdict.UNTESTABLE]} cannot be evaluated by them. Loads and weights that the thesis does not print, or a configuration "
-        "that differs from the caption's, may lie behind them; which, we cannot tell. Some "
-        "may be our fault: where a configuration is not printed, we had to choose one; the model behind both verdicts has errors that "
-        "are known; and our derivation may have others, which no check has shown. The reverse "
+        f"{found[Verdict.UNTESTABLE]} cannot be evaluated by them. Loads and weights that the thesis does not print, or a "
+        "configuration that differs from the caption's, may lie behind them; which, we cannot tell. Some "
+        "may be our fault: where a configuration is not printed, we had to choose one; the model behind both verdicts has errors "
+        "that are known; and our derivation may have others, which no check has shown. The reverse "
         f"happens too: {lost} statements that hold in nature do not follow from the thesis' equations, or cannot be evaluated by "
         f"them.{compared}"
     )
