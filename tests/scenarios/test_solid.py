@@ -224,7 +224,7 @@ def test_a_design_for_the_solid_may_have_other_plies_damping_and_modes_and_no_pa
     ("told", "sentence"),
     [
         ('{"beam": {"chord": 1.0}}', "blade.beam has no field 'chord'"),
-        ('{"beam": {"length": -1.0}}', "blade.beam.length is -1.0, but must be a positive number"),
+        ('{"beam": {"length": -1.0}}', "blade.beam.length is -1.0, but must be a number above 0"),
         ("[1.0]", "plant.blade is '.*', but must be empty or the text of a JSON object"),
         ("a blade", "plant.blade is 'a blade', but must be empty or the text of a JSON object"),
     ],

@@ -126,7 +126,8 @@ def test_a_training_on_a_model_that_has_changed_is_not_resumed(file, tmp_path):
     assert run("train", "gradient", "--plant", moved, "--updates", 1, "--folder", tmp_path / "agent", "--resume").exit_code == 0
     np.savez(file, **{**content, "B": 1.1 * content["B"]})
     result = run(*words, "--resume")
-    assert result.exit_code == 2 and "holds another training: resume with the same arguments" in result.stderr
+    assert result.exit_code == 2
+    assert "another training, of gradient in nominal with seed 0 (blade, speed or model differs): resume with" in result.stderr
 
 
 def test_what_asks_for_a_rotor_is_refused_in_one_sentence(file):

@@ -21,7 +21,7 @@ from train.learning.checkpoint import read_checkpoint
 from train.learning.job import run
 from train.learning.session import Budget, follow
 from train.learning.validation import Validation
-from train.shared.interruption import Interrupted, ending_as_interrupted
+from train.shared.interruption import WHEN_ASKED, Interrupted, ending_as_interrupted
 
 
 def curve(folder):
@@ -106,6 +106,16 @@ def test_a_signal_waits_for_the_end_of_an_update(number):
     assert [signal.getsignal(each) for each in ENDING] == handlers
     if raised is not None:
         assert raised.value.status == 128 + number
+
+
+def test_ctrl_c_that_waits_is_answered_at_once():
+    training, answered = Signalled(signal.SIGINT), []
+    told = WHEN_ASKED.set(lambda: answered.append(training.updates))
+    try:
+        follow(training, Budget(updates=5), ignore)
+    finally:
+        WHEN_ASKED.reset(told)
+    assert answered == [2] and training.updates == 3  # in the midst of the third update
 
 
 def test_a_second_ctrl_c_does_not_wait_and_half_an_update_is_not_kept():

@@ -1,5 +1,6 @@
 """Several trainings: each in its folder, and none the worse for the others."""
 
+import csv
 import json
 from dataclasses import replace
 
@@ -178,6 +179,25 @@ def test_the_command_says_of_each_that_failed_why_and_saves_the_others(tmp_path,
     assert second.startswith("next: beamenv evaluate results/agents/mine-white-0 --scenario white")
     said = "beamenv: mine-quiet-0 failed: scenario leaves the blade at rest: there is nothing to learn in it."
     assert [line for line in result.stderr.splitlines() if line.startswith("beamenv")] == [said]
+
+
+def test_the_last_lines_are_the_cost_on_validation_episodes_and_the_next_command(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "brief.toml").write_text(BRIEF)
+    result = command("mine", "--recipe", "brief.toml", "--scenario", "white", "--looks", "1", "--folder", "own")
+    saved, cost, following = result.stdout.splitlines()
+    last = list(csv.DictReader((tmp_path / "own" / "learning.csv").read_text().splitlines()))[-1]
+    assert cost == f"J / no control on validation episodes, without exploration: {float(last['looked']):.3f}"
+    assert (saved, following) == ("mine saved in own", "next: beamenv evaluate own --scenario white")
+
+
+def test_scenarios_that_are_kept_for_judging_are_remarked_on(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "brief.toml").write_text(BRIEF)
+    scenarios = ("--scenario", "long-delay", "--scenario", "delay")
+    result = command("mine", "--recipe", "brief.toml", *scenarios, "--looks", "0", "--jobs", "1", "--updates", "1")
+    remarks = [line for line in result.stderr.splitlines() if "kept for judging" in line]
+    assert remarks == ["beamenv: long-delay is kept for judging: it cannot judge an agent that was trained on it."]
 
 
 def test_of_one_training_the_folder_is_its_own_of_several_it_holds_theirs(tmp_path):

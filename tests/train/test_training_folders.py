@@ -20,7 +20,7 @@ def test_a_folder_s_training_is_neither_overwritten_nor_taken_for_another(tmp_pa
     before = (tmp_path / NAME).read_bytes()
     with pytest.raises(ValueError, match="holds a training already"):
         run(job(PPO, updates=1), tmp_path, ignore)
-    with pytest.raises(ValueError, match="holds another training"):
+    with pytest.raises(ValueError, match=r"another training, of .* with seed 0 \(seed differs\): resume with the same arguments"):
         run(job(PPO, updates=1, seed=1), tmp_path, ignore, resume=True)
     assert (tmp_path / NAME).read_bytes() == before
     with pytest.raises(ValueError, match="must hold a checkpoint"):
@@ -119,5 +119,5 @@ def test_a_scenario_file_that_has_changed_is_another_training(tmp_path, monkeypa
     (tmp_path / "mine.toml").write_text("[plants]\nbank = 2\ndamping_ratio = [0.003, 0.02]\n")
     run(job(PPO, "mine.toml"), tmp_path / "agent", interrupted_after(1))
     (tmp_path / "mine.toml").write_text("[plants]\nbank = 2\ndamping_ratio = [0.004, 0.02]\n")
-    with pytest.raises(ValueError, match="holds another training"):
+    with pytest.raises(ValueError, match=r"another training, of .* in mine.toml with seed 0 \(scenario's content differs\)"):
         run(job(PPO, "mine.toml"), tmp_path / "agent", ignore, resume=True)

@@ -42,7 +42,7 @@ ModelsOption = Annotated[
 ]
 TrustOption = Annotated[bool, typer.Option("--trust", help="Load the model files: you know where they come from.")]
 QuickOption = Annotated[
-    bool, typer.Option("--quick", help=f"Less than a minute on two cores: {told()}. Other options override these choices.")
+    bool, typer.Option("--quick", help=f"About a minute on two cores: {told()}. Other options override these choices.")
 ]
 SubmitOption = Annotated[
     str | None,

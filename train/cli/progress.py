@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 from rich.progress import BarColumn, TaskID, TextColumn, TimeRemainingColumn
 
@@ -10,6 +12,18 @@ from baselines import Evaluation
 from train.cli.bars import Bars
 from train.comparison.compare import Listener
 from train.learning.training import Progress as TrainingProgress
+from train.shared.interruption import WHEN_ASKED
+
+
+@contextmanager
+def told_at_once(sentence: str) -> Iterator[None]:
+    """Within it an interruption that waits is answered with a sentence, on standard error."""
+    line = f"\nbeamenv: {sentence}\n".encode()
+    token = WHEN_ASKED.set(lambda: os.write(2, line))  # a signal may come while a buffered stream is written
+    try:
+        yield
+    finally:
+        WHEN_ASKED.reset(token)
 
 
 class Progressbar(Bars, Listener):
@@ -27,7 +41,7 @@ class Progressbar(Bars, Listener):
             TimeRemainingColumn(),
         )
         self._tasks: dict[str, TaskID] = {
-            name: self._bars.add_task(name, total=seconds, start=False, unit=unit, about="J / no control –")
+            name: self._bars.add_task(name, total=seconds, start=False, unit=unit, about="J / no control in training –")
             for name, seconds in budget.items()
         }
         self._page: TaskID | None = None
@@ -40,7 +54,7 @@ class Progressbar(Bars, Listener):
         self.update(
             task,
             completed=min(progress.elapsed if self._unit == "s" else progress.updates, budget),
-            about=f"J / no control {progress.cost:.3f}  {rate}",
+            about=f"J / no control in training {progress.cost:.3f}  {rate}",
         )
 
     def resumed(self, name: str, finished: bool) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from beamenv.configuration import FileName, Number, Refused, checked
+from beamenv.scenarios.named import UNSEEN
 from train.cli.names import check_device, check_name, check_names, check_scenario, check_table
 from train.cli.options import (
     BladeOption,
@@ -97,6 +98,7 @@ def train(
         homes |= homes_of(list(product(agent, scenario or ["nominal"], seed or [0])), folder)
         trainings = {home: _job(each, recipes, budgets, environment, start, looks) for home, each in homes.items()}
         names = {home: home.name if len(homes) > 1 else agent[0] for home in homes}
+        _remark_on(scenario or [])
         trained, already, whole = _trained(trainings, names, workers, resume, overwrite)
         _draw(homes, trained)
         _tell(homes, names, trained, already, {"preset": preset, "speed": speed, "blade": blade, "plant": plant}, as_json)
@@ -130,10 +132,19 @@ def _tell(
     else:
         for home, made in trained.places.items():
             say(f"{names[home]} {'was finished already' if home in already else 'saved'} in {', '.join(map(str, made))}")
+            tell_validation(made)
         for home in list(trained.places)[:1]:
             say(f"next: {shlex.join(['beamenv', 'evaluate', str(home), *where(homes[home][1], given)])}")
     for home, clause in trained.failed.items():
         complain(f"{names[home]} failed: {clause}.")
+
+
+def tell_validation(places: Sequence[Path]) -> None:
+    """How good the policies in some folders are, where a training looked."""
+    from train.shared.curve import validated
+
+    if seen := [f"{cost:.3f}" for cost in map(validated, places) if math.isfinite(cost)]:
+        say(f"J / no control on validation episodes, without exploration: {', '.join(seen)}")
 
 
 def where(scenario: str, given: Mapping[str, Any]) -> list[str]:
@@ -147,7 +158,7 @@ def _trained(
     trainings: Mapping[Path, Job], names: Mapping[Path, str], workers: Workers, resume: bool, overwrite: bool
 ) -> tuple[Trained, set[Path], bool]:
     """Train under a bar; what came of each, which were finished before, and whether all are now."""
-    from train.cli.progress import Progressbar
+    from train.cli.progress import Progressbar, told_at_once
     from train.learning.checkpoint import NAME
     from train.learning.several import is_finished, train_all
 
@@ -163,7 +174,8 @@ def _trained(
                 bar.say(f"resumed: {names[home]} goes on from its checkpoint.")
             bar.training(names[home], totals[names[home]], progress)
 
-        trained = train_all(trainings, workers, told, resume, overwrite)
+        with told_at_once("finishing this update, then what was learnt is saved; a second Ctrl-C ends at once."):
+            trained = train_all(trainings, workers, told, resume, overwrite)
     return trained, already, all(is_finished(home) for home in trainings if home not in trained.failed)
 
 
@@ -200,6 +212,12 @@ def _check(agents: Sequence[str], scenarios: Sequence[str], recipe: Path | None,
         check_table(recipe, "recipe")
     if start is not None and not start.exists():
         raise Refused("from", str(start), "the folder of a trained agent")
+
+
+def _remark_on(scenarios: Sequence[str]) -> None:
+    """Which of some scenarios are kept for judging."""
+    for each in [name for name in UNSEEN if name in scenarios]:
+        complain(f"{each} is kept for judging: it cannot judge an agent that was trained on it.")
 
 
 def _recipe(agent: str, own: Path | None, device: str | None) -> Recipe:

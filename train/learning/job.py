@@ -105,8 +105,35 @@ class Job:
 
     def check_resumed(self, folder: Path, before: Mapping[str, Any], tasks: Mapping[str, Task] | None = None) -> None:
         """``ValueError`` if the checkpoint in a folder is another training's."""
-        if before["identity"] != self.told(tasks):
-            raise ValueError(f"folder = {str(folder)!r} holds another training: resume with the same arguments.")
+        if before["identity"] != (asked := self.told(tasks)):
+            held = _held(before["identity"], json.loads(asked))
+            raise ValueError(f"folder = {str(folder)!r} holds another training{held}: resume with the same arguments.")
+
+
+DIFFERING = {
+    "agent": "recipe's name",
+    "recipe": "recipe's content",
+    "environment": "blade, speed or model",
+    "seed": "seed",
+    "budget": "updates or minutes",
+    "teacher": "agent to start from",
+}
+"""What two trainings may differ in, by the keys of their identities, but for scenarios."""
+
+
+def _held(identity: str, asked: Mapping[str, Any]) -> str:
+    """Which training a checkpoint is of, and what of it differs; empty where its identity is damaged."""
+    try:
+        held = json.loads(identity)
+        told = f", of {held['agent']} in {held['scenario']} with seed {held['seed']}"
+    except (ValueError, TypeError, KeyError):
+        return ""
+    other = [words for key, words in DIFFERING.items() if held.get(key) != asked[key]]
+    if held["scenario"] != asked["scenario"]:
+        other.append("scenario")
+    elif held.get("scenarios") != asked["scenarios"] and held.get("environment") == asked["environment"]:
+        other.append("scenario's content")
+    return f"{told} ({', '.join(other)} differ{'s' if len(other) == 1 else ''})" if other else told
 
 
 def _weights(teacher: Path) -> Path:

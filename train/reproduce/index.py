@@ -94,7 +94,7 @@ def stated(row: Row, first: Judgements, second: Judgements) -> tuple[Cell, ...]:
     """A statement with both verdicts, and why."""
     verdict, again = row.verdict(first), row.verdict(second)
     shown = shown_verdict(verdict) if verdict else "not run", shown_second(again) if again else "not run"
-    return (row.text, *shown, row.remark if {verdict, again} != {Verdict.REPRODUCED} else "")
+    return (row.text, *shown, row.remark)
 
 
 def decided_by(row: Row, known: Judgements) -> tuple[Text, ...]:

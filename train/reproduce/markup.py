@@ -21,7 +21,7 @@ class Link:
     @property
     def leads_away(self) -> bool:
         """Whether it is to a page that only the documentation has; it is plain text elsewhere."""
-        return self.to.endswith(".md")
+        return self.to.partition("#")[0].endswith(".md")
 
 
 Text = str | Link

@@ -18,8 +18,8 @@ INDEX = "thesis.md"
 """The page that leads to all others."""
 SIGNS = (
     "Every table and figure of the chapter, computed again. Orange signs in a figure are numbers that the thesis prints in its "
-    "tables or its text; what it shows in a plot alone is not read off. A verdict in nature rests on our corrected "
-    "model of the blade."
+    "tables or its text; what it shows in a plot alone is not read off. A verdict in nature rests on the thesis' "
+    "own kind of model with its errors corrected, not on the blade's model that the environment uses."
 )
 STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a}

@@ -62,6 +62,11 @@ def kept_cost(folder: Path) -> float:
     return float(kept) if kept == kept else float("inf")
 
 
+def validated(folder: Path) -> float:
+    """J over no control of the policy that was kept, on validation seeds and without exploration; NaN where nobody looked."""
+    return kept_cost(folder) if (folder / NAME).exists() and _further(folder) else float("nan")
+
+
 def _further(folder: Path) -> str:
     """The column beside ``COLUMNS``; empty without one."""
     last = (folder / NAME).read_text(encoding="utf-8").partition("\n")[0].strip().rpartition(",")[2]

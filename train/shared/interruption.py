@@ -6,13 +6,18 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from types import FrameType, TracebackType
 from typing import Any
 
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """What asks a process to end besides Ctrl-C: a scheduler, a shutdown, a terminal that is closed."""
+
+
+WHEN_ASKED: ContextVar[Callable[[], object]] = ContextVar("WHEN_ASKED", default=lambda: None)
+"""Called when an interruption comes that waits for the end of a piece of work, in the handler of its signal."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -74,6 +79,7 @@ class Deferred:
         if self.asked:
             raise Interrupted(number)
         self.asked = number
+        WHEN_ASKED.get()()
 
 
 def end_with_parent(parent: int) -> None:

@@ -174,7 +174,8 @@ STUDIES = (
                 "The first frequency becomes zero at about 1480 rad/s",
                 Matches(PRINTED_CRITICAL, 0.02, 0.10, "rad/s"),
                 "The extension's stiffness is used up at Ω* = (π/2L)√(a11/b1) for every hub radius; the thesis reads its value "
-                "off the plot.",
+                "off the plot. This is so about the blade at rest. In the blade's model, about the steady state, the first "
+                "frequency rises to 272 rad/s at 800 rad/s, and the blade is unstable before 850.",
             ),
             Statement(
                 "lag-buckles",

@@ -151,7 +151,8 @@ STUDIES = (
                 "limit",
                 "Voltages stay well below 1500 V",
                 Below(1500.0, "V"),
-                "The thesis prints neither its load nor its input weight: 30 and 500 N/m, ρ from 0.05 to 5.",
+                "Chapter 5 prints neither its load nor its input weight: 30 N/m and 500 N/m (section 6.5's 500 kg/m taken as N/m), "
+                "ρ from 0.05 to 5.",
             ),
         ),
         individual_taper,
