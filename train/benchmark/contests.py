@@ -30,8 +30,8 @@ RULE = (
 
 
 STALE = (
-    "Today others might be chosen: the choice that ships was made with other code, or other versions of NumPy and SciPy, than this "
-    "table."
+    "The choice was made by an earlier version of the code, or with other versions of NumPy and SciPy; "
+    "`python -m train.benchmark.choose` makes it again."
 )
 
 

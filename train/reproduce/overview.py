@@ -39,6 +39,14 @@ WEAKEST = (
     "can, it cannot be tested either. The rules are strict in most places, but lenient in some: “marginally up” leaves a trend to "
     "any rise, “within 1.66 %” is judged at 2 %, and “close agreement” is 4 %."
 )
+LETTERS = (
+    "Letters are the thesis': θ is the ply angle, η the taper (in the cost also the weight of the voltages), θp the angle of a "
+    "patch's fibres, φ the twist, ψ the torsional function of a closed cell; u, v and s are displacements in lag, in flap and "
+    "along the span, θx and θy rotations of the section. CUS and CAS are boxes of circumferentially uniform and asymmetric "
+    "stiffness. a22 and a33 are the bending stiffnesses in lag and flap, ã2 is what the higher-order theory adds to the "
+    "coupling of bending and shear. tr(P) and tr(S) are traces of the regulator's and the filter's Riccati solutions, by which "
+    "actuators and sensors are placed."
+)
 HOW: tuple[tuple[Text, ...], ...] = (
     (
         "The verdict in nature rests on the thesis' own kind of model, derived again from its energies, with the shear flow that a "
@@ -84,6 +92,7 @@ def opening(records: Sequence[Record], markup: Markup) -> list[str]:
         markup.paragraph(*DEFINITIONS),
         markup.listed(SYMBOLS),
         markup.paragraph(WEAKEST),
+        markup.paragraph(LETTERS),
         *overview(records, markup),
         markup.heading(2, "Why so many verdicts are negative", ""),
         markup.paragraph(why(records)),
