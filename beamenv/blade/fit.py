@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from beamenv.configuration import Refused
 from beamenv.patches import PatchLayout
-from beamenv.patches.group import PatchGroup
+from beamenv.patches.group import UNTOLD, USUAL, PatchGroup
 from beamenv.patches.layout import SIDES, Side
 from beamenv.structure.inlays import Room
 from beamenv.structure.walls.inlay import Inlay
@@ -48,7 +48,8 @@ def _told(refused: Refused, layout: PatchLayout, side: Side, path: str, boxed: b
         return Refused(f"blade.{path}.{FIELDS.get(field, field)}", refused.value, refused.allowed, refused.meant)
     if path == "patches":  # of no group
         allowed = f"a list of groups, each with its wall, where the section has no wall {refused.value!r}: {_walls(refused)}"
-        return Refused(f"blade.patches.{side}", getattr(layout, side), allowed)
+        given = getattr(layout, side)
+        return Refused(f"blade.patches.{side}", given, allowed, UNTOLD[side] if given == USUAL else "")
     hint = "; without a blade.beam.section it is a box" if boxed else ""
     return Refused(f"blade.{path}.wall", refused.value, refused.allowed + hint, refused.meant)
 

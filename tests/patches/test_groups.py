@@ -227,3 +227,14 @@ def test_a_group_s_sheet_may_be_a_table_that_departs_from_a_named_one():
     assert config.patches.only("actuators").patch.d11 == 500e-12
     with pytest.raises(ValueError, match=r"actuators\[0\]\.material has no field 'foo'"):
         blade_config("thesis", {"patches": {"actuators": [{**group, "material": {"foo": 1.0}}], "sensors": 1}})
+
+
+@pytest.mark.parametrize(("length", "allowed"), [(0.3, "at least one patch length"), (2.0, "a list of groups")])
+def test_patches_that_nobody_asked_for_are_told_to_be_the_default(length, allowed):
+    """An actuator alone on a strip: four sensor patches have no room on it, or no wall."""
+    strip = {"length": length, "pretwist_deg": 0.0, "section": {"shape": "strip", "width": 0.03, "thickness": 0.002}}
+    sheet = {"positions": [0.01], "wall": "strip", "length": 0.05, "width": 0.025, "bonded": True}
+    with pytest.raises(
+        ValueError, match=rf"sensors is 4 \(the default; \[patches\] sensors = \[\] for none\), but must be {allowed}"
+    ):
+        Blade(blade_config(overrides={"beam": strip, "patches": {"actuators": [sheet]}})).plant  # noqa: B018 - built when asked
