@@ -109,7 +109,7 @@ for words in {WITHOUT_TRAINING}:
         ("torch", "train", ["train", "ppo"]),
         ("minari", "record", ["record", "none"]),
         ("ray", "cluster", ["tune", "gradient", "--updates", "1", "--trials", "2"]),
-        ("ray.tune", "cluster", ["tune", "gradient", "--updates", "1", "--trials", "2"]),
+        pytest.param("ray.tune", "cluster", ["tune", "gradient", "--updates", "1", "--trials", "2"], marks=pytest.mark.slow),
         ("ray", "cluster", ["train", "gradient", "--updates", "1", "--cluster", "local"]),
         ("ray", "cluster", ["benchmark", "--folder", "made", "--cluster", "local"]),
     ],

@@ -114,7 +114,7 @@ def on_parts(name, log, function=doubled):
     return replace(study, parts=lambda model: {"sum": Part(added, (Part(function, (1, log)), Part(function, (2, log)), log))})
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_part_that_rests_on_others_is_given_what_they_came_to(jobs, tmp_path):
     log = str(tmp_path / "log")
     run([on_parts("figure-3.2", log), of_parts("figure-3.3", (2,), log)], tmp_path, workers=Workers(jobs))

@@ -108,6 +108,7 @@ def events(folder):
     return len(list(folder.glob("tensorboard/*")))
 
 
+@pytest.mark.slow
 def test_a_training_that_is_killed_goes_on_to_the_same_weights(tmp_path):
     arguments = train_of(GRADIENT, tmp_path / "brief.toml")
     whole, broken = tmp_path / "whole", tmp_path / "broken"

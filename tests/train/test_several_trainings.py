@@ -91,7 +91,9 @@ def test_an_interruption_ends_all_of_them_and_keeps_what_is_learnt(tmp_path):
     assert (tmp_path / "1" / NAME).is_file() and not (tmp_path / "2").exists()
 
 
-@pytest.mark.parametrize("workers", [Workers(), Workers(2)], ids=["here", "processes"])
+@pytest.mark.parametrize(
+    "workers", [pytest.param(Workers(), id="here"), pytest.param(Workers(2), id="processes", marks=pytest.mark.slow)]
+)
 def test_a_training_that_fails_costs_no_other(workers, tmp_path):
     teacher = tmp_path / "teacher"
     run(job(GRADIENT, updates=1), teacher, ignore)
