@@ -178,7 +178,7 @@ def each_end():
         yield pytest.param(ends, id="".join(ends), marks=() if changes in (0, len(ends) - 1) else pytest.mark.slow)
 
 
-@pytest.mark.parametrize("ends", each_end())
+@pytest.mark.parametrize("ends", list(each_end()))
 def test_the_sliders_ends_give_figures(ends):
     values = {name: (RANGES[name].low, RANGES[name].high)[int(end)] for name, end in zip(OF_THE_BEAM, ends, strict=True)}
     check_figures(redraw(**START | values))
