@@ -14,6 +14,10 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+class UnknownKeyword(ValueError, TypeError):
+    """As of any other value that is not allowed, and as of Python's own: libraries try keywords, and go by the ``TypeError``."""
+
+
 def known_keywords(path: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Make a constructor refuse keywords that it does not have in one sentence about ``path``, with those that are like them.
 
@@ -27,7 +31,8 @@ def known_keywords(path: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
         def checked(*args: P.args, **kwargs: P.kwargs) -> R:
             if wrong := [name for name in kwargs if name not in names]:
                 near = meant(wrong[0], names)
-                raise ValueError(f"{path} has no argument {shown(wrong[0])}{near}: its arguments are {', '.join(names)}.")
+                told = f"{path} got an unexpected keyword argument {shown(wrong[0])}{near}: its arguments are {', '.join(names)}."
+                raise UnknownKeyword(told)
             return constructor(*args, **kwargs)
 
         return checked

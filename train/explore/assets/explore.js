@@ -5,7 +5,7 @@
 // than one core can make. What takes longer is asked for once the controls rest.
 
 (() => {
-  const patience = 120000; // ms: should an answer get lost, the page goes on
+  const patience = 2000; // ms: should an answer get lost, so that nothing is computed though it is awaited, the page goes on
   const long = 700; // ms: what takes longer says so
   const stale = 1000; // ms: a redraw of values that are no longer wanted is stopped after so long
   const pause = 150; // ms: controls that were not moved for so long rest
@@ -144,7 +144,8 @@
     if (mine !== asked) return window.dash_clientside.no_update;
     drawn = new Promise((resolve) => {
       finish = resolve;
-      setTimeout(resolve, patience);
+      const look = () => (document.documentElement.dataset.busy === "false" ? resolve() : setTimeout(look, patience));
+      setTimeout(look, patience);
     });
     return values;
   }
