@@ -82,13 +82,16 @@ def test_what_was_found_before_an_interruption_is_told(monkeypatch):
     assert result.stderr == "beamenv: interrupted.\n"
 
 
-def test_together_tells_both_sides_and_the_gain():
-    result = run("--together", "--actuators", "1", "--sensors", "1", "--json")
+def test_together_tells_both_sides_and_the_gain_and_saves_the_blade(tmp_path):
+    saved = tmp_path / "placed.json"
+    result = run("--together", "--actuators", "1", "--sensors", "1", "--json", "--output", str(saved))
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
     found = place_jointly(JointProblem.of(blade_config(), 1, 1))
     assert told["actuators"] == list(found.actuators) and told["cost"] == found.cost
     assert told["gain"] == pytest.approx(1.0 - told["cost"] / told["in_turn_cost"])
+    patches = load_config(saved).patches
+    assert [patches.only(side).positions for side in ("actuators", "sensors")] == [tuple(found.actuators), tuple(found.sensors)]
 
 
 @pytest.mark.parametrize(

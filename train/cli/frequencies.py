@@ -73,20 +73,22 @@ def frequencies(
         told = {"unit": "rad/s", "speeds": rows, "note": near, "assumed": untold}
         print_json({"preset": preset, "gyroscopic": gyroscopic, **told})
         return
-    columns = [Column("mode", words=True), *(Column(f"at {each:g} rad/s", words=True) for each in speeds)]
-    by_mode = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
-    show_table(columns, by_mode, "Natural frequencies, rad/s (Hz)")
+    _show(speeds, found, count)
     if beam.critical_speed < FASTEST:
         note(f"critical speed {beam.critical_speed:.1f} rad/s")
     for each, state in zip(speeds, steady, strict=True):
         if each > 0.0 and config.model != "thesis":
             note(_turning(each, state, config.patches.failure_strain))
-    if near:
-        note(near)
-    if slow := _slow(found):
-        note(slow)
-    if untold:
-        note(f"assumed, as of the default blade: {'; '.join(untold)}")
+    assumed = f"assumed, as of the default blade: {'; '.join(untold)}" if untold else ""
+    for sentence in filter(None, (near, _slow(found), assumed)):
+        note(sentence)
+
+
+def _show(speeds: list[float], found: list[Any], count: int) -> None:
+    """Frequencies and families, a column for each speed."""
+    columns = [Column("mode", words=True), *(Column(f"at {each:g} rad/s", words=True) for each in speeds)]
+    by_mode = [[str(mode + 1), *(_frequency(modes, mode) for modes in found)] for mode in range(count)]
+    show_table(columns, by_mode, "Natural frequencies, rad/s (Hz)")
 
 
 def _slow(found: list[Any]) -> str:

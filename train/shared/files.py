@@ -19,7 +19,7 @@ from beamenv.configuration.writing import write_whole
 SPACE = 16_000_000
 """Bytes that must be free where a run writes what it finds: checkpoints, tables, pictures, a page."""
 
-PICTURE = 1_000_000
+PICTURE = 2**20
 """… where a single file is written."""
 
 PICTURES = (".png",)
