@@ -258,11 +258,12 @@ def test_a_first_period_beyond_a_hundred_episodes_is_told(hertz, told):
 
 def test_a_long_thin_blade_s_first_period_is_told(tmp_path):
     """A sheet of 200 m by 1 mm, as one of millimetres may have been given."""
-    beam = "speed = 0.0\n[beam]\nlength = 200.0\npretwist_deg = 0.0\n[beam.section]\nshape = 'strip'\nwidth = 0.5\nthickness = 0.001\n"
+    beam = "speed = 0.0\n[beam]\nlength = 200.0\npretwist_deg = 0.0\n"
+    section = "[beam.section]\nshape = 'strip'\nwidth = 0.5\nthickness = 0.001\n"
     sheet = "positions = [1.0]\nwall = 'strip'\nlength = 0.05\nwidth = 0.025\n"
     patches = f"[[patches.actuators]]\n{sheet}[[patches.sensors]]\nface = 'inner'\n{sheet}"
     file = tmp_path / "sheet.toml"
-    file.write_text(beam + patches)
+    file.write_text(beam + section + patches)
     printed = " ".join(run("frequencies", "--blade", str(file)).stdout.split())
     assert "s, an episode lasts 0.5 s: were lengths given in millimetres?" in printed
 
